@@ -1,0 +1,105 @@
+/// \file
+/// What floe needs around PETSc: a checked call, an owning handle, and the life of a session.
+#pragma once
+
+#include <petsc.h>
+
+#include <source_location>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace floe {
+
+/// What the user can put right: a scene, an option, a file. The only exception that main catches.
+/// Always raised alike on all ranks, before any collective call that some rank would miss.
+/// The text is one line that names the key, the value and what is allowed.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Throws if a PETSc (or MPI) call failed: InputError if the user asked for a type PETSc does not have,
+/// otherwise std::runtime_error, which nobody catches: the terminate handler prints it and aborts all
+/// ranks (unwinding on one rank would run collective destructors and hang).
+[[noreturn]] void fail(int ierr, const std::source_location& where);
+
+inline void check(int ierr, const std::source_location& where = std::source_location::current()) {
+  if (ierr != 0) [[unlikely]] fail(ierr, where);
+}
+
+namespace detail {
+inline PetscErrorCode destroy(Vec* v) { return VecDestroy(v); }
+inline PetscErrorCode destroy(Mat* m) { return MatDestroy(m); }
+inline PetscErrorCode destroy(KSP* k) { return KSPDestroy(k); }
+inline PetscErrorCode destroy(SNES* s) { return SNESDestroy(s); }
+inline PetscErrorCode destroy(TS* t) { return TSDestroy(t); }
+inline PetscErrorCode destroy(IS* i) { return ISDestroy(i); }
+inline PetscErrorCode destroy(PetscSF* s) { return PetscSFDestroy(s); }
+inline PetscErrorCode destroy(MatNullSpace* n) { return MatNullSpaceDestroy(n); }
+inline PetscErrorCode destroy(PetscViewer* v) { return PetscViewerDestroy(v); }
+}  // namespace detail
+
+/// Owner of one PETSc object; move-only. Destruction is not checked (and is collective, as PETSc's is).
+template <class T>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(T object) : object_(object) {}
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  Handle(Handle&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(object_, other.object_);
+    return *this;
+  }
+  ~Handle() {
+    if (object_) (void)detail::destroy(&object_);
+  }
+
+  /// The object, borrowed.
+  operator T() const { return object_; }  // NOLINT: PETSc calls take the bare object
+  T get() const { return object_; }
+  /// Where a PETSc Create call puts a new object; what was held is given up first.
+  T* put() {
+    if (object_) (void)detail::destroy(&object_);
+    object_ = nullptr;
+    return &object_;
+  }
+
+ private:
+  T object_ = nullptr;
+};
+
+/// MPI from construction to destruction; installs the terminate handler (print, MPI_Abort).
+class Mpi {
+ public:
+  Mpi(int& argc, char**& argv);
+  ~Mpi();
+  Mpi(const Mpi&) = delete;
+  Mpi& operator=(const Mpi&) = delete;
+};
+
+/// PETSc from construction to destruction, with the scene's options under those of the command line.
+/// \param scene  path of a scene that read_scene_text accepted, or empty.
+class Session {
+ public:
+  Session(int& argc, char**& argv, const std::string& scene);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+};
+
+/// This process's rank and the number of ranks.
+inline int rank(MPI_Comm comm = PETSC_COMM_WORLD) {
+  int r = 0;
+  MPI_Comm_rank(comm, &r);
+  return r;
+}
+inline int size(MPI_Comm comm = PETSC_COMM_WORLD) {
+  int n = 1;
+  MPI_Comm_size(comm, &n);
+  return n;
+}
+
+}  // namespace floe

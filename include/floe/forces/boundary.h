@@ -1,0 +1,46 @@
+/// \file
+/// Prescribed motions and dead loads, as a scene states them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "floe/geometry/polyhedron.h"
+
+namespace floe {
+
+/// Linear rise from 0 to 1 over `seconds`, 1 from then on (0 s: 1 at once).
+struct Ramp {
+  double seconds = 0;
+  double value(double time) const;     ///< factor at `time`
+  double integral(double time) const;  ///< its integral from 0 to `time` [s]
+};
+
+/// Prescribed components of the motion of a set of bodies: x y z rx ry rz.
+/// With `velocity`, displacements are its integral over the ramp; with `displacement`, they follow the ramp.
+/// Rotations are integrals of `angular_velocity` in the same way.
+struct Boundary {
+  std::string name, set;
+  std::array<bool, 6> fixed{};
+  std::optional<Point3> displacement;   ///< [m]
+  std::optional<Point3> velocity;       ///< [m/s]
+  Point3 angular_velocity{};            ///< [rad/s]
+  Ramp ramp;
+
+  /// Prescribed displacement and rotation [m, rad] at `time`; entries that are not fixed are 0.
+  std::array<double, 6> value(double time) const;
+};
+
+/// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in plan
+/// (carried by the nearest body, statically equivalent: a force at a body-fixed point).
+struct Load {
+  std::string name;
+  std::string set;                ///< empty: at a point
+  std::optional<Point2> point;    ///< [m]
+  Point3 force{};                 ///< [N]
+  Point3 moment{};                ///< [N m]
+  Ramp ramp;
+};
+
+}  // namespace floe
