@@ -44,7 +44,6 @@ class Progress {
   void update(double done, std::string_view note = {});
 
  private:
-  void print(double done, std::string_view note, bool last);
   std::string_view what_;
   double total_, start_, last_print_;
   bool shown_ = false, terminal_ = false, active_ = false;

@@ -1,0 +1,89 @@
+#include "floe/base/log.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "floe/base/petsc.h"
+
+namespace floe {
+namespace {
+
+constexpr int number_of_events = static_cast<int>(Event::count);
+
+std::array<double, number_of_events>& totals() {
+  static std::array<double, number_of_events> seconds{};
+  return seconds;
+}
+
+PetscLogEvent petsc_event(Event event) {
+  static const auto registered = [] {
+    std::array<PetscLogEvent, number_of_events> ids{};
+    PetscClassId floe_class = 0;
+    check(PetscClassIdRegister("Floe", &floe_class));
+    for (int k = 0; k < number_of_events; ++k)
+      check(PetscLogEventRegister(event_names[static_cast<std::size_t>(k)].data(), floe_class,
+                                  &ids[static_cast<std::size_t>(k)]));
+    return ids;
+  }();
+  return registered[static_cast<std::size_t>(event)];
+}
+
+}  // namespace
+
+Timed::Timed(Event event) : event_(event), start_(MPI_Wtime()) {
+  check(PetscLogEventBegin(petsc_event(event_), 0, 0, 0, 0));
+}
+
+Timed::~Timed() {
+  (void)PetscLogEventEnd(petsc_event(event_), 0, 0, 0, 0);
+  totals()[static_cast<std::size_t>(event_)] += MPI_Wtime() - start_;
+}
+
+double wall_seconds(Event event) { return totals()[static_cast<std::size_t>(event)]; }
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+Progress::Progress(std::string_view what, double total)
+    : what_(what), total_(total), start_(MPI_Wtime()), last_print_(start_) {
+  active_ = rank() == 0;
+  terminal_ = isatty(STDERR_FILENO) != 0;
+}
+
+Progress::~Progress() {
+  if (shown_ && terminal_) std::fprintf(stderr, "\r\033[K");
+}
+
+void Progress::update(double done, std::string_view note) {
+  if (!active_) return;
+  constexpr double quiet_seconds = 1, bar_seconds = 0.2, line_seconds = 5;
+  const double now = MPI_Wtime();
+  if (now - start_ < quiet_seconds) return;
+  if (now - last_print_ < (terminal_ ? bar_seconds : line_seconds)) return;
+  last_print_ = now;
+  shown_ = true;
+  const double share = total_ > 0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
+  const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
+  if (terminal_) {
+    constexpr int bar_width = 30;
+    const int full = static_cast<int>(share * bar_width);
+    const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
+                            std::string(static_cast<std::size_t>(bar_width - full), '.');
+    std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%  %.0f s left  %.*s", static_cast<int>(what_.size()),
+                 what_.data(), bar.c_str(), 100 * share, left, static_cast<int>(note.size()), note.data());
+  } else {
+    std::fprintf(stderr, "%.*s: %.0f %%, %.0f s left  %.*s\n", static_cast<int>(what_.size()),
+                 what_.data(), 100 * share, left, static_cast<int>(note.size()), note.data());
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace floe

@@ -1,0 +1,73 @@
+#include "floe/base/petsc.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+
+namespace floe {
+namespace {
+
+/// PETSc's own words for the last error, kept for fail(); PETSc's default handler would print a page.
+std::string last_message;  // NOLINT: written by PETSc's error handler, which has no other place to put it
+
+PetscErrorCode remember_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
+                              PetscErrorType type, const char* message, void*) {
+  if (type == PETSC_ERROR_INITIAL) last_message = message ? message : "";
+  return code;
+}
+
+[[noreturn]] void report_and_abort() {
+  const char* what = "unknown error";
+  std::string text;
+  if (const auto error = std::current_exception()) {
+    try {
+      std::rethrow_exception(error);
+    } catch (const std::exception& e) {
+      text = e.what();
+      what = text.c_str();
+    } catch (...) {
+    }
+  }
+  std::fprintf(stderr, "floe: internal error: %s\n", what);
+  std::fflush(stderr);
+  int running = 0;
+  MPI_Initialized(&running);
+  if (running) MPI_Abort(MPI_COMM_WORLD, 1);
+  std::_Exit(1);
+}
+
+}  // namespace
+
+void fail(int ierr, const std::source_location& where) {
+  const char* generic = nullptr;
+  PetscErrorMessage(ierr, &generic, nullptr);
+  std::string text = last_message.empty() ? std::string(generic ? generic : "") : last_message;
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  last_message.clear();
+  if (ierr == PETSC_ERR_ARG_UNKNOWN_TYPE || ierr == PETSC_ERR_USER_INPUT) {
+    for (char& c : text) {
+      if (c == '\n') c = ' ';
+    }
+    throw InputError("solver option: " + text);
+  }
+  throw std::runtime_error(text + " (code " + std::to_string(ierr) + ", " + where.file_name() + ":" +
+                           std::to_string(where.line()) + ")");
+}
+
+Mpi::Mpi(int& argc, char**& argv) {
+  std::set_terminate(report_and_abort);
+  MPI_Init(&argc, &argv);
+}
+
+Mpi::~Mpi() { MPI_Finalize(); }
+
+Session::Session(int& argc, char**& argv, const std::string& scene) {
+  const std::string file = scene.empty() ? std::string() : scene + ":yaml";
+  check(PetscInitialize(&argc, &argv, scene.empty() ? nullptr : file.c_str(), nullptr));
+  check(PetscPushErrorHandler(remember_error, nullptr));
+}
+
+Session::~Session() { (void)PetscFinalize(); }
+
+}  // namespace floe
