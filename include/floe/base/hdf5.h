@@ -1,0 +1,61 @@
+/// \file
+/// HDF5 files as floe uses them: plain datasets, read and written by one process (no parallel driver).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace floe {
+
+/// One open HDF5 file. Files written whole go to a temporary name that close() renames; a destructor without
+/// close() leaves nothing behind. Errors of the system end the run; a file the user gave that cannot be used
+/// raises InputError.
+class Hdf5File {
+ public:
+  /// A new file that will be called `path` once close() has been called.
+  static Hdf5File create(const std::string& path);
+  /// A file that grows and is flushed sample by sample (fields.h5); starts empty.
+  static Hdf5File create_growing(const std::string& path);
+  /// An existing file, for reading. \throws InputError if it is missing or is not HDF5.
+  static Hdf5File open(const std::string& path);
+
+  Hdf5File(Hdf5File&& other) noexcept;
+  Hdf5File& operator=(Hdf5File&& other) noexcept;
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+  ~Hdf5File();
+
+  /// Finishes and renames a file made by create().
+  void close();
+  /// Everything written so far is on disk and readable.
+  void flush();
+
+  /// Writes rows x columns values (columns = 1: a vector); groups in `name` are made as needed.
+  void write(const std::string& name, std::span<const double> values, int columns = 1);
+  void write(const std::string& name, std::span<const float> values, int columns = 1);
+  void write(const std::string& name, std::span<const std::int32_t> values, int columns = 1);
+  void attribute(const std::string& object, const std::string& name, double value);
+
+  bool has(const std::string& name) const;
+  /// Names of the members of a group, sorted.
+  std::vector<std::string> members(const std::string& group) const;
+  /// Rows and columns (1 for a vector). \throws InputError naming the dataset if it is missing or has rank > 2.
+  std::pair<std::int64_t, std::int64_t> shape(const std::string& name) const;
+  /// All values of a dataset, row-major. \throws InputError if it is missing or has another number of columns.
+  std::vector<double> read(const std::string& name, int columns = 1) const;
+  std::vector<std::int32_t> read_indices(const std::string& name, int columns = 1) const;
+
+ private:
+  Hdf5File(std::int64_t id, std::string path, std::string final_path)
+      : id_(id), path_(std::move(path)), final_path_(std::move(final_path)) {}
+  void write_any(const std::string& name, const void* values, std::int64_t count, int columns, std::int64_t type);
+  void read_any(const std::string& name, int columns, std::int64_t type, void* values) const;
+
+  std::int64_t id_ = -1;
+  std::string path_, final_path_;
+};
+
+}  // namespace floe

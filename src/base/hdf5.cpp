@@ -1,0 +1,188 @@
+#include "floe/base/hdf5.h"
+
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "floe/base/petsc.h"
+
+namespace floe {
+namespace {
+
+/// Closes an HDF5 identifier of any kind at the end of a scope.
+class Id {
+ public:
+  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  Id(const Id&) = delete;
+  Id& operator=(const Id&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT: HDF5 calls take the bare identifier
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void require(bool good, const std::string& what, const std::string& path) {
+  if (!good) throw std::runtime_error("HDF5: cannot " + what + " " + path);
+}
+
+void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+}  // namespace
+
+Hdf5File Hdf5File::create(const std::string& path) {
+  quiet();
+  const std::string temporary = path + ".part";
+  const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  require(id >= 0, "create", temporary);
+  return {id, temporary, path};
+}
+
+Hdf5File Hdf5File::create_growing(const std::string& path) {
+  quiet();
+  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  require(id >= 0, "create", path);
+  return {id, path, path};
+}
+
+Hdf5File Hdf5File::open(const std::string& path) {
+  quiet();
+  if (!std::filesystem::is_regular_file(path))
+    throw InputError("lattice_file: '" + path + "' does not exist or is not a regular file");
+  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (id < 0) throw InputError("lattice_file: '" + path + "' is not an HDF5 file");
+  return {id, path, path};
+}
+
+Hdf5File::Hdf5File(Hdf5File&& other) noexcept
+    : id_(std::exchange(other.id_, -1)), path_(std::move(other.path_)), final_path_(std::move(other.final_path_)) {}
+
+Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(path_, other.path_);
+  std::swap(final_path_, other.final_path_);
+  return *this;
+}
+
+Hdf5File::~Hdf5File() {
+  if (id_ < 0) return;
+  H5Fclose(id_);
+  if (path_ != final_path_) std::remove(path_.c_str());
+}
+
+void Hdf5File::close() {
+  if (id_ < 0) return;
+  require(H5Fclose(std::exchange(id_, -1)) >= 0, "close", path_);
+  if (path_ != final_path_) std::filesystem::rename(path_, final_path_);
+}
+
+void Hdf5File::flush() { require(H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0, "flush", path_); }
+
+void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count, int columns,
+                         std::int64_t type) {
+  const std::array<hsize_t, 2> extent{static_cast<hsize_t>(count / columns), static_cast<hsize_t>(columns)};
+  const Id space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
+  const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  require(data >= 0, "write " + name + " to", path_);
+  if (count > 0)
+    require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, "write " + name + " to", path_);
+}
+
+void Hdf5File::write(const std::string& name, std::span<const double> values, int columns) {
+  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns, H5T_NATIVE_DOUBLE);
+}
+void Hdf5File::write(const std::string& name, std::span<const float> values, int columns) {
+  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns, H5T_NATIVE_FLOAT);
+}
+void Hdf5File::write(const std::string& name, std::span<const std::int32_t> values, int columns) {
+  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns, H5T_NATIVE_INT32);
+}
+
+void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
+  const Id target(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Id attribute(H5Acreate2(target, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  require(attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0, "write attribute " + name + " to",
+          path_);
+}
+
+bool Hdf5File::has(const std::string& name) const {
+  std::string path;
+  std::size_t start = 0;
+  while (start < name.size()) {  // H5Lexists wants every parent to exist
+    const std::size_t slash = name.find('/', start);
+    path += "/" + name.substr(start, slash - start);
+    if (path != "/" && H5Lexists(id_, path.c_str(), H5P_DEFAULT) <= 0) return false;
+    if (slash == std::string::npos) break;
+    start = slash + 1;
+  }
+  return true;
+}
+
+std::vector<std::string> Hdf5File::members(const std::string& group) const {
+  std::vector<std::string> names;
+  const Id id(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
+  if (id < 0) throw InputError("lattice_file: '" + path_ + "': " + group + " is not a group");
+  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::pair<std::int64_t, std::int64_t> Hdf5File::shape(const std::string& name) const {
+  const std::string where = "lattice_file: '" + path_ + "': " + name;
+  if (!has(name)) throw InputError(where + " is missing");
+  const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  if (data < 0) throw InputError(where + " is not a dataset");
+  const Id space(H5Dget_space(data), H5Sclose);
+  const int dimensions = H5Sget_simple_extent_ndims(space);
+  if (dimensions < 1 || dimensions > 2)
+    throw InputError(where + " has " + std::to_string(dimensions) + " dimensions, must have 1 or 2");
+  std::array<hsize_t, 2> extent{0, 1};
+  H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+  return {static_cast<std::int64_t>(extent[0]), static_cast<std::int64_t>(extent[1])};
+}
+
+void Hdf5File::read_any(const std::string& name, int columns, std::int64_t type, void* values) const {
+  const std::string where = "lattice_file: '" + path_ + "': " + name;
+  const auto [rows, actual] = shape(name);
+  if (actual != columns)
+    throw InputError(where + " has shape " + std::to_string(rows) + " x " + std::to_string(actual) +
+                     ", must be n x " + std::to_string(columns));
+  const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Id stored(H5Dget_type(data), H5Tclose);
+  const H5T_class_t kind = H5Tget_class(stored);
+  const bool wants_integers = type == H5T_NATIVE_INT32;
+  if (wants_integers ? kind != H5T_INTEGER : (kind != H5T_INTEGER && kind != H5T_FLOAT))
+    throw InputError(where + (wants_integers ? " must hold integers" : " must hold numbers"));
+  if (rows > 0 && H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+    throw InputError(where + " cannot be read");
+}
+
+std::vector<double> Hdf5File::read(const std::string& name, int columns) const {
+  const auto [rows, actual] = shape(name);
+  std::vector<double> values(static_cast<std::size_t>(rows * actual));
+  read_any(name, columns, H5T_NATIVE_DOUBLE, values.data());
+  return values;
+}
+
+std::vector<std::int32_t> Hdf5File::read_indices(const std::string& name, int columns) const {
+  const auto [rows, actual] = shape(name);
+  std::vector<std::int32_t> values(static_cast<std::size_t>(rows * actual));
+  read_any(name, columns, H5T_NATIVE_INT32, values.data());
+  return values;
+}
+
+}  // namespace floe
