@@ -1,0 +1,37 @@
+/// \file
+/// Text of an option to value, strictly: exact count, finite, nothing trailing.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "floe/base/options.h"
+
+namespace floe {
+
+/// "sheet: length" -> "sheet_length", with NAME replaced by `name` if there is one.
+std::string option_name(std::string_view key, std::string_view name = {});
+/// "boundary: NAME: fix" -> "boundary: a: fix".
+std::string option_label(std::string_view key, std::string_view name = {});
+
+/// Items separated by commas or blanks; nothing if an item between commas is empty.
+std::optional<std::vector<std::string>> to_list(std::string_view text);
+std::optional<double> to_number(std::string_view text);  ///< nothing unless finite
+std::optional<std::int64_t> to_integer(std::string_view text);
+std::optional<bool> to_flag(std::string_view text);
+/// "one | two" -> one, two.
+std::vector<std::string_view> choices_of(std::string_view allowed);
+/// Whether a number is in the range `allowed` of an OptionSpec.
+bool in_range(double value, std::string_view allowed);
+/// Lower-case letters and digits, at least one, and not the word "names" itself.
+bool is_name(std::string_view word);
+
+/// What an option must be, in words: "a finite number > 0 [m]".
+std::string allowed_text(const OptionSpec& spec);
+/// A value fit for one line of an error message: blanks for control characters, cut if long.
+std::string shown(std::string_view value);
+
+}  // namespace floe

@@ -1,0 +1,239 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "floe/base/hdf5.h"
+#include "floe/base/petsc.h"
+#include "floe/base/rotation.h"
+#include "floe/lattice/lattice.h"
+
+namespace floe {
+namespace {
+
+/// Names the file and the dataset in whatever is wrong with it.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : path_(path), file_(Hdf5File::open(path)) {}
+
+  [[noreturn]] void refuse(const std::string& dataset, const std::string& why) const {
+    throw InputError("lattice_file: '" + path_ + "': " + dataset + ": " + why);
+  }
+  const Hdf5File& file() const { return file_; }
+
+  std::vector<double> scalars(const std::string& name, std::size_t count, bool positive = true) const {
+    std::vector<double> values = file_.read(name);
+    expect(name, values.size(), count);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!std::isfinite(values[k]) || (positive && values[k] <= 0))
+        refuse(name, "entry " + std::to_string(k) + " is " + std::to_string(values[k]) +
+                         (positive ? ", must be > 0" : ", must be finite"));
+    }
+    return values;
+  }
+
+  template <std::size_t columns>
+  std::vector<std::array<double, columns>> rows(const std::string& name, std::size_t count) const {
+    const std::vector<double> values = file_.read(name, columns);
+    expect(name, values.size() / columns, count);
+    std::vector<std::array<double, columns>> out(count);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (!std::isfinite(values[k])) refuse(name, "row " + std::to_string(k / columns) + " is not finite");
+      out[k / columns][k % columns] = values[k];
+    }
+    return out;
+  }
+
+  std::vector<std::int32_t> indices(const std::string& name, std::size_t limit, int columns = 1) const {
+    std::vector<std::int32_t> values = file_.read_indices(name, columns);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      if (values[k] < 0 || static_cast<std::size_t>(values[k]) >= limit)
+        refuse(name, "entry " + std::to_string(k) + " is " + std::to_string(values[k]) + ", must be between 0 and " +
+                         std::to_string(limit) + " (exclusive)");
+    }
+    return values;
+  }
+
+ private:
+  void expect(const std::string& name, std::size_t actual, std::size_t count) const {
+    if (actual != count)
+      refuse(name, "has " + std::to_string(actual) + " rows, must have " + std::to_string(count));
+  }
+  std::string path_;
+  Hdf5File file_;
+};
+
+Bodies read_bodies(const Reader& in) {
+  Bodies b;
+  const auto n = static_cast<std::size_t>(in.file().shape("/bodies/position").first);
+  if (n == 0) in.refuse("/bodies/position", "there must be at least one body");
+  b.position = in.rows<3>("/bodies/position", n);
+  b.orientation = in.rows<4>("/bodies/orientation", n);
+  for (std::size_t k = 0; k < n; ++k) {
+    auto& [w, x, y, z] = b.orientation[k];
+    const double norm = std::sqrt(w * w + x * x + y * y + z * z);
+    if (std::abs(norm - 1) > 1e-6)
+      in.refuse("/bodies/orientation", "row " + std::to_string(k) + " is not a unit quaternion (w x y z)");
+    // What floe wrote is unit to rounding and must come back to the bit.
+    if (std::abs(norm - 1) > 1e-15) b.orientation[k] = {w / norm, x / norm, y / norm, z / norm};
+  }
+  b.mass = in.scalars("/bodies/mass", n);
+  b.inertia = in.rows<3>("/bodies/inertia", n);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (const double moment : b.inertia[k]) {
+      if (moment <= 0) in.refuse("/bodies/inertia", "row " + std::to_string(k) + " must be > 0");
+    }
+  }
+  if (in.file().has("/bodies/velocity")) b.velocity = in.rows<3>("/bodies/velocity", n);
+  if (in.file().has("/bodies/angular_velocity")) b.angular_velocity = in.rows<3>("/bodies/angular_velocity", n);
+  return b;
+}
+
+void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
+  const std::size_t m = beams.bodies.size();
+  beams.length = in.scalars("/beams/length", m);
+  beams.axis_y = in.rows<3>("/beams/axis_y", m);
+  for (std::size_t k = 0; k < m; ++k) {
+    const Point3& a = bodies.position[static_cast<std::size_t>(beams.bodies[k][0])];
+    const Point3& b = bodies.position[static_cast<std::size_t>(beams.bodies[k][1])];
+    const Vec3<double> e{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double distance = std::sqrt(dot(e, e));
+    if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
+      in.refuse("/beams/length", "row " + std::to_string(k) + " is " + std::to_string(beams.length[k]) +
+                                     ", but its bodies are " + std::to_string(distance) + " m apart");
+    const Vec3<double> y{beams.axis_y[k][0], beams.axis_y[k][1], beams.axis_y[k][2]};
+    const Vec3<double> normal = cross(e, y);
+    if (std::abs(std::sqrt(dot(y, y)) - 1) > 1e-6 || std::sqrt(dot(normal, normal)) < 1e-6 * distance)
+      in.refuse("/beams/axis_y", "row " + std::to_string(k) + " must be a unit vector that is not along the beam");
+  }
+}
+
+Beams read_beams(const Reader& in, const Bodies& bodies) {
+  Beams beams;
+  const auto n = static_cast<std::size_t>(bodies.size());
+  if (!in.file().has("/beams/bodies")) return beams;  // loose blocks
+  const std::vector<std::int32_t> pairs = in.indices("/beams/bodies", n, 2);
+  const std::size_t m = pairs.size() / 2;
+  for (std::size_t k = 0; k < m; ++k) {
+    if (pairs[2 * k] == pairs[2 * k + 1])
+      in.refuse("/beams/bodies", "row " + std::to_string(k) + " joins body " + std::to_string(pairs[2 * k]) +
+                                     " to itself");
+    if (pairs[2 * k] > pairs[2 * k + 1])
+      in.refuse("/beams/bodies", "row " + std::to_string(k) + " must have the smaller index first");
+    beams.bodies.push_back({pairs[2 * k], pairs[2 * k + 1]});
+  }
+  beams.area = in.scalars("/beams/area", m);
+  beams.inertia_y = in.scalars("/beams/inertia_y", m);
+  beams.inertia_z = in.scalars("/beams/inertia_z", m);
+  beams.torsion = in.scalars("/beams/torsion", m);
+  beams.young = in.scalars("/beams/young", m);
+  beams.shear_modulus = in.scalars("/beams/shear_modulus", m);
+  beams.shear_factor = in.scalars("/beams/shear_factor", m);
+  if (in.file().has("/beams/width")) beams.width = in.scalars("/beams/width", m);
+  if (in.file().has("/beams/height")) beams.height = in.scalars("/beams/height", m);
+  read_axes(in, bodies, beams);
+  return beams;
+}
+
+/// Offsets must start at 0, grow, and end at `end`.
+void check_offsets(const Reader& in, const std::string& name, const std::vector<std::int32_t>& offsets,
+                   std::size_t groups, std::size_t end) {
+  if (offsets.size() != groups + 1) in.refuse(name, "must have " + std::to_string(groups + 1) + " entries");
+  if (offsets.front() != 0 || static_cast<std::size_t>(offsets.back()) != end ||
+      !std::is_sorted(offsets.begin(), offsets.end()))
+    in.refuse(name, "must grow from 0 to " + std::to_string(end));
+}
+
+Shapes read_shapes(const Reader& in, std::size_t bodies) {
+  Shapes s;
+  if (!in.file().has("/shapes")) return s;
+  s.vertices = in.rows<3>("/shapes/vertices", static_cast<std::size_t>(in.file().shape("/shapes/vertices").first));
+  s.corners = in.indices("/shapes/corners", s.vertices.size());
+  s.corner_of = in.indices("/shapes/corner_of", s.corners.size() + 1);
+  s.face_of = in.indices("/shapes/face_of", s.corner_of.size());
+  s.vertex_of = in.indices("/shapes/vertex_of", s.vertices.size() + 1);
+  if (s.corner_of.empty()) in.refuse("/shapes/corner_of", "must not be empty");
+  check_offsets(in, "/shapes/corner_of", s.corner_of, s.corner_of.size() - 1, s.corners.size());
+  check_offsets(in, "/shapes/face_of", s.face_of, bodies, s.corner_of.size() - 1);
+  check_offsets(in, "/shapes/vertex_of", s.vertex_of, bodies, s.vertices.size());
+  for (std::size_t b = 0; b < bodies; ++b) {
+    for (std::int32_t c = s.corner_of[static_cast<std::size_t>(s.face_of[b])];
+         c < s.corner_of[static_cast<std::size_t>(s.face_of[b + 1])]; ++c) {
+      const std::int32_t v = s.corners[static_cast<std::size_t>(c)];
+      if (v < s.vertex_of[b] || v >= s.vertex_of[b + 1])
+        in.refuse("/shapes/corners", "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
+    }
+  }
+  return s;
+}
+
+std::span<const double> flat(const std::vector<Point3>& v) { return {v.empty() ? nullptr : v[0].data(), 3 * v.size()}; }
+
+}  // namespace
+
+const std::vector<std::int32_t>& Lattice::set(const std::string& name, const std::string& key) const {
+  if (const auto found = sets.find(name); found != sets.end()) return found->second;
+  std::string known;
+  for (const auto& [other, bodies_of_set] : sets) known += (known.empty() ? "" : ", ") + other;
+  throw InputError(key + ": there is no set '" + name + "'; the scene has " + known);
+}
+
+Lattice read_lattice(const std::string& file) {
+  const Reader in(file);
+  Lattice lattice;
+  lattice.bodies = read_bodies(in);
+  const auto n = static_cast<std::size_t>(lattice.bodies.size());
+  lattice.beams = read_beams(in, lattice.bodies);
+  lattice.shapes = read_shapes(in, n);
+  if (in.file().has("/sets")) {
+    for (const std::string& name : in.file().members("/sets")) {
+      auto& set = lattice.sets[name] = in.indices("/sets/" + name, n);
+      std::sort(set.begin(), set.end());
+      set.erase(std::unique(set.begin(), set.end()), set.end());
+    }
+  }
+  auto& all = lattice.sets["all"];
+  all.resize(n);
+  for (std::size_t k = 0; k < n; ++k) all[k] = static_cast<std::int32_t>(k);
+  return lattice;
+}
+
+void write_lattice(const Lattice& lattice, const std::string& path) {
+  Hdf5File file = Hdf5File::create(path);
+  const Bodies& b = lattice.bodies;
+  file.write("/bodies/position", flat(b.position), 3);
+  file.write("/bodies/orientation", std::span<const double>(b.orientation[0].data(), 4 * b.orientation.size()), 4);
+  file.write("/bodies/mass", b.mass);
+  file.write("/bodies/inertia", flat(b.inertia), 3);
+  if (!b.velocity.empty()) file.write("/bodies/velocity", flat(b.velocity), 3);
+  if (!b.angular_velocity.empty()) file.write("/bodies/angular_velocity", flat(b.angular_velocity), 3);
+
+  const Beams& m = lattice.beams;
+  if (m.size() > 0) {
+    file.write("/beams/bodies", std::span<const std::int32_t>(m.bodies[0].data(), 2 * m.bodies.size()), 2);
+    file.write("/beams/area", m.area);
+    file.write("/beams/inertia_y", m.inertia_y);
+    file.write("/beams/inertia_z", m.inertia_z);
+    file.write("/beams/torsion", m.torsion);
+    file.write("/beams/length", m.length);
+    file.write("/beams/young", m.young);
+    file.write("/beams/shear_modulus", m.shear_modulus);
+    file.write("/beams/shear_factor", m.shear_factor);
+    file.write("/beams/axis_y", flat(m.axis_y), 3);
+    if (!m.width.empty()) file.write("/beams/width", m.width);
+    if (!m.height.empty()) file.write("/beams/height", m.height);
+  }
+  for (const auto& [name, set] : lattice.sets) {
+    if (name != "all") file.write("/sets/" + name, set);
+  }
+  if (!lattice.shapes.empty()) {
+    const Shapes& s = lattice.shapes;
+    file.write("/shapes/vertices", flat(s.vertices), 3);
+    file.write("/shapes/corners", s.corners);
+    file.write("/shapes/corner_of", s.corner_of);
+    file.write("/shapes/face_of", s.face_of);
+    file.write("/shapes/vertex_of", s.vertex_of);
+  }
+  file.close();
+}
+
+}  // namespace floe

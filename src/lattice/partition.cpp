@@ -1,0 +1,97 @@
+#include "floe/lattice/partition.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "floe/base/petsc.h"
+#include "lattice/permute.h"
+
+namespace floe {
+namespace {
+
+/// Owner of every body: equal chunks along the Hilbert curve.
+std::vector<std::int32_t> owners(const Lattice& lattice, int ranks) {
+  const std::vector<std::int32_t> along = hilbert_order(lattice.bodies.position);
+  const auto n = static_cast<std::int64_t>(along.size());
+  std::vector<std::int32_t> owner(along.size());
+  for (int r = 0; r < ranks; ++r) {
+    for (std::int64_t k = n * r / ranks; k < n * (r + 1) / ranks; ++k)
+      owner[static_cast<std::size_t>(along[static_cast<std::size_t>(k)])] = r;
+  }
+  return owner;
+}
+
+}  // namespace
+
+std::int32_t Part::local_index(std::int32_t global_body) const {
+  return local_of_[static_cast<std::size_t>(global_body)];
+}
+
+std::vector<std::int32_t> Part::localise(const std::vector<std::int32_t>& global_set) const {
+  std::vector<std::int32_t> here;
+  for (const std::int32_t body : global_set) {
+    if (local_index(body) >= 0) here.push_back(local_index(body));
+  }
+  return here;
+}
+
+Part partition(const Lattice& lattice, MPI_Comm comm) {
+  const int me = rank(comm), ranks = size(comm);
+  const std::int32_t n = lattice.bodies.size();
+  if (ranks > n)
+    throw InputError("mpiexec: " + std::to_string(ranks) + " ranks are more than the " + std::to_string(n) +
+                     " bodies of the scene");
+  const std::vector<std::int32_t> owner = owners(lattice, ranks);
+
+  // Rank after rank, each rank's bodies in global order: their index there, and PETSc's block row.
+  std::vector<std::int32_t> count(static_cast<std::size_t>(ranks) + 1, 0), index(owner.size());
+  for (std::size_t b = 0; b < owner.size(); ++b) index[b] = count[static_cast<std::size_t>(owner[b]) + 1]++;
+  std::partial_sum(count.begin(), count.end(), count.begin());
+
+  Part part;
+  part.comm = comm;
+  part.global_bodies = n;
+  part.global_beams = lattice.beams.size();
+  part.local_of_.assign(owner.size(), -1);
+  for (std::int32_t b = 0; b < n; ++b) {
+    if (owner[static_cast<std::size_t>(b)] == me) part.global.push_back(b);
+  }
+  part.owned = static_cast<std::int32_t>(part.global.size());
+
+  std::vector<std::int32_t> beams, ghosts;
+  for (std::int32_t m = 0; m < lattice.beams.size(); ++m) {
+    const auto [i, j] = lattice.beams.bodies[static_cast<std::size_t>(m)];
+    const bool own_i = owner[static_cast<std::size_t>(i)] == me, own_j = owner[static_cast<std::size_t>(j)] == me;
+    if (!own_i && !own_j) continue;
+    beams.push_back(m);
+    part.counts_here.push_back(own_i);
+    if (!own_i) ghosts.push_back(i);
+    if (!own_j) ghosts.push_back(j);
+  }
+  std::sort(ghosts.begin(), ghosts.end(), [&](std::int32_t a, std::int32_t b) {
+    return std::pair(owner[static_cast<std::size_t>(a)], a) < std::pair(owner[static_cast<std::size_t>(b)], b);
+  });
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+  std::vector<std::int32_t> ghost_owner, ghost_index;
+  for (const std::int32_t b : ghosts) {
+    ghost_owner.push_back(owner[static_cast<std::size_t>(b)]);
+    ghost_index.push_back(index[static_cast<std::size_t>(b)]);
+  }
+  part.shapes = pick(lattice.shapes, part.global);
+  part.global.insert(part.global.end(), ghosts.begin(), ghosts.end());
+  part.local = static_cast<std::int32_t>(part.global.size());
+  for (std::int32_t k = 0; k < part.local; ++k) {
+    const auto b = static_cast<std::size_t>(part.global[static_cast<std::size_t>(k)]);
+    part.local_of_[b] = k;
+    part.row.push_back(count[static_cast<std::size_t>(owner[b])] + index[b]);
+  }
+
+  part.bodies = pick(lattice.bodies, part.global);
+  part.beams = pick(lattice.beams, beams);
+  for (auto& pair : part.beams.bodies) pair = {part.local_index(pair[0]), part.local_index(pair[1])};
+  part.global_beam = std::move(beams);
+  part.ghosts = Ghosts(comm, part.owned, ghost_owner, ghost_index);
+  return part;
+}
+
+}  // namespace floe

@@ -1,0 +1,177 @@
+#include <cmath>
+#include <span>
+
+#include "floe/base/petsc.h"
+#include "floe/lattice/lattice.h"
+
+namespace floe {
+namespace {
+
+/// Cosine and sine of the angle from x to the axis along which the plan extends most. No trigonometric
+/// function is used, so the same plan gives the same bits everywhere.
+Point2 long_axis(const PlanProperties& plan) {
+  const double d = plan.xx - plan.yy, r = std::hypot(d, 2 * plan.xy);
+  // The axes of a square or a regular hexagon are rounding errors: keep the world's.
+  if (r <= 1e-12 * (plan.xx + plan.yy)) return {1, 0};
+  const double c2 = d / r;  // cosine of the double angle; the larger of c, s from it, the other from 2 c s
+  if (c2 >= 0) {
+    const double c = std::sqrt((1 + c2) / 2);
+    return {c, plan.xy / (r * c)};
+  }
+  const double s = std::copysign(std::sqrt((1 - c2) / 2), plan.xy);
+  return {plan.xy / (r * s), s};
+}
+
+/// Unit quaternion of the rotation about z whose cosine c >= 0 and sine s are given.
+std::array<double, 4> about_z(const Point2& axis) {
+  const double w = std::sqrt((1 + axis[0]) / 2);
+  return {w, 0, 0, axis[1] / (2 * w)};
+}
+
+/// Appends the prism over `polygon` (world, plan) in the frame of its centroid and axes.
+void append_prism(Shapes& shapes, std::span<const Point2> polygon, const Point2& centroid,
+                  const Point2& axis, double thickness) {
+  const auto n = static_cast<std::int32_t>(polygon.size());
+  const auto base = shapes.vertex_of.back();
+  for (const double z : {-thickness / 2, thickness / 2}) {
+    for (const Point2& p : polygon) {
+      const double x = p[0] - centroid[0], y = p[1] - centroid[1];
+      shapes.vertices.push_back({axis[0] * x + axis[1] * y, axis[0] * y - axis[1] * x, z});
+    }
+  }
+  const auto close_face = [&] {
+    shapes.corner_of.push_back(static_cast<std::int32_t>(shapes.corners.size()));
+  };
+  for (auto k = n - 1; k >= 0; --k) shapes.corners.push_back(base + k);  // bottom, seen from below
+  close_face();
+  for (std::int32_t k = 0; k < n; ++k) shapes.corners.push_back(base + n + k);
+  close_face();
+  for (std::int32_t k = 0; k < n; ++k) {
+    const auto next = (k + 1) % n;
+    for (const auto v : {k, next, n + next, n + k}) shapes.corners.push_back(base + v);
+    close_face();
+  }
+  shapes.vertex_of.push_back(base + 2 * n);
+  shapes.face_of.push_back(static_cast<std::int32_t>(shapes.corner_of.size()) - 1);
+}
+
+void reserve(Lattice& lattice, std::size_t n, std::size_t corners, std::size_t m) {
+  auto& [position, orientation, mass, inertia, velocity, spin] = lattice.bodies;
+  position.reserve(n), orientation.reserve(n), mass.reserve(n), inertia.reserve(n);
+  lattice.shapes.vertices.reserve(2 * corners);
+  lattice.shapes.corners.reserve(6 * corners);
+  lattice.shapes.corner_of.reserve(corners + 2 * n + 1);
+  lattice.shapes.face_of.reserve(n + 1), lattice.shapes.vertex_of.reserve(n + 1);
+  Beams& b = lattice.beams;
+  b.bodies.reserve(m), b.axis_y.reserve(m);
+  for (auto* v : {&b.area, &b.inertia_y, &b.inertia_z, &b.torsion, &b.length, &b.young,
+                  &b.shear_modulus, &b.shear_factor, &b.width, &b.height}) {
+    v->reserve(m);
+  }
+}
+
+void append_beam(Beams& beams, const Bodies& bodies, const Facet& facet,
+                 const SheetSection& section) {
+  const auto [i, j] = facet.cells;
+  const double w = facet.width, h = section.thickness;
+  const double x = bodies.position[j][0] - bodies.position[i][0];
+  const double y = bodies.position[j][1] - bodies.position[i][1];
+  const double length = std::hypot(x, y);
+  const double out_of_plane = w * h * h * h / 12, in_plane = h * w * w * w / 12;
+  beams.bodies.push_back(facet.cells);
+  beams.area.push_back(w * h);
+  beams.inertia_y.push_back(out_of_plane);
+  beams.inertia_z.push_back(in_plane);
+  beams.torsion.push_back(section.torsion == Torsion::saint_venant ? saint_venant_torsion(w, h)
+                                                                   : out_of_plane + in_plane);
+  beams.length.push_back(length);
+  beams.young.push_back(section.ice.young);
+  beams.shear_modulus.push_back(section.ice.young / (2 * (1 + section.ice.poisson)));
+  beams.shear_factor.push_back(section.shear_factor);
+  beams.axis_y.push_back({-y / length, x / length, 0});  // axis 1 x axis 2 = +z
+  beams.width.push_back(w);
+  beams.height.push_back(h);
+}
+
+}  // namespace
+
+Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
+  Lattice lattice;
+  const auto n = static_cast<std::int32_t>(cells.generators.size());
+  const double h = section.thickness;
+  reserve(lattice, cells.generators.size(), cells.vertices.size(), cells.facets.size());
+  for (std::int32_t k = 0; k < n; ++k) {
+    const std::span polygon(cells.vertices.data() + cells.offset[k],
+                            cells.vertices.data() + cells.offset[k + 1]);
+    const PlanProperties plan = plan_properties(polygon);
+    const Point2 axis = long_axis(plan);
+    const double surface_density = section.ice.density * h, mass = surface_density * plan.area;
+    // Second moments on the principal axes: `most` along axis 1, so the moment about it is the least.
+    const double mean = (plan.xx + plan.yy) / 2;
+    const double half = std::hypot((plan.xx - plan.yy) / 2, plan.xy);
+    const double most = mean + half, least = mean - half, slab = mass * h * h / 12;
+    lattice.bodies.position.push_back({plan.centroid[0], plan.centroid[1], section.mid_plane});
+    lattice.bodies.orientation.push_back(about_z(axis));
+    lattice.bodies.mass.push_back(mass);
+    lattice.bodies.inertia.push_back({surface_density * least + slab, surface_density * most + slab,
+                                      surface_density * (plan.xx + plan.yy)});
+    append_prism(lattice.shapes, polygon, plan.centroid, axis, h);
+  }
+  for (const Facet& facet : cells.facets)
+    append_beam(lattice.beams, lattice.bodies, facet, section);
+
+  constexpr std::pair<const char*, SheetSide> sides[] = {
+      {"left", side_left}, {"right", side_right}, {"bottom", side_bottom}, {"top", side_top}};
+  for (const auto& [name, side] : sides) {
+    auto& set = lattice.sets[name];
+    for (std::int32_t k = 0; k < n; ++k)
+      if (cells.sides[k] & side) set.push_back(k);
+  }
+  return lattice;
+}
+
+void cut(Lattice& lattice, const Point2& a, const Point2& b) {
+  // A body whose centroid lies on the saw's line counts to its right. So a path of beams from one side to
+  // the other is cut exactly once, and beams along the line are not.
+  const auto left_of = [](const Point2& p, const Point2& q, const Point3& x) {
+    return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
+  };
+  const auto crosses = [&](std::int32_t m) {
+    const Point3& p = lattice.bodies.position[lattice.beams.bodies[m][0]];
+    const Point3& q = lattice.bodies.position[lattice.beams.bodies[m][1]];
+    if ((left_of(a, b, p) > 0) == (left_of(a, b, q) > 0)) return false;
+    const Point2 p2{p[0], p[1]}, q2{q[0], q[1]};
+    const double sa = left_of(p2, q2, {a[0], a[1], 0}), sb = left_of(p2, q2, {b[0], b[1], 0});
+    return (sa <= 0 && sb >= 0) || (sa >= 0 && sb <= 0);
+  };
+  std::vector<std::int32_t> kept;
+  for (std::int32_t m = 0; m < lattice.beams.size(); ++m)
+    if (!crosses(m)) kept.push_back(m);
+
+  const auto keep = [&kept](auto& column) {
+    if (column.empty()) return;  // width and height may be absent
+    for (std::size_t k = 0; k < kept.size(); ++k) column[k] = column[kept[k]];
+    column.resize(kept.size());
+  };
+  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, axis, width, height] =
+      lattice.beams;
+  keep(bodies), keep(area), keep(iy), keep(iz), keep(torsion), keep(length);
+  keep(young), keep(shear), keep(factor), keep(axis), keep(width), keep(height);
+}
+
+void add_region(Lattice& lattice, const std::string& name, const std::array<double, 6>& box,
+                const std::string& key) {
+  if (name == "all" || lattice.sets.contains(name))
+    throw InputError(key + ": the lattice already has a set '" + name + "'; choose another name");
+  std::vector<std::int32_t> inside;
+  for (std::int32_t k = 0; k < lattice.bodies.size(); ++k) {
+    const Point3& x = lattice.bodies.position[k];
+    if (x[0] >= box[0] && x[0] <= box[1] && x[1] >= box[2] && x[1] <= box[3] && x[2] >= box[4] &&
+        x[2] <= box[5])
+      inside.push_back(k);
+  }
+  if (inside.empty()) throw InputError(key + ": no body has its centroid inside this box");
+  lattice.sets[name] = std::move(inside);
+}
+
+}  // namespace floe
