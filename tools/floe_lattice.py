@@ -1,0 +1,360 @@
+#!/usr/bin/python3
+"""Writes lattice.h5 files: frames, sheets of regular triangles, loose blocks.
+
+What floe reads as `lattice_file: FILE.h5`. As a command: tools/make_lattice KIND [options] FILE.h5
+(tools/make_lattice --help, tools/make_lattice KIND --help). As a module:
+
+    import floe_lattice as fl
+    fl.straight_frame(length=10, elements=64, section=fl.Section(0.01, 0.01, young=2.1e11)).write("beam.h5")
+
+SI units everywhere. Quaternions are unit, (w, x, y, z), body to world. A beam's axis 1 runs from its first
+to its second body, axis 2 is `axis_y`, axis 3 = 1 x 2; `width` is the section's extent along axis 2 and
+`height` along axis 3, so inertia_y (about axis 2) = width height^3 / 12.
+"""
+import argparse
+import os
+from dataclasses import dataclass, field
+
+import h5py
+import numpy as np
+
+BEAM_SCALARS = ("area", "inertia_y", "inertia_z", "torsion", "length", "young", "shear_modulus",
+                "shear_factor", "width", "height")
+
+
+def saint_venant_torsion(a, b):
+    """Torsion constant of an a x b rectangle [m^4] (Timoshenko & Goodier, Theory of Elasticity, art. 109)."""
+    a, b = max(a, b), min(a, b)
+    n = np.arange(1, 200, 2)
+    series = np.sum(np.tanh(n * np.pi * a / (2 * b)) / n**5)
+    return a * b**3 * (1 / 3 - 64 / np.pi**5 * (b / a) * series)
+
+
+@dataclass
+class Section:
+    """Rectangular section of a beam and its material.
+
+    width, height [m]; young [Pa]; density [kg/m^3]; torsion constant [m^4], None: Saint-Venant's.
+    """
+    width: float
+    height: float
+    young: float = 4e9
+    poisson: float = 0.3
+    density: float = 920.0
+    shear_factor: float = 5 / 6
+    torsion: float | None = None
+
+    def scalars(self, length):
+        """Values of BEAM_SCALARS but the length for a beam of this section; length m, result {name: m}."""
+        w, h = self.width, self.height
+        torsion = saint_venant_torsion(w, h) if self.torsion is None else self.torsion
+        values = {"area": w * h, "inertia_y": w * h**3 / 12, "inertia_z": h * w**3 / 12,
+                  "torsion": torsion, "young": self.young,
+                  "shear_modulus": self.young / (2 * (1 + self.poisson)),
+                  "shear_factor": self.shear_factor, "width": w, "height": h}
+        return {name: np.full(len(length), float(value)) for name, value in values.items()}
+
+
+@dataclass
+class Shapes:
+    """Convex polyhedra, one per body, in the body's principal axes with the origin at its centroid.
+
+    vertices [m] V x 3; the vertices of face f are vertices[corners[corner_of[f]:corner_of[f+1]]], counter-
+    clockwise seen from outside; body b has the faces face_of[b]:face_of[b+1] and the vertices
+    vertex_of[b]:vertex_of[b+1].
+    """
+    vertices: np.ndarray
+    corners: np.ndarray
+    corner_of: np.ndarray
+    face_of: np.ndarray
+    vertex_of: np.ndarray
+
+    @staticmethod
+    def prisms(plans, heights):
+        """Upright prisms. plans: per body a counter-clockwise polygon k x 2 [m]; heights: per body [m]."""
+        vertices, corners, corner_of, face_of, vertex_of = [], [], [0], [0], [0]
+        for plan, height in zip(plans, heights):
+            k, first = len(plan), vertex_of[-1]
+            for z in (-height / 2, height / 2):
+                vertices.append(np.column_stack([plan, np.full(k, z)]))
+            bottom, top = first + np.arange(k), first + k + np.arange(k)
+            faces = [bottom[::-1], top]
+            faces += [[bottom[i], bottom[(i + 1) % k], top[(i + 1) % k], top[i]] for i in range(k)]
+            for face in faces:
+                corners.extend(int(v) for v in face)
+                corner_of.append(len(corners))
+            face_of.append(face_of[-1] + len(faces))
+            vertex_of.append(first + 2 * k)
+        return Shapes(np.concatenate(vertices), np.array(corners), np.array(corner_of), np.array(face_of),
+                      np.array(vertex_of))
+
+    @staticmethod
+    def boxes(sizes):
+        """Boxes; sizes n x 3, extents along the principal axes [m]."""
+        corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) / 2
+        return Shapes.prisms([corner * size[:2] for size in sizes], [size[2] for size in sizes])
+
+
+@dataclass
+class Lattice:
+    """Bodies, the beams between them, named sets of bodies and, if given, the bodies' shapes.
+
+    position n x 3 [m]; orientation n x 4; mass n [kg]; inertia n x 3, principal [kg m^2];
+    bodies m x 2, first < second, sorted; axis_y m x 3; beam: {name of BEAM_SCALARS: m}; sets {name: indices}.
+    """
+    position: np.ndarray
+    orientation: np.ndarray
+    mass: np.ndarray
+    inertia: np.ndarray
+    bodies: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), np.int32))
+    axis_y: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    beam: dict = field(default_factory=lambda: {name: np.zeros(0) for name in BEAM_SCALARS})
+    sets: dict = field(default_factory=dict)
+    shapes: Shapes | None = None
+
+    def check(self):
+        """Raises ValueError with what is wrong, if anything is."""
+        n, m = len(self.position), len(self.bodies)
+        shapes = [("position", self.position, (n, 3)), ("orientation", self.orientation, (n, 4)),
+                  ("mass", self.mass, (n,)), ("inertia", self.inertia, (n, 3)),
+                  ("bodies", self.bodies, (m, 2)), ("axis_y", self.axis_y, (m, 3))]
+        shapes += [(name, self.beam[name], (m,)) for name in BEAM_SCALARS]
+        for name, array, shape in shapes:
+            if np.shape(array) != shape:
+                raise ValueError(f"{name}: shape {np.shape(array)}, expected {shape}")
+            if not np.all(np.isfinite(array)):
+                raise ValueError(f"{name}: not finite")
+        if not np.allclose(np.linalg.norm(self.orientation, axis=1), 1, atol=1e-12):
+            raise ValueError("orientation: not unit quaternions")
+        if np.any(self.mass <= 0) or np.any(self.inertia <= 0):
+            raise ValueError("mass, inertia: must be positive")
+        if m:
+            pairs = self.bodies.astype(np.int64)
+            if pairs.min() < 0 or pairs.max() >= n or np.any(pairs[:, 0] >= pairs[:, 1]):
+                raise ValueError("bodies: each beam joins two bodies of the file, the smaller index first")
+            if np.any(np.diff(pairs[:, 0] * n + pairs[:, 1]) <= 0):
+                raise ValueError("bodies: beams must be sorted, each pair once")
+        for name, members in self.sets.items():
+            if len(members) == 0 or min(members) < 0 or max(members) >= n:
+                raise ValueError(f"set {name}: empty, or an index out of range")
+
+    def write(self, file):
+        """Writes the file whole, under a temporary name, then renames it; makes its folder."""
+        self.check()
+        os.makedirs(os.path.dirname(os.path.abspath(file)), exist_ok=True)
+        temporary = f"{file}.{os.getpid()}"
+        with h5py.File(temporary, "w") as out:
+            for name in ("position", "orientation", "mass", "inertia"):
+                out[f"bodies/{name}"] = np.asarray(getattr(self, name), float)
+            out["beams/bodies"] = np.asarray(self.bodies, np.int32)
+            out["beams/axis_y"] = np.asarray(self.axis_y, float)
+            for name in BEAM_SCALARS:
+                out[f"beams/{name}"] = np.asarray(self.beam[name], float)
+            for name, members in self.sets.items():
+                out[f"sets/{name}"] = np.asarray(sorted(members), np.int32)
+            if self.shapes is not None:
+                out["shapes/vertices"] = np.asarray(self.shapes.vertices, float)
+                for name in ("corners", "corner_of", "face_of", "vertex_of"):
+                    out[f"shapes/{name}"] = np.asarray(getattr(self.shapes, name), np.int32)
+        os.replace(temporary, file)
+
+
+def cuboid_inertia(mass, size):
+    """Principal moments n x 3 [kg m^2] of cuboids; mass n [kg], size n x 3 [m]."""
+    square = np.asarray(size, float)**2
+    return mass[:, None] / 12 * (square.sum(axis=1)[:, None] - square)
+
+
+def turn_about_z(angle):
+    """Quaternions n x 4 of rotations about z; angle n [rad]."""
+    zero = np.zeros_like(angle)
+    return np.column_stack([np.cos(angle / 2), zero, zero, np.sin(angle / 2)])
+
+
+def frame(points, tangents, section):
+    """A chain of bodies in the x-y plane, neighbours joined by straight beams.
+
+    points n x 2, where the bodies are [m]; tangents n, direction of the axis there [rad from x]. Axis 2 of a
+    beam lies in the plane, axis 3 is z. A body is a box as long as the part of the axis it stands for: half
+    of each of its beams. Sets `root` (first body) and `tip` (last).
+    """
+    points, tangents = np.asarray(points, float), np.asarray(tangents, float)
+    n = len(points)
+    chord = np.diff(points, axis=0)
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    share = np.zeros(n)
+    share[:-1] += length / 2
+    share[1:] += length / 2
+    mass = section.density * section.width * section.height * share
+    size = np.column_stack([share, np.full(n, section.width), np.full(n, section.height)])
+    zeros = np.zeros(n - 1)
+    beam = section.scalars(length)
+    beam["length"] = length
+    return Lattice(position=np.column_stack([points, np.zeros(n)]), orientation=turn_about_z(tangents),
+                   mass=mass, inertia=cuboid_inertia(mass, size),
+                   bodies=np.column_stack([np.arange(n - 1), np.arange(1, n)]),
+                   axis_y=np.column_stack([-chord[:, 1], chord[:, 0], zeros]) / length[:, None], beam=beam,
+                   sets={"root": [0], "tip": [n - 1]}, shapes=Shapes.boxes(size))
+
+
+def straight_frame(length, elements, section):
+    """A frame along x from the origin; length [m]."""
+    x = length * np.arange(elements + 1) / elements
+    return frame(np.column_stack([x, np.zeros_like(x)]), np.zeros_like(x), section)
+
+
+def arc_frame(radius, angle, elements, section):
+    """A frame on a circular arc from the origin, at first along x, bending to +y; radius [m], angle [rad]."""
+    phi = angle * np.arange(elements + 1) / elements
+    return frame(radius * np.column_stack([np.sin(phi), 1 - np.cos(phi)]), phi, section)
+
+
+def triangles(columns, rows, spacing, thickness, young=4e9, poisson=0.3, density=920.0, shear_factor=5 / 6):
+    """A sheet of regular triangles with rows along x, centred on the origin; spacing l and thickness h [m].
+
+    Even rows (0, 2, ...) have `columns` bodies at x = 0, l, 2l, ..., odd rows one less, at l/2, 3l/2, ...;
+    rows are l sqrt(3)/2 apart; their number is odd, so bottom and top row are alike. Section of a beam: the
+    facet of the regular hexagon, l/sqrt(3) x h.
+
+    Edges. The sheet ends on the axes of the bottom and the top row: the beams of these two rows carry half of
+    every section property (area, inertias, torsion), because only one of their two triangles is there. With
+    that, any uniform state of stress without traction on these edges is an exact equilibrium, right up to
+    the edge: the plan to divide by is (rows - 1) l sqrt(3)/2 wide. `left` and `right` are zigzags with whole
+    beams; hold or move them by the sets `left` and `right` (ends of even rows), `leftinner` and `rightinner`
+    (ends of odd rows, l/2 further in). All bodies are whole hexagons (flat to flat l), also those at the
+    edges, over which they stand out; so the sheet's mass is that of whole hexagons.
+    """
+    if rows % 2 == 0 or rows < 3 or columns < 3:
+        raise ValueError("triangles: an odd number of rows, at least 3, and at least 3 columns")
+    pitch = spacing * np.sqrt(3) / 2
+    count = [columns - row % 2 for row in range(rows)]
+    first = np.concatenate([[0], np.cumsum(count)])
+    n = first[-1]
+    row_of = np.repeat(np.arange(rows), count)
+    x = (np.arange(n) - first[row_of] + 0.5 * (row_of % 2)) * spacing
+    position = np.column_stack([x - (columns - 1) * spacing / 2, (row_of - (rows - 1) / 2) * pitch,
+                                np.zeros(n)])
+
+    pairs = _triangle_pairs(first, count)
+    chord = position[pairs[:, 1]] - position[pairs[:, 0]]
+    length = np.linalg.norm(chord, axis=1)
+    beam = Section(spacing / np.sqrt(3), thickness, young, poisson, density, shear_factor).scalars(length)
+    beam["length"] = length
+    on_edge = (row_of[pairs[:, 0]] == row_of[pairs[:, 1]]) & np.isin(row_of[pairs[:, 0]], (0, rows - 1))
+    for name in ("area", "inertia_y", "inertia_z", "torsion"):
+        beam[name][on_edge] /= 2
+
+    angle = np.pi / 6 + np.pi / 3 * np.arange(6)
+    hexagon = spacing / np.sqrt(3) * np.column_stack([np.cos(angle), np.sin(angle)])
+    area = np.sqrt(3) / 2 * spacing**2
+    mass = np.full(n, density * area * thickness)
+    plan = 5 * area * spacing**2 / 72  # second moment of the hexagon about any axis in its plane
+    inertia = [plan / area + thickness**2 / 12] * 2 + [2 * plan / area]
+    even, odd = np.arange(0, rows, 2), np.arange(1, rows, 2)
+    return Lattice(position=position, orientation=turn_about_z(np.zeros(n)), mass=mass,
+                   inertia=mass[:, None] * np.array(inertia), bodies=pairs,
+                   axis_y=np.column_stack([-chord[:, 1], chord[:, 0], np.zeros(len(pairs))]) / length[:, None],
+                   beam=beam,
+                   sets={"left": first[even], "leftinner": first[odd], "right": first[even + 1] - 1,
+                         "rightinner": first[odd + 1] - 1, "bottom": np.arange(first[1]),
+                         "top": np.arange(first[-2], n)},
+                   shapes=Shapes.prisms([hexagon] * n, [thickness] * n))
+
+
+def _triangle_pairs(first, count):
+    """Sorted pairs m x 2 of neighbours in rows that start at `first` and hold `count` bodies."""
+    pairs = []
+    for row, number in enumerate(count):
+        for i in range(number):
+            body = first[row] + i
+            if i + 1 < number:
+                pairs.append((body, body + 1))
+            if row + 1 < len(count):
+                left = i - 1 if row % 2 == 0 else i
+                pairs += [(body, first[row + 1] + k) for k in (left, left + 1) if 0 <= k < count[row + 1]]
+    return np.array(sorted(pairs), np.int64)
+
+
+def blocks(sizes, positions, density=920.0):
+    """Loose upright boxes, no beams. sizes n x 3 and positions (centroids) n x 3 [m]."""
+    sizes, positions = np.asarray(sizes, float), np.asarray(positions, float)
+    mass = density * sizes.prod(axis=1)
+    return Lattice(position=positions, orientation=turn_about_z(np.zeros(len(mass))), mass=mass,
+                   inertia=cuboid_inertia(mass, sizes), shapes=Shapes.boxes(sizes))
+
+
+def stack(count, size, gap=0.0, density=920.0):
+    """Equal boxes above each other, the lowest standing on z = 0; size 3, gap between neighbours [m]."""
+    z = size[2] / 2 + (size[2] + gap) * np.arange(count)
+    lattice = blocks(np.tile(size, (count, 1)), np.column_stack([0 * z, 0 * z, z]), density)
+    lattice.sets = {"lowest": [0], "highest": [count - 1]}
+    return lattice
+
+
+# -- the frames of the verification scenes ----------------------------------------------------------
+def bend45(elements, torsion=None):
+    """The 45-degree bend of Bathe & Bolourchi (1979): R = 100, section 1 x 1, E = 1e7, nu = 0, kappa = 5/6.
+
+    torsion [m^4], None: 1/6, so GJ = 8.333e5 (polar); 0.141 gives GJ = 7.05e5 (Saint-Venant).
+    """
+    section = Section(1.0, 1.0, young=1e7, poisson=0.0, torsion=1 / 6 if torsion is None else torsion)
+    return arc_frame(100.0, np.pi / 4, elements, section)
+
+
+def rollup(elements):
+    """A strip to be rolled up by an end moment: L = 10 m, EI = 100 N m^2 (1 x 1, E = 1200 Pa)."""
+    return straight_frame(10.0, elements, Section(1.0, 1.0, young=1200.0, poisson=0.0))
+
+
+def elastica(elements):
+    """A spring-steel rod, L = 10 m, section 10 x 10 mm, EI = 175 N m^2: A L^2/I = 1.2e7, as good as inextensible."""
+    return straight_frame(10.0, elements, Section(0.01, 0.01, young=2.1e11, poisson=0.3, density=7850.0))
+
+
+def _arguments():
+    parser = argparse.ArgumentParser(prog="tools/make_lattice", description="Writes a lattice.h5 file for floe.")
+    kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
+
+    def kind(name, text, **options):
+        sub = kinds.add_parser(name, help=text, description=text,
+                               formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+        for option, (default, unit) in options.items():
+            many = isinstance(default, tuple)
+            sub.add_argument(f"--{option}", type=type(default[0] if many else default), default=default,
+                             nargs=len(default) if many else None, metavar=unit.upper(), help=f"[{unit}]")
+        sub.add_argument("file", metavar="FILE.h5")
+        return sub
+
+    kind("cantilever", "straight frame along x", elements=(64, "n"), length=(10.0, "m"), width=(1.0, "m"),
+         height=(1.0, "m"), young=(4e9, "Pa"), poisson=(0.3, "-"), density=(920.0, "kg/m3"))
+    bend = kind("bend45", "45-degree bend, R = 100, section 1 x 1, E = 1e7", elements=(64, "n"))
+    bend.add_argument("--torsion", type=float, default=1 / 6, metavar="M4", help="torsion constant J [m4]")
+    kind("rollup", "strip for the roll-up test, L = 10, EI = 100", elements=(40, "n"))
+    kind("elastica", "slender rod, L = 10, EI = 175, inextensible for practical purposes", elements=(64, "n"))
+    kind("triangles", "sheet of regular triangles; the module's documentation says how its edges are treated",
+         columns=(21, "n"), rows=(21, "n"), spacing=(1.0, "m"), thickness=(1.0, "m"), young=(4e9, "Pa"),
+         poisson=(0.3, "-"), density=(920.0, "kg/m3"))
+    kind("stack", "loose boxes above each other, no beams", count=(5, "n"), size=((1.0, 1.0, 0.5), "m"),
+         gap=(0.0, "m"), density=(920.0, "kg/m3"))
+    return parser, parser.parse_args()
+
+
+def main():
+    parser, given = _arguments()
+    options = vars(given)
+    kind, file = options.pop("kind"), options.pop("file")
+    makers = {"bend45": bend45, "rollup": rollup, "elastica": elastica, "triangles": triangles, "stack": stack}
+    try:
+        if kind == "cantilever":
+            length, elements = options.pop("length"), options.pop("elements")
+            lattice = straight_frame(length, elements, Section(**options))
+        else:
+            lattice = makers[kind](**options)
+        lattice.write(file)
+    except (ValueError, OSError) as error:
+        parser.error(str(error))
+    print(f"{file}: {len(lattice.position)} bodies, {len(lattice.bodies)} beams")
+
+
+if __name__ == "__main__":
+    main()
