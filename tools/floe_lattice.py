@@ -146,10 +146,11 @@ class Lattice:
         with h5py.File(temporary, "w") as out:
             for name in ("position", "orientation", "mass", "inertia"):
                 out[f"bodies/{name}"] = np.asarray(getattr(self, name), float)
-            out["beams/bodies"] = np.asarray(self.bodies, np.int32)
-            out["beams/axis_y"] = np.asarray(self.axis_y, float)
-            for name in BEAM_SCALARS:
-                out[f"beams/{name}"] = np.asarray(self.beam[name], float)
+            if len(self.bodies):
+                out["beams/bodies"] = np.asarray(self.bodies, np.int32)
+                out["beams/axis_y"] = np.asarray(self.axis_y, float)
+                for name in BEAM_SCALARS:
+                    out[f"beams/{name}"] = np.asarray(self.beam[name], float)
             for name, members in self.sets.items():
                 out[f"sets/{name}"] = np.asarray(sorted(members), np.int32)
             if self.shapes is not None:
