@@ -1,6 +1,12 @@
 /// \file
-/// What a scene says of its beams; the force itself is in src/forces/beam.cpp, its kernel in beam_kernel.h.
+/// The lattice's beams (physics.md section 2). The pointwise energy and gradient are in src/forces/beam_kernel.h.
 #pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "floe/forces/force.h"
 
 namespace floe {
 
@@ -20,5 +26,28 @@ struct BeamOptions {
   Shear shear = Shear::one_point;
   Kinematics kinematics = Kinematics::corotational;
 };
+
+/// The six stiffnesses of a beam: axial, shear (from I_z, from I_y), torsion, bending about axes 2 and 3.
+struct BeamStiffness {
+  double kn, ksz, ksy;   ///< [N/m]
+  double kt, kby, kbz;   ///< [N m]
+};
+/// Stiffness of beam m of `beams` (physics.md section 2).
+BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear);
+
+/// What a beam carries at its middle: N, Q_2, Q_3 [N] and T, M_2, M_3 [N m], in its mean triad.
+using BeamSection = std::array<double, 6>;
+
+/// The beams as a force; knows what each beam carries.
+template <class Space>
+class BeamForce : public Force<Space> {
+ public:
+  /// Per local beam of the part.
+  virtual std::vector<BeamSection> sections(const State<Space>& state) const = 0;
+};
+
+/// \param part  must outlive the force
+template <class Space>
+std::unique_ptr<BeamForce<Space>> make_beam_force(const Part& part, const BeamOptions& options);
 
 }  // namespace floe

@@ -1,0 +1,54 @@
+/// \file
+/// What every force offers. Evaluation never changes history; only commit does.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "floe/base/hdf5.h"
+#include "floe/forces/tangent.h"
+#include "floe/lattice/partition.h"
+#include "floe/lattice/state.h"
+
+namespace floe {
+
+/// Named numbers for history.csv and summary.json, in order; each rank gives its share, the sum is reported.
+class Columns {
+ public:
+  void add(std::string name, double value) { values_.emplace_back(std::move(name), value); }
+  const std::vector<std::pair<std::string, double>>& values() const { return values_; }
+  std::vector<std::pair<std::string, double>>& values() { return values_; }
+
+ private:
+  std::vector<std::pair<std::string, double>> values_;
+};
+
+/// One virtual call per force per evaluation; what is not named in a scene has no object.
+template <class Space>
+class Force {
+ public:
+  Force() = default;
+  Force(const Force&) = delete;
+  Force& operator=(const Force&) = delete;
+  virtual ~Force() = default;
+
+  virtual std::string_view name() const = 0;
+  /// Adds the force's wrenches on owned bodies at state.time [N, N m].
+  virtual void add(const State<Space>& state, Wrenches<Space>& wrenches) const = 0;
+  /// Adds minus the derivative of the wrenches; false if the force has none.
+  virtual bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const = 0;
+  /// An upper bound of the force's stiffness against a unit displacement of an owned body [N/m].
+  virtual double stiffness_bound(std::int32_t body) const = 0;
+  /// Takes over what an accepted step changes (damage, slip, dissipated energy). \param dt step [s]
+  virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}
+  /// Energies and counts of this rank's share.
+  virtual void report(const State<Space>& state, Columns& columns) const = 0;
+  /// History to and from a checkpoint; a force without history has nothing to keep.
+  virtual void save(Hdf5File& /*checkpoint*/) const {}
+  virtual void load(const Hdf5File& /*checkpoint*/) {}
+};
+
+}  // namespace floe

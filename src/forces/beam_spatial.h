@@ -1,0 +1,133 @@
+/// \file
+/// The beam kernel on spatial body records: gradient, energy, section forces, tangent.
+#pragma once
+
+#include <Eigen/Core>
+#include <unsupported/Eigen/AutoDiff>
+
+#include <array>
+
+#include "floe/forces/beam.h"
+#include "floe/lattice/state.h"
+#include "forces/beam_kernel.h"
+
+namespace floe {
+
+template <Kinematics kinematics>
+struct SpatialBeam {
+  using Space = Spatial;
+  using Constants = BeamConstants<double>;
+  using Kernel = BeamKernel<kinematics>;
+  static constexpr int n = Space::unknowns;
+
+  /// Constants of beam m of a part.
+  static Constants make(const Part& part, std::int32_t m, Shear shear) {
+    const auto k = static_cast<std::size_t>(m);
+    const auto [i, j] = part.beams.bodies[k];
+    const Point3& xi = part.bodies.position[static_cast<std::size_t>(i)];
+    const Point3& xj = part.bodies.position[static_cast<std::size_t>(j)];
+    Constants c{};
+    c.e0 = {xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
+    c.l0 = std::sqrt(dot(c.e0, c.e0));
+    const Vec3<double> e1 = (1.0 / c.l0) * c.e0;
+    const Point3& axis = part.beams.axis_y[k];
+    Vec3<double> e2{axis[0], axis[1], axis[2]};
+    e2 = e2 - dot(e2, e1) * e1;
+    e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
+    c.t0 = quaternion({e1, e2, cross(e1, e2)});
+    const BeamStiffness s = beam_stiffness(part.beams, m, shear);
+    c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
+    return c;
+  }
+
+  static BeamStrains<double> strains(const Constants& c, const double* i, const double* j) {
+    return Kernel::strains(c, relative(i, j), rotation_of(i), rotation_of(j));
+  }
+
+  /// Wrenches on i and j (minus the gradient), n each.
+  static void wrenches(const Constants& c, const double* i, const double* j, double* on_i, double* on_j) {
+    const BeamGradient<double> g = Kernel::gradient(c, strains(c, i, j));
+    on_i[0] = g.force.x, on_i[1] = g.force.y, on_i[2] = g.force.z;
+    on_i[3] = -g.moment_i.x, on_i[4] = -g.moment_i.y, on_i[5] = -g.moment_i.z;
+    on_j[0] = -g.force.x, on_j[1] = -g.force.y, on_j[2] = -g.force.z;
+    on_j[3] = -g.moment_j.x, on_j[4] = -g.moment_j.y, on_j[5] = -g.moment_j.z;
+  }
+
+  static double energy(const Constants& c, const double* i, const double* j) {
+    return beam_energy(c, strains(c, i, j));
+  }
+
+  static BeamSection section(const Constants& c, const double* i, const double* j) {
+    const BeamStrains<double> s = strains(c, i, j);
+    return {c.kn * s.delta, c.ksz * s.gamma_y, c.ksy * s.gamma_z, c.kt * s.psi.x, c.kby * s.psi.y, c.kbz * s.psi.z};
+  }
+
+  /// 12 x 12 tangent on (u_i, theta_i, u_j, theta_j), by forward differentiation of the gradient in nine directions:
+  /// the relative displacement and the two spins. \param symmetric  H = K + skew(m)/2 instead of K
+  static void tangent(const Constants& c, const double* i, const double* j, bool symmetric,
+                      std::array<double, 4 * n * n>& k) {
+    using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
+    const Vec3<double> d0 = relative(i, j);
+    const Vec3<Dual> d{Dual(d0.x, 9, 0), Dual(d0.y, 9, 1), Dual(d0.z, 9, 2)};
+    const BeamGradient<Dual> g = Kernel::gradient(
+        c, Kernel::strains(c, d, spun<Dual>(rotation_of(i), 3), spun<Dual>(rotation_of(j), 6)));
+    k.fill(0);
+    const std::array<const Dual*, 3> force{&g.force.x, &g.force.y, &g.force.z};
+    const std::array<const Dual*, 3> mi{&g.moment_i.x, &g.moment_i.y, &g.moment_i.z};
+    const std::array<const Dual*, 3> mj{&g.moment_j.x, &g.moment_j.y, &g.moment_j.z};
+    const auto put = [&](int row, const Dual& value, double sign) {
+      for (int a = 0; a < 3; ++a) {
+        const auto at = [&](int column) -> double& { return k[static_cast<std::size_t>(row * 2 * n + column)]; };
+        const auto& by = value.derivatives();
+        at(a) = -sign * by[a];  // u_i enters through d = u_j - u_i only
+        at(3 + a) = sign * by[3 + a];
+        at(6 + a) = sign * by[a];
+        at(9 + a) = sign * by[6 + a];
+      }
+    };
+    for (int a = 0; a < 3; ++a) {
+      const auto b = static_cast<std::size_t>(a);
+      put(a, *force[b], -1);
+      put(3 + a, *mi[b], 1);
+      put(6 + a, *force[b], 1);
+      put(9 + a, *mj[b], 1);
+    }
+    if (symmetric && kinematics == Kinematics::corotational) {
+      add_half_skew(k, 3, {g.moment_i.x.value(), g.moment_i.y.value(), g.moment_i.z.value()});
+      add_half_skew(k, 9, {g.moment_j.x.value(), g.moment_j.y.value(), g.moment_j.z.value()});
+    }
+  }
+
+ private:
+  static Vec3<double> relative(const double* i, const double* j) { return {j[0] - i[0], j[1] - i[1], j[2] - i[2]}; }
+  static Quat<double> rotation_of(const double* r) {
+    return {r[Space::rotation], r[Space::rotation + 1], r[Space::rotation + 2], r[Space::rotation + 3]};
+  }
+
+  /// A rotation with its derivatives to the three components of a spin: dq = (0, spin) q/2, or, linear, (0, spin)/2.
+  template <class Dual>
+  static Quat<Dual> spun(const Quat<double>& q, int first) {
+    Quat<Dual> out{Dual(q.w), Dual(q.x), Dual(q.y), Dual(q.z)};
+    for (int a = 0; a < 3; ++a) {
+      const Quat<double> spin{0, a == 0 ? 0.5 : 0, a == 1 ? 0.5 : 0, a == 2 ? 0.5 : 0};
+      const Quat<double> dq = kinematics == Kinematics::linear ? spin : product(spin, q);
+      const int at = first + a;
+      out.w.derivatives()[at] = dq.w;
+      out.x.derivatives()[at] = dq.x;
+      out.y.derivatives()[at] = dq.y;
+      out.z.derivatives()[at] = dq.z;
+    }
+    return out;
+  }
+
+  static void add_half_skew(std::array<double, 4 * n * n>& k, int at, const Vec3<double>& m) {
+    const auto entry = [&](int row, int column) -> double& {
+      return k[static_cast<std::size_t>((at + row) * 2 * n + at + column)];
+    };
+    entry(0, 1) -= 0.5 * m.z, entry(1, 0) += 0.5 * m.z;
+    entry(0, 2) += 0.5 * m.y, entry(2, 0) -= 0.5 * m.y;
+    entry(1, 2) -= 0.5 * m.x, entry(2, 1) += 0.5 * m.x;
+  }
+};
+
+}  // namespace floe

@@ -1,0 +1,146 @@
+#include "floe/forces/tangent.h"
+
+#include <algorithm>
+
+namespace floe {
+namespace {
+
+/// Exact number of blocks per owned row: in all on this rank's columns and others', and in the upper triangle.
+struct RowCounts {
+  std::vector<PetscInt> here, elsewhere, here_upper, elsewhere_upper;
+};
+
+RowCounts count_blocks(const Part& part) {
+  const auto owned = static_cast<std::size_t>(part.owned);
+  std::vector<std::vector<PetscInt>> neighbours(owned);
+  for (std::int32_t b = 0; b < part.owned; ++b) neighbours[static_cast<std::size_t>(b)].push_back(b);
+  for (const auto& [i, j] : part.beams.bodies) {
+    if (i < part.owned) neighbours[static_cast<std::size_t>(i)].push_back(j);
+    if (j < part.owned) neighbours[static_cast<std::size_t>(j)].push_back(i);
+  }
+  RowCounts counts{std::vector<PetscInt>(owned), std::vector<PetscInt>(owned), std::vector<PetscInt>(owned),
+                   std::vector<PetscInt>(owned)};
+  for (std::size_t b = 0; b < owned; ++b) {
+    auto& list = neighbours[b];
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (const PetscInt other : list) {
+      const bool is_here = other < part.owned;
+      const bool upper = part.row[static_cast<std::size_t>(other)] >= part.row[b];
+      ++(is_here ? counts.here : counts.elsewhere)[b];
+      if (upper) ++(is_here ? counts.here_upper : counts.elsewhere_upper)[b];
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+template <class Space>
+Tangent<Space>::Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
+                        double held_diagonal, const TangentOptions& options)
+    : part_(part), held_(held), held_diagonal_(held_diagonal), symmetric_(options.symmetric) {
+  for (int k = 0; k < n; ++k)
+    scale_[static_cast<std::size_t>(k)] = k < Space::translations ? 1.0 : 1.0 / length_scale;
+  const RowCounts counts = count_blocks(part);
+  check(MatCreate(part.comm, matrix_.put()));
+  check(MatSetSizes(matrix_, n * part.owned, n * part.owned, PETSC_DETERMINE, PETSC_DETERMINE));
+  check(MatSetBlockSize(matrix_, n));
+  check(MatSetType(matrix_, options.type));
+  check(MatSetFromOptions(matrix_));
+  check(MatXAIJSetPreallocation(matrix_, n, counts.here.data(), counts.elsewhere.data(), counts.here_upper.data(),
+                                counts.elsewhere_upper.data()));
+  check(MatSetOption(matrix_, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  check(MatSetOption(matrix_, MAT_SYMMETRIC, options.symmetric ? PETSC_TRUE : PETSC_FALSE));
+  PetscBool upper_only = PETSC_FALSE;
+  check(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix_.get()), &upper_only, MATSEQSBAIJ,
+                                  MATMPISBAIJ, ""));
+  if (upper_only) check(MatSetOption(matrix_, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+}
+
+template <class Space>
+void Tangent<Space>::begin(std::span<const double> increments) {
+  check(MatZeroEntries(matrix_));
+  increments_ = increments;
+  lift_.assign(static_cast<std::size_t>(part_.owned * n), 0.0);
+}
+
+/// Scales rows of one body, gives up rows that are prescribed.
+template <class Space>
+void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int columns) {
+  for (int k = 0; k < n; ++k) {
+    const double factor = is_held(body, k) ? 0.0 : scale_[static_cast<std::size_t>(k)];
+    for (int c = 0; c < columns; ++c) rows[static_cast<std::size_t>(k * columns + c)] *= factor;
+  }
+}
+
+template <class Space>
+void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
+  if (body >= part_.owned) return;
+  Block a = block;
+  prepare_rows(body, a, n);
+  for (int c = 0; c < n; ++c) {
+    const bool held = is_held(body, c);
+    const auto index = static_cast<std::size_t>(body * n);
+    for (int k = 0; k < n; ++k) {
+      double& entry = a[static_cast<std::size_t>(k * n + c)];
+      entry *= scale_[static_cast<std::size_t>(c)];
+      if (!held) continue;
+      if (!increments_.empty())
+        lift_[index + static_cast<std::size_t>(k)] += entry * increments_[index + static_cast<std::size_t>(c)];
+      entry = 0;
+    }
+  }
+  const PetscInt row = part_.row[static_cast<std::size_t>(body)];
+  check(MatSetValuesBlocked(matrix_, 1, &row, 1, &row, a.data(), ADD_VALUES));
+}
+
+template <class Space>
+void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& block) {
+  PairBlock a = block;
+  const std::array<std::int32_t, 2> body{i, j};
+  constexpr std::size_t half = static_cast<std::size_t>(2 * n * n);
+  prepare_rows(i, std::span(a).first(half), 2 * n);
+  prepare_rows(j, std::span(a).subspan(half), 2 * n);
+  for (int c = 0; c < 2 * n; ++c) {
+    const std::int32_t column_body = body[static_cast<std::size_t>(c / n)];
+    const bool held = is_held(column_body, c % n);
+    for (int k = 0; k < 2 * n; ++k) {
+      double& entry = a[static_cast<std::size_t>(k * 2 * n + c)];
+      entry *= scale_[static_cast<std::size_t>(c % n)];
+      if (!held) continue;
+      const std::int32_t row_body = body[static_cast<std::size_t>(k / n)];
+      if (!increments_.empty() && row_body < part_.owned)
+        lift_[static_cast<std::size_t>(row_body * n + k % n)] +=
+            entry * increments_[static_cast<std::size_t>(column_body * n + c % n)];
+      entry = 0;
+    }
+  }
+  const std::array<PetscInt, 2> rows{part_.row[static_cast<std::size_t>(i)], part_.row[static_cast<std::size_t>(j)]};
+  const bool own_i = i < part_.owned, own_j = j < part_.owned;
+  if (own_i && own_j) {
+    check(MatSetValuesBlocked(matrix_, 2, rows.data(), 2, rows.data(), a.data(), ADD_VALUES));
+  } else if (own_i) {
+    check(MatSetValuesBlocked(matrix_, 1, &rows[0], 2, rows.data(), a.data(), ADD_VALUES));
+  } else if (own_j) {
+    check(MatSetValuesBlocked(matrix_, 1, &rows[1], 2, rows.data(), a.data() + half, ADD_VALUES));
+  }
+}
+
+template <class Space>
+void Tangent<Space>::end() {
+  Block diagonal{};
+  for (std::int32_t body = 0; body < part_.owned; ++body) {
+    for (int k = 0; k < n; ++k)
+      diagonal[static_cast<std::size_t>(k * n + k)] = is_held(body, k) ? held_diagonal_ : 0.0;
+    const PetscInt row = part_.row[static_cast<std::size_t>(body)];
+    check(MatSetValuesBlocked(matrix_, 1, &row, 1, &row, diagonal.data(), ADD_VALUES));
+  }
+  check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
+  check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));
+}
+
+template class Tangent<Spatial>;
+template class Tangent<Planar>;
+
+}  // namespace floe
