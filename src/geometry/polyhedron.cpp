@@ -5,7 +5,8 @@ namespace floe {
 PlanProperties plan_properties(std::span<const Point2> polygon) {
   PlanProperties p;
   if (polygon.size() < 3) return p;
-  // Green's theorem about the first vertex: the sums stay as small as the polygon, wherever it lies.
+  // Green's theorem about the first vertex: the sums stay as small as the polygon, wherever it
+  // lies.
   const auto [x0, y0] = polygon[0];
   double area2 = 0, sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
@@ -38,7 +39,8 @@ double triple(const Point3& a, const Point3& b, const Point3& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Cones of a fixed apex over triangles: six times the volume, and 24 times the first moment, about it.
+/// Cones of a fixed apex over triangles: six times the volume, and 24 times the first moment, about
+/// it.
 struct Cones {
   Point3 apex;
   double volume6 = 0;
@@ -58,8 +60,8 @@ VolumeProperties volume_properties(const Shapes& shapes, std::int32_t body) {
   const Point3* vertex = shapes.vertices.data();
   const Point3 apex = vertex[shapes.vertex_of[body]];
   double volume6 = 0;
-  Point3 first{};                    // 24 int r dV about the apex
-  std::array<double, 6> second{};    // 120 int r r^T dV: xx yy zz xy xz yz
+  Point3 first{};                  // 24 int r dV about the apex
+  std::array<double, 6> second{};  // 120 int r r^T dV: xx yy zz xy xz yz
   for (auto f = shapes.face_of[body]; f < shapes.face_of[body + 1]; ++f) {
     const auto begin = shapes.corner_of[f], end = shapes.corner_of[f + 1];
     const Point3 a = minus(vertex[shapes.corners[begin]], apex);
@@ -104,19 +106,21 @@ Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Poi
   for (const Point3& p : placed) (p[2] < level ? any_below : any_above) = true;
   if (!any_below) return s;
 
-  // The apex of all cones lies in the water's plane, so that the cut itself contributes nothing and each
-  // face can be clipped on its own, without a list of what is left of it. Its place in the plane is the
-  // first vertex's, for small numbers.
+  // The apex of all cones lies in the water's plane, so that the cut itself contributes nothing and
+  // each face can be clipped on its own, without a list of what is left of it. Its place in the
+  // plane is the first vertex's, for small numbers.
   Cones cones{placed[0]};
   if (any_above) cones.apex[2] = level;
   const Point3& o = cones.apex;
-  double cut2 = 0, sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;  // Green's sums of the cut, about the apex
+  double cut2 = 0, sx = 0, sy = 0, xx = 0, yy = 0,
+         xy = 0;  // Green's sums of the cut, about the apex
 
   const auto base = shapes.vertex_of[body];
   const auto corner = [&](std::int32_t k) -> const Point3& {
     return placed[static_cast<std::size_t>(shapes.corners[k] - base)];
   };
-  // Where the edge from a (below) to b (not below) meets the plane: both faces of an edge get the same bits.
+  // Where the edge from a (below) to b (not below) meets the plane: both faces of an edge get the
+  // same bits.
   const auto crossing = [level](const Point3& a, const Point3& b) {
     const double t = (level - a[2]) / (b[2] - a[2]);
     return Point3{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), level};

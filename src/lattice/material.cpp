@@ -10,8 +10,8 @@ double saint_venant_torsion(double a, double b) {
   if (a < b) std::swap(a, b);
   if (!(b > 0)) return 0;
   constexpr double pi = std::numbers::pi;
-  // tanh(x) = 1 - 2/(exp(2x) + 1) splits the series into a known sum, (31/32) zeta(5) over the odd n, and
-  // a rest that falls like exp(-n pi a/b): seven terms instead of over a thousand.
+  // tanh(x) = 1 - 2/(exp(2x) + 1) splits the series into a known sum, (31/32) zeta(5) over the odd
+  // n, and a rest that falls like exp(-n pi a/b): seven terms instead of over a thousand.
   constexpr double zeta5 = 1.0369277551433699263;
   const double ratio = a / b;
   double sum = 31.0 / 32 * zeta5;

@@ -7,13 +7,14 @@
 namespace floe {
 namespace {
 
-/// Cosine and sine of the angle from x to the axis along which the plan extends most. No trigonometric
-/// function is used, so the same plan gives the same bits everywhere.
+/// Cosine and sine of the angle from x to the axis along which the plan extends most. No
+/// trigonometric function is used, so the same plan gives the same bits everywhere.
 Point2 long_axis(const PlanProperties& plan) {
   const double d = plan.xx - plan.yy, r = std::hypot(d, 2 * plan.xy);
   // The axes of a square or a regular hexagon are rounding errors: keep the world's.
   if (r <= 1e-12 * (plan.xx + plan.yy)) return {1, 0};
-  const double c2 = d / r;  // cosine of the double angle; the larger of c, s from it, the other from 2 c s
+  const double c2 =
+      d / r;  // cosine of the double angle; the larger of c, s from it, the other from 2 c s
   if (c2 >= 0) {
     const double c = std::sqrt((1 + c2) / 2);
     return {c, plan.xy / (r * c)};
@@ -106,7 +107,8 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
     const PlanProperties plan = plan_properties(polygon);
     const Point2 axis = long_axis(plan);
     const double surface_density = section.ice.density * h, mass = surface_density * plan.area;
-    // Second moments on the principal axes: `most` along axis 1, so the moment about it is the least.
+    // Second moments on the principal axes: `most` along axis 1, so the moment about it is the
+    // least.
     const double mean = (plan.xx + plan.yy) / 2;
     const double half = std::hypot((plan.xx - plan.yy) / 2, plan.xy);
     const double most = mean + half, least = mean - half, slab = mass * h * h / 12;
@@ -131,8 +133,8 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
 }
 
 void cut(Lattice& lattice, const Point2& a, const Point2& b) {
-  // A body whose centroid lies on the saw's line counts to its right. So a path of beams from one side to
-  // the other is cut exactly once, and beams along the line are not.
+  // A body whose centroid lies on the saw's line counts to its right. So a path of beams from one
+  // side to the other is cut exactly once, and beams along the line are not.
   const auto left_of = [](const Point2& p, const Point2& q, const Point3& x) {
     return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
   };

@@ -1,0 +1,68 @@
+#include "floe/mesh/tessellation.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "mesh/relaxation.h"
+#include "mesh/voronoi.h"
+
+namespace floe {
+namespace {
+
+/// Uniform in the plan. The standard fixes the engine's numbers but not those of its distributions,
+/// hence the own conversion: the upper 53 bits to [0, 1).
+std::vector<Point2> random_generators(const SheetPlan& plan, std::int64_t n) {
+  std::mt19937_64 engine(plan.seed);
+  const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+  std::vector<Point2> points(static_cast<std::size_t>(n));
+  for (auto& [x, y] : points) {
+    x = plan.length * (uniform() - 0.5);
+    y = plan.width * (uniform() - 0.5);
+  }
+  return points;
+}
+
+std::vector<Point2> permuted(const std::vector<Point2>& points,
+                             const std::vector<std::int32_t>& order) {
+  std::vector<Point2> result(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) result[k] = points[order[k]];
+  return result;
+}
+
+}  // namespace
+
+std::int64_t number_of_cells(const SheetPlan& plan) {
+  const double l = plan.element_size;
+  return static_cast<std::int64_t>(
+      std::ceil(2 * plan.length * plan.width / (std::numbers::sqrt3 * l * l)));
+}
+
+Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
+                        const std::function<void(int, double)>& on_iteration) {
+  constexpr std::int64_t most = 100'000'000;  // half-edges are numbered with 32 bits
+  const std::int64_t n = number_of_cells(plan);
+  if (n > most)
+    throw InputError("sheet_element_size: makes " + std::to_string(n) + " cells, allowed are " +
+                     std::to_string(most));
+  // Numbered along a space-filling curve once; relaxed generators stay near where they started.
+  std::vector<Point2> points = random_generators(plan, n);
+  points = permuted(points, mesh::hilbert_order(points, plan.length, plan.width));
+  mesh::Voronoi voronoi(plan, std::move(points), mesh::Share(comm));
+  const int iterations = plan.relaxation == Relaxation::lloyd
+                             ? mesh::lloyd(voronoi, plan, on_iteration)
+                             : mesh::quasi_newton(voronoi, plan, on_iteration);
+  std::vector<std::int32_t> number(static_cast<std::size_t>(n));
+  for (std::size_t k = 0; k < number.size(); ++k) number[k] = static_cast<std::int32_t>(k);
+  Tessellation result = voronoi.finish(number);
+  result.iterations = iterations;
+  return result;
+}
+
+Tessellation tessellate(const SheetPlan& plan, std::vector<std::array<double, 2>> generators) {
+  const auto order = mesh::hilbert_order(generators, plan.length, plan.width);
+  return mesh::Voronoi(plan, permuted(generators, order), mesh::Share()).finish(order);
+}
+
+}  // namespace floe
