@@ -61,6 +61,7 @@ struct Scene {
     double fields = 0;    ///< 0: first and last state only
   } output;
   bool check_only = false;
+  std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
 };
 
 /// Reads the scene from PETSc's options database (the file and the command line are in it by then).

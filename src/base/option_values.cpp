@@ -48,6 +48,15 @@ std::string option_name(std::string_view key, std::string_view name) {
   return text;
 }
 
+std::string_view section_of(std::string_view key) {
+  const auto colon = key.find(": ");
+  return colon == std::string_view::npos ? std::string_view() : key.substr(0, colon);
+}
+
+std::string_view last_word(std::string_view key) { return key.substr(key.rfind(' ') + 1); }
+
+bool has_name(std::string_view key) { return key.find(": NAME: ") != std::string_view::npos; }
+
 std::optional<std::vector<std::string>> to_list(std::string_view text) {
   std::vector<std::string> items;
   text = trimmed(text);

@@ -17,6 +17,13 @@ std::string option_name(std::string_view key, std::string_view name = {});
 /// "boundary: NAME: fix" -> "boundary: a: fix".
 std::string option_label(std::string_view key, std::string_view name = {});
 
+/// "boundary" of "boundary: NAME: fix", "" of "gravity".
+std::string_view section_of(std::string_view key);
+/// "fix" of "boundary: NAME: fix".
+std::string_view last_word(std::string_view key);
+/// Whether a key is one of a named section.
+bool has_name(std::string_view key);
+
 /// Items separated by commas or blanks; nothing if an item between commas is empty.
 std::optional<std::vector<std::string>> to_list(std::string_view text);
 std::optional<double> to_number(std::string_view text);  ///< nothing unless finite

@@ -1,0 +1,106 @@
+#include "option_names.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <vector>
+
+#include "option_values.h"
+
+namespace floe {
+namespace {
+
+/// First words of PETSc 3.18's options (from the strings of its library), as far as a solver run can use
+/// them; names that end in "_" are prefixes. Inner solvers have prefixes of their own.
+constexpr std::array petsc_families{
+    // solvers and algebra
+    "snes_", "ksp_", "pc_", "mat_", "vec_", "ts_", "tao_", "is_", "sf_", "dm_", "ao_", "matptap_",
+    "matrart_", "matmatmult_", "mattransposematmult_", "matmattransmult_", "matmatmatmult_", "matstash_",
+    "matden2sp_", "matis_", "vecstash_", "vecscatter_", "splitreduction_", "random_", "petscpartitioner_",
+    // inner solvers
+    "mg_", "sub_", "npc_", "fieldsplit_", "redundant_", "telescope_", "esteig_", "inner_", "fas_",
+    "pc_gamg_", "gamg_", "adapt_", "schur_", "bjkokkos_",
+    // the session
+    "log_", "options_", "viewer_", "malloc", "malloc_", "info", "info_", "on_error_", "fp_trap",
+    "memory_view", "citations", "version", "skip_petscrc", "nox", "nox_warning", "no_signal_handler",
+    "error_output_", "start_in_debugger", "stop_for_debugger", "debugger_", "debug_terminal", "display",
+    "check_pointer_intensity", "objects_dump", "get_total_flops", "mpi_", "mpidump", "shared_tmp",
+    "not_shared_tmp", "tmp", "draw_", "x_virtual", "saws_", "device_", "use_gpu_aware_mpi", "petsc_ci",
+    "checkfunctionlist", "python", "python_", "dll_"};
+
+/// The names people misspell most, for a better hint than a family alone.
+constexpr std::array petsc_names{
+    "snes_type", "snes_rtol", "snes_atol", "snes_stol", "snes_max_it", "snes_monitor", "snes_view",
+    "snes_converged_reason", "snes_linesearch_type", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it",
+    "ksp_monitor", "ksp_view", "ksp_converged_reason", "pc_type", "pc_factor_mat_solver_type", "log_view",
+    "options_left", "options_view"};
+
+bool belongs(std::string_view name, std::string_view family) {
+  return family.ends_with('_') ? name.starts_with(family) : name == family;
+}
+
+/// Levenshtein's distance, a swap of neighbours counting as one.
+int distance(std::string_view a, std::string_view b) {
+  std::vector<int> before, last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    row[0] = static_cast<int>(i) + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      row[j + 1] = std::min({last[j] + (a[i] != b[j]), last[j + 1] + 1, row[j] + 1});
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
+    }
+    before = std::exchange(last, row);
+  }
+  return last.back();
+}
+
+/// How far `name` is from a key: its spelling, or the right word in the wrong section.
+int distance_to_key(std::string_view name, std::string_view key) {
+  // A part of a named section has a name of its own, which is not misspelt: take it over.
+  std::string known = option_name(key);
+  if (const auto at = known.find("NAME"); at != std::string::npos) {
+    const auto first = name.find('_');
+    const auto second = first == std::string_view::npos ? first : name.find('_', first + 1);
+    if (second != std::string_view::npos) known.replace(at, 4, name.substr(first + 1, second - first - 1));
+  }
+  const std::string_view word = key.substr(key.rfind(' ') + 1);
+  int best = distance(name, known);
+  constexpr int wrong_section = 2;
+  for (std::size_t at = 0; at != std::string_view::npos;) {
+    best = std::min(best, distance(name.substr(at), word) + wrong_section);
+    const auto next = name.find('_', at);
+    at = next == std::string_view::npos ? next : next + 1;
+  }
+  return best;
+}
+
+}  // namespace
+
+bool is_petsc_option(std::string_view name) {
+  return std::any_of(petsc_families.begin(), petsc_families.end(),
+                     [&](std::string_view family) { return belongs(name, family); });
+}
+
+std::string nearest_option(std::string_view name, std::span<const OptionSpec> table) {
+  std::string nearest;
+  int best = static_cast<int>(name.size()) + 100;
+  const auto take = [&](std::string candidate, int far) {
+    if (far < best) {
+      best = far;
+      nearest = std::move(candidate);
+    }
+  };
+  for (const OptionSpec& spec : table) take(std::string(spec.key), distance_to_key(name, spec.key));
+  for (const std::string_view known : petsc_names) take(std::string(known), distance(name, known));
+  const auto cut = name.find('_');
+  if (cut == std::string_view::npos) return nearest;
+  const std::string_view first = name.substr(0, cut + 1), rest = name.substr(cut + 1);
+  for (const std::string_view family : petsc_families) {
+    // Nothing vouches for the rest of the name, so a known name wins when both are as near.
+    if (family.ends_with('_')) take(std::string(family) + std::string(rest), distance(first, family));
+  }
+  return nearest;
+}
+
+}  // namespace floe

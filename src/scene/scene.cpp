@@ -1,0 +1,268 @@
+#include "floe/scene.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "floe/base/options.h"
+#include "floe/base/petsc.h"
+#include "keys.h"
+
+namespace floe {
+namespace {
+
+constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
+constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top", "all"};
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data();
+}
+
+void read_forces(Options& options, Scene& scene) {
+  const auto forces = options.words("forces");
+  if (forces.empty()) throw InputError("forces: is empty; nothing would act");
+  const auto named = [&](std::string_view force) {
+    return std::find(forces.begin(), forces.end(), force) != forces.end();
+  };
+  scene.forces = {named("beam"), named("gravity"), named("buoyancy")};
+  if (scene.forces.buoyancy && !scene.forces.gravity)
+    throw InputError("forces: buoyancy needs gravity");
+  const auto without = [](std::string_view force) {
+    return "would have no effect: '" + std::string(force) + "' is not in 'forces'";
+  };
+  if (!scene.forces.beam) options.refuse("beam", without("beam"));
+  if (!scene.forces.gravity) options.refuse("gravity", without("gravity"));
+  if (!scene.forces.buoyancy) options.refuse("water", without("buoyancy"));
+}
+
+void read_sheet(Options& options, Scene& scene) {
+  SheetPlan& plan = scene.sheet;
+  plan.length = options.number("sheet: length");
+  plan.width = options.number("sheet: width", {}, plan.length);
+  plan.element_size = options.number("sheet: element_size");
+  plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
+  plan.relaxation = options.choice<Relaxation>("sheet: relaxation");
+  const std::int64_t iterations = options.integer("sheet: iterations");
+  plan.iterations = static_cast<int>(std::min<std::int64_t>(iterations, 1'000'000'000));
+  plan.tolerance = options.number("sheet: tolerance");
+  scene.thickness = options.number("sheet: thickness");
+
+  const double shorter = std::min(plan.length, plan.width);
+  if (plan.element_size > shorter)
+    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
+                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") + text_of(shorter) +
+                     " [m]");
+  constexpr double most_bodies = 1e8;  // indices of beams and facets are 32-bit
+  const double bodies = (plan.length / plan.element_size) * (plan.width / plan.element_size);
+  if (bodies > most_bodies)
+    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +
+                     text_of(bodies) + " bodies, at most " + text_of(most_bodies) + " are possible");
+}
+
+void read_ice(Options& options, Scene& scene) {
+  scene.ice.young = options.number("ice: young");
+  scene.ice.poisson = options.number("ice: poisson");
+  scene.ice.density = options.number("ice: density");
+  if (!scene.forces.beam) return;
+  scene.shear_factor = options.number("beam: shear_factor");
+  scene.torsion = options.choice<Torsion>("beam: torsion");
+}
+
+void read_lattice_source(Options& options, Scene& scene) {
+  scene.has_sheet = options.given_section("sheet");
+  const bool has_file = options.given("lattice_file");
+  if (scene.has_sheet && has_file)
+    throw InputError("lattice_file: a scene has either 'sheet' or 'lattice_file', this one has both");
+  if (!scene.has_sheet && !has_file)
+    throw InputError("sheet: a scene needs either 'sheet' or 'lattice_file', this one has neither");
+  if (scene.has_sheet) {
+    read_sheet(options, scene);
+    read_ice(options, scene);
+  } else {
+    scene.lattice_file = options.text("lattice_file");
+    constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
+    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion"})
+      options.refuse(key, said_by_file);
+  }
+}
+
+void read_regions_and_cuts(Options& options, Scene& scene) {
+  for (const std::string& name : options.names("region")) {
+    const Region region{name, options.numbers<6>("region: NAME: box", name)};
+    const auto& box = region.box;
+    if (box[0] > box[1] || box[2] > box[3] || box[4] > box[5])
+      throw InputError("region: " + name + ": box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, "
+                       "y0 <= y1, z0 <= z1 [m]");
+    const auto last = scene.has_sheet ? sheet_sets.begin() : sheet_sets.end() - 1;
+    if (std::find(last, sheet_sets.end(), name) != sheet_sets.end())
+      throw InputError("region: names: '" + name + "' is the name of a set that there is already");
+    scene.regions.push_back(region);
+  }
+  for (const std::string& name : options.names("cut")) {
+    const Cut cut{name, options.numbers<2>("cut: NAME: from", name),
+                  options.numbers<2>("cut: NAME: to", name)};
+    if (cut.from == cut.to) throw InputError("cut: " + name + ": from and to are the same point");
+    scene.cuts.push_back(cut);
+  }
+}
+
+/// Values of components that are not fixed would be ignored in silence.
+void check_fixed(const Boundary& boundary, const std::string& key, const Point3& values,
+                 std::size_t first) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (values[k] != 0 && !boundary.fixed[first + k])
+      throw InputError("boundary: " + boundary.name + ": " + key + ": " + text_of(values[k]) +
+                       " has no effect: '" + std::string(components[first + k]) + "' is not in 'boundary: " +
+                       boundary.name + ": fix'");
+  }
+}
+
+Boundary read_boundary(Options& options, const std::string& name) {
+  Boundary boundary;
+  boundary.name = name;
+  boundary.set = options.text("boundary: NAME: set", name);
+  for (const std::string& word : options.words("boundary: NAME: fix", name)) {
+    const auto at = std::find(components.begin(), components.end(), word) - components.begin();
+    boundary.fixed[static_cast<std::size_t>(at)] = true;
+  }
+  if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))
+    throw InputError("boundary: " + name + ": fix: is empty; nothing would be prescribed");
+  if (options.given("boundary: NAME: displacement", name)) {
+    if (options.given("boundary: NAME: velocity", name))
+      throw InputError("boundary: " + name + ": give either velocity or displacement, not both");
+    boundary.displacement = options.numbers<3>("boundary: NAME: displacement", name);
+    check_fixed(boundary, "displacement", *boundary.displacement, 0);
+  } else {
+    boundary.velocity = Point3{};
+    if (options.given("boundary: NAME: velocity", name))
+      boundary.velocity = options.numbers<3>("boundary: NAME: velocity", name);
+    check_fixed(boundary, "velocity", *boundary.velocity, 0);
+  }
+  boundary.angular_velocity = options.numbers<3>("boundary: NAME: angular_velocity", name);
+  check_fixed(boundary, "angular_velocity", boundary.angular_velocity, 3);
+  boundary.ramp.seconds = options.number("boundary: NAME: ramp", name);
+  return boundary;
+}
+
+Load read_load(Options& options, const std::string& name) {
+  Load load;
+  load.name = name;
+  const bool on_set = options.given("load: NAME: set", name);
+  const bool at_point = options.given("load: NAME: point", name);
+  if (on_set == at_point)
+    throw InputError("load: " + name + ": give either set or point, " +
+                     (on_set ? "not both" : "neither is there"));
+  if (on_set) load.set = options.text("load: NAME: set", name);
+  if (at_point) load.point = options.numbers<2>("load: NAME: point", name);
+  load.force = options.numbers<3>("load: NAME: force", name);
+  load.moment = options.numbers<3>("load: NAME: moment", name);
+  load.ramp.seconds = options.number("load: NAME: ramp", name);
+  constexpr Point3 nothing{};
+  if (load.force == nothing && load.moment == nothing)
+    throw InputError("load: " + name + ": force and moment are both zero; it would have no effect");
+  return load;
+}
+
+void read_time(Options& options, Scene& scene) {
+  scene.time.end = options.number("time: end");
+  if (!options.given("time: dt")) return;
+  scene.time.dt = options.number("time: dt");
+  if (scene.time.dt > scene.time.end)
+    throw InputError("time: dt: " + text_of(scene.time.dt) + " must be <= time: end " +
+                     text_of(scene.time.end) + " [s]");
+}
+
+void read_report(Options& options, Scene& scene) {
+  for (const std::string& word : options.words("report")) {
+    if (word == "tension") scene.report.tension = true;
+    if (word == "bending") scene.report.bending = true;
+  }
+}
+
+/// Why results cannot be written below `dir`, or nothing. Looks, but makes nothing.
+std::string output_problem(const std::filesystem::path& dir) {
+  std::error_code error;
+  std::filesystem::path there = std::filesystem::absolute(dir, error);
+  while (!std::filesystem::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  if (!std::filesystem::is_directory(there, error))
+    return "'" + there.string() + "' is not a folder";
+  if (access(there.c_str(), W_OK | X_OK) != 0) return "'" + there.string() + "' is not writable";
+  return {};
+}
+
+void read_output(Options& options, Scene& scene) {
+  scene.output.dir = options.text("output: dir", {}, "out/" + scene.name);
+  if (options.given("output: history")) scene.output.history = options.number("output: history");
+  if (options.given("output: fields")) scene.output.fields = options.number("output: fields");
+  // Only rank 0 writes, and its verdict is everybody's.
+  std::string problem = rank() == 0 ? output_problem(scene.output.dir) : std::string();
+  auto length = static_cast<int>(problem.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  problem.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(problem.data(), length, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  if (!problem.empty())
+    throw InputError("output: dir: " + scene.output.dir + " cannot be made: " + problem);
+}
+
+/// A floating sheet needs a draft within its thickness.
+void check_floats(const Scene& scene) {
+  if (scene.has_sheet && scene.forces.buoyancy && scene.ice.density >= scene.water_density)
+    throw InputError("ice: density: " + text_of(scene.ice.density) + " must be < water: density " +
+                     text_of(scene.water_density) + " [kg/m^3], or the sheet sinks");
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path) {
+  Options options(scene_keys());
+  Scene scene;
+  scene.path = path;
+  scene.name = std::filesystem::path(path).stem().string();
+  scene.integrator = options.choice<Integrator>("integrator");
+  read_forces(options, scene);
+  read_lattice_source(options, scene);
+  read_regions_and_cuts(options, scene);
+  if (scene.forces.beam) {
+    scene.beam.shear = options.choice<Shear>("beam: shear");
+    scene.beam.kinematics = options.choice<Kinematics>("beam: kinematics");
+  }
+  if (scene.forces.gravity) scene.gravity = options.number("gravity");
+  if (scene.forces.buoyancy) scene.water_density = options.number("water: density");
+  check_floats(scene);
+  for (const std::string& name : options.names("boundary"))
+    scene.boundaries.push_back(read_boundary(options, name));
+  for (const std::string& name : options.names("load")) scene.loads.push_back(read_load(options, name));
+  read_time(options, scene);
+  read_report(options, scene);
+  read_output(options, scene);
+  scene.check_only = options.flag("check");
+  options.reject_unread();
+  scene.options_yaml = options.yaml();
+  return scene;
+}
+
+std::string options_help() {
+  return "floe: a floating ice sheet as rigid bodies joined by beams\n\n"
+         "usage: floe SCENE.yaml [-key value ...]      (or: mpiexec -n N floe ...)\n\n"
+         "Options nest in the scene (sheet: {length: 40}) and join on the command line (-sheet_length 40),\n"
+         "which wins. Lists are separated by commas or blanks. Solver options are PETSc's own: -snes_*,\n"
+         "-ksp_*, -pc_*, -log_view, ...\n\n" +
+         help_text(scene_keys());
+}
+
+std::string options_markdown() {
+  return "# Options\n\n"
+         "Written by `floe -help_markdown` from the table in `src/scene/keys.cpp`; do not edit.\n\n"
+         "In a scene, options nest (`sheet: {length: 40}`); on the command line they join with `_`\n"
+         "(`-sheet_length 40`) and win over the scene. Lists are separated by commas or blanks. `NAME`\n"
+         "stands for each name of the section's list `names`. An option that would have no effect is an\n"
+         "error. Solver options are PETSc's own (`-snes_*`, `-ksp_*`, `-pc_*`, `-log_view`, ...).\n" +
+         help_markdown(scene_keys());
+}
+
+}  // namespace floe
