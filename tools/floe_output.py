@@ -1,0 +1,107 @@
+#!/usr/bin/python3
+"""Reads an output folder of floe: summary.json, options.yaml, lattice.h5, fields.h5. SI units everywhere."""
+import json
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+# name: dataset of a time group of fields.h5, its column (None: length of the vector), unit, label
+BODY_QUANTITIES = {
+    "ux": ("bodies_displacement", 0, "m", "displacement in x"),
+    "uy": ("bodies_displacement", 1, "m", "displacement in y"),
+    "uz": ("bodies_displacement", 2, "m", "displacement in z"),
+    "u": ("bodies_displacement", None, "m", "displacement"),
+    "rx": ("bodies_rotation", 0, "rad", "rotation about x"),
+    "ry": ("bodies_rotation", 1, "rad", "rotation about y"),
+    "rz": ("bodies_rotation", 2, "rad", "rotation about z"),
+}
+
+
+def matrices(quaternions):
+    """Rotation matrices n x 3 x 3 of unit quaternions n x 4 (w, x, y, z)."""
+    w, x, y, z = np.asarray(quaternions).T
+    rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+class Output:
+    """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.summary = json.loads((self.folder / "summary.json").read_text())
+        with h5py.File(self.folder / "lattice.h5") as file:
+            self.position = file["bodies/position"][:]      # n x 3 [m]
+            self.orientation = file["bodies/orientation"][:]  # n x 4
+            self.beams = {name: data[:] for name, data in file.get("beams", {}).items()}
+            self.sets = {name: data[:] for name, data in file.get("sets", {}).items()}
+            self.shapes = {name: data[:] for name, data in file.get("shapes", {}).items()}
+        with h5py.File(self.folder / "fields.h5") as file:
+            frames = {name: float(group.attrs["time"]) for name, group in file.items() if "time" in group.attrs}
+        self._groups = sorted(frames, key=frames.get)
+        self.times = np.array([frames[name] for name in self._groups])
+
+    def field(self, name, time):
+        """Dataset `name` of the sample nearest to `time`."""
+        with h5py.File(self.folder / "fields.h5") as file:
+            return file[self._groups[int(np.argmin(np.abs(self.times - time)))]][name][:]
+
+    def body_quantity(self, name, time):
+        """Values n of a quantity of BODY_QUANTITIES, its unit and label."""
+        dataset, column, unit, label = BODY_QUANTITIES[name]
+        values = self.field(dataset, time)
+        return np.linalg.norm(values, axis=1) if column is None else values[:, column], unit, label
+
+    def beam_stress(self, name, time):
+        """Values m [Pa] and label: `axial` = N/A; `tensile`, the largest in the section; `shear`."""
+        if name == "axial":
+            return self.field("beams_force", time)[:, 0] / self.beams["area"], "axial stress of the beams"
+        column, label = {"tensile": (0, "largest tensile stress of the beams"),
+                         "shear": (1, "shear stress of the beams")}[name]
+        return self.field("beams_stress", time)[:, column], label
+
+    def plans(self):
+        """Per body the corners k x 2 [m], seen from above, of its most upward face, in the reference state."""
+        body_of = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["vertex_of"]))
+        placed = np.einsum("vij,vj->vi", matrices(self.orientation)[body_of], self.shapes["vertices"])
+        placed += self.position[body_of]
+        first, corners = self.shapes["corner_of"][:-1], self.shapes["corners"]
+        a, b, c = (placed[corners[first + k]] for k in range(3))
+        normal = np.cross(b - a, c - a)
+        upward = normal[:, 2] / np.linalg.norm(normal, axis=1)
+        of_body = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["face_of"]))
+        order = np.lexsort((upward, of_body))
+        top = order[self.shapes["face_of"][1:] - 1]
+        ends = self.shapes["corner_of"]
+        return [placed[corners[ends[f]:ends[f + 1]], :2] for f in top]
+
+    def options(self):
+        """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""
+        options, sections = {}, []
+        for line in (self.folder / "options.yaml").read_text().splitlines():
+            match = re.match(r"( *)([^\s#:][^:]*):(?: (.*))?$", line)
+            if not match:
+                continue
+            indent, key, value = len(match[1]), match[2], (match[3] or "").strip()
+            sections = [(i, k) for i, k in sections if i < indent]
+            name = "_".join([k for _, k in sections] + [key])
+            if value:
+                options[name] = value.strip("\"'[]")
+            else:
+                sections.append((indent, key))
+        return options
+
+
+def scaled(values, unit):
+    """The values in a unit that suits their size, and its name: Pa -> kPa, MPa; m -> mm, um; rad -> mrad."""
+    steps = {"Pa": [(1e6, "MPa"), (1e3, "kPa"), (1, "Pa")], "m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm")],
+             "rad": [(1, "rad"), (1e-3, "mrad"), (1e-6, "µrad")]}[unit]
+    largest = np.max(np.abs(values), initial=0)
+    for size, name in steps:
+        if largest >= size:
+            return values / size, name
+    return values / steps[-1][0], steps[-1][1]
