@@ -1,0 +1,16 @@
+/// \file
+/// Buoyancy of convex bodies: rho_w g times the exact volume below z = 0, at that volume's centroid (physics.md 6).
+#pragma once
+
+#include <memory>
+
+#include "floe/forces/force.h"
+
+namespace floe {
+
+/// \param weight_density  rho_w g [N/m^3]   \param part  must outlive the force
+/// \throws InputError if the lattice has no shapes
+template <class Space>
+std::unique_ptr<Force<Space>> make_buoyancy(const Part& part, double weight_density);
+
+}  // namespace floe

@@ -1,0 +1,37 @@
+#include "floe/forces/gravity.h"
+
+namespace floe {
+namespace {
+
+class Gravity final : public Force<Spatial> {
+ public:
+  Gravity(const Part& part, double acceleration) : part_(part), g_(acceleration) {}
+
+  std::string_view name() const override { return "gravity"; }
+  void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) const override {
+    for (std::int32_t b = 0; b < part_.owned; ++b)
+      wrenches.of(static_cast<std::size_t>(b))[2] -= part_.bodies.mass[static_cast<std::size_t>(b)] * g_;
+  }
+  bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
+  double stiffness_bound(std::int32_t) const override { return 0; }
+  /// Potential m g u_z, from the state at rest.
+  void report(const State<Spatial>& state, Columns& columns) const override {
+    double energy = 0;
+    for (std::int32_t b = 0; b < part_.owned; ++b)
+      energy += part_.bodies.mass[static_cast<std::size_t>(b)] * g_ * displacement(state, static_cast<std::size_t>(b)).z;
+    columns.add("energy_gravity", energy);
+  }
+
+ private:
+  const Part& part_;
+  double g_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Force<Spatial>> make_gravity<Spatial>(const Part& part, double acceleration) {
+  return std::make_unique<Gravity>(part, acceleration);
+}
+
+}  // namespace floe

@@ -1,0 +1,116 @@
+#include "floe/forces/load.h"
+
+#include <limits>
+
+namespace floe {
+namespace {
+
+/// Dead load F with the moment M: wrench (F, a x F + M) on each body, a = R r the turned arm. Potential
+/// -F.(u + a) of the force; a dead moment has none, which the exact tangent K shows as a skew part.
+class DeadLoad final : public Force<Spatial> {
+ public:
+  DeadLoad(const Part& part, PlacedLoad placed) : load_(std::move(placed.load)), part_(part) {
+    share_ = 1.0 / static_cast<double>(placed.bodies.size());
+    for (const std::int32_t body : placed.bodies) {
+      const std::int32_t local = part.local_index(body);
+      if (local >= 0 && local < part.owned) bodies_.push_back(local);
+    }
+    arm_ = {placed.arm[0], placed.arm[1], placed.arm[2]};
+  }
+
+  std::string_view name() const override { return "load"; }
+
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+    const Vec3<double> f = force(state.time), m = moment(state.time);
+    for (const std::int32_t body : bodies_) {
+      const auto b = static_cast<std::size_t>(body);
+      const Vec3<double> total = m + cross(turned_arm(state, b), f);
+      double* w = wrenches.of(b);
+      w[0] += f.x, w[1] += f.y, w[2] += f.z;
+      w[3] += total.x, w[4] += total.y, w[5] += total.z;
+    }
+  }
+
+  /// Second variation of -F.a along a spin t: (F.a)|t|^2 - (F.t)(a.t).
+  bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    const Vec3<double> f = force(state.time);
+    for (const std::int32_t body : bodies_) {
+      const Vec3<double> a = turned_arm(state, static_cast<std::size_t>(body));
+      const std::array<double, 3> fs{f.x, f.y, f.z}, as{a.x, a.y, a.z};
+      Tangent<Spatial>::Block block{};
+      for (std::size_t r = 0; r < 3; ++r) {
+        for (std::size_t c = 0; c < 3; ++c)
+          block[(3 + r) * 6 + 3 + c] = (r == c ? dot(f, a) : 0.0) - 0.5 * (fs[r] * as[c] + as[r] * fs[c]);
+      }
+      if (!tangent.symmetric()) {
+        // K = H - skew(g)/2 with g = -(a x F) the force's moment gradient (the applied moment itself is constant).
+        const Vec3<double> g = cross(f, a);
+        block[3 * 6 + 4] += 0.5 * g.z, block[4 * 6 + 3] -= 0.5 * g.z;
+        block[3 * 6 + 5] -= 0.5 * g.y, block[5 * 6 + 3] += 0.5 * g.y;
+        block[4 * 6 + 5] += 0.5 * g.x, block[5 * 6 + 4] -= 0.5 * g.x;
+      }
+      tangent.add_body(body, block);
+    }
+    return true;
+  }
+
+  double stiffness_bound(std::int32_t) const override { return 0; }
+
+  /// Potential of the dead force; applied moments are left out, they have none.
+  void report(const State<Spatial>& state, Columns& columns) const override {
+    const Vec3<double> f = force(state.time);
+    double energy = 0;
+    for (const std::int32_t body : bodies_) {
+      const auto b = static_cast<std::size_t>(body);
+      energy -= dot(f, displacement(state, b) + (turned_arm(state, b) - arm_));
+    }
+    columns.add("energy_load", energy);
+  }
+
+ private:
+  Vec3<double> force(double time) const {
+    const double s = share_ * load_.ramp.value(time);
+    return {s * load_.force[0], s * load_.force[1], s * load_.force[2]};
+  }
+  Vec3<double> moment(double time) const {
+    const double s = share_ * load_.ramp.value(time);
+    return {s * load_.moment[0], s * load_.moment[1], s * load_.moment[2]};
+  }
+  Vec3<double> turned_arm(const State<Spatial>& state, std::size_t body) const {
+    return rotate(rotation(state, body), arm_);
+  }
+
+  Load load_;
+  const Part& part_;
+  std::vector<std::int32_t> bodies_;
+  double share_ = 1;
+  Vec3<double> arm_{};
+};
+
+}  // namespace
+
+PlacedLoad place(const Load& load, const Lattice& lattice) {
+  PlacedLoad placed{load, {}, {}};
+  if (!load.point) {
+    placed.bodies = lattice.set(load.set, "load: " + load.name + ": set");
+    return placed;
+  }
+  const Point2 p = *load.point;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
+    const Point3& x = lattice.bodies.position[static_cast<std::size_t>(b)];
+    const double dx = p[0] - x[0], dy = p[1] - x[1], distance = dx * dx + dy * dy;
+    if (distance >= nearest) continue;
+    nearest = distance;
+    placed.bodies = {b};
+    placed.arm = {dx, dy, 0.0};
+  }
+  return placed;
+}
+
+template <>
+std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part& part, PlacedLoad load) {
+  return std::make_unique<DeadLoad>(part, std::move(load));
+}
+
+}  // namespace floe

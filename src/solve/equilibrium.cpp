@@ -1,0 +1,354 @@
+#include "solve/equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "floe/base/log.h"
+
+namespace floe {
+namespace {
+
+constexpr std::size_t reference_size = 7;  // q_ref (w x y z) and the rotation sum there (x y z)
+
+/// The storage and form of the tangent that the chosen preconditioner wants: Cholesky takes blocked symmetric
+/// storage, LU the exact unsymmetric K, everything else (GAMG, hypre, ...) plain rows. -mat_type wins.
+TangentOptions tangent_options() {
+  char pc[64] = "cholesky";
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsGetString(nullptr, nullptr, "-pc_type", pc, sizeof pc, &given));
+  TangentOptions options;
+  if (std::strcmp(pc, PCCHOLESKY) != 0) options.type = MATAIJ;
+  options.symmetric = std::strcmp(pc, PCLU) != 0;
+  return options;
+}
+
+/// A typical diagonal of the free unknowns for the prescribed ones, so that the matrix stays well scaled [N/m].
+double typical_stiffness(const Model<Spatial>& model) {
+  double mine = 0;
+  for (std::int32_t b = 0; b < model.part().owned; ++b) {
+    for (const auto& force : model.forces()) mine = std::max(mine, force->stiffness_bound(b));
+  }
+  double all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, model.part().comm);
+  return all > 0 ? all : 1.0;
+}
+
+}  // namespace
+
+Equilibrium::Equilibrium(Model<Spatial>& model)
+    : model_(model),
+      part_(model.part()),
+      state_(static_cast<std::size_t>(part_.local)),
+      wrenches_(static_cast<std::size_t>(part_.local)),
+      share_(static_cast<std::size_t>(part_.local)),
+      reference_(static_cast<std::size_t>(part_.owned) * reference_size, 0.0),
+      tangent_(part_, model.held(), model.length_scale(), typical_stiffness(model), tangent_options()) {
+  for (std::int32_t b = 0; b < part_.owned; ++b) {
+    reference_[static_cast<std::size_t>(b) * reference_size] = 1;
+    double sum = 0;
+    for (const auto& force : model.forces()) sum += force->stiffness_bound(b);
+    stiffness_.push_back(sum);
+  }
+  check(MatCreateVecs(tangent_.matrix(), x_.put(), f_.put()));
+  check(VecDuplicate(x_, step_.put()));
+  attach_rigid_modes();
+  check(SNESCreate(part_.comm, snes_.put()));
+  check(SNESSetFunction(snes_, f_, residual, this));
+  check(SNESSetJacobian(snes_, tangent_.matrix(), tangent_.matrix(), jacobian, this));
+  set_defaults();
+  check(SNESSetConvergenceTest(snes_, converged, this, nullptr));
+}
+
+/// Defaults that PETSc's own options override.
+void Equilibrium::set_defaults() {
+  check(SNESSetType(snes_, SNESNEWTONLS));
+  SNESLineSearch search = nullptr;
+  check(SNESGetLineSearch(snes_, &search));
+  check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
+  check(SNESSetTolerances(snes_, PETSC_DEFAULT, 1e-10, 0.0, 30, PETSC_DEFAULT));
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check(SNESGetKSP(snes_, &ksp));
+  check(KSPSetType(ksp, KSPPREONLY));
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCCHOLESKY));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  check(KSPSetFromOptions(ksp));
+  check(SNESSetFromOptions(snes_));
+}
+
+/// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic body.
+void Equilibrium::attach_rigid_modes() {
+  std::array<Handle<Vec>, 6> modes;
+  std::vector<Vec> list;
+  for (int m = 0; m < 6; ++m) {
+    auto& mode = modes[static_cast<std::size_t>(m)];
+    check(VecDuplicate(x_, mode.put()));
+    PetscScalar* values = nullptr;
+    check(VecGetArrayWrite(mode, &values));
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      const auto b = static_cast<std::size_t>(body);
+      const Point3& p = part_.bodies.position[b];
+      const Vec3<double> axis{m % 3 == 0 ? 1.0 : 0.0, m % 3 == 1 ? 1.0 : 0.0, m % 3 == 2 ? 1.0 : 0.0};
+      const Vec3<double> turn = m < 3 ? Vec3<double>{0, 0, 0} : axis;
+      const Vec3<double> u = m < 3 ? axis : cross(axis, Vec3<double>{p[0], p[1], p[2]});
+      const double l = model_.length_scale();
+      const std::array<double, 6> entries{u.x, u.y, u.z, l * turn.x, l * turn.y, l * turn.z};
+      for (std::size_t k = 0; k < 6; ++k)
+        values[b * n + k] = (model_.held()[b] >> k & 1U) != 0 ? 0.0 : entries[k];
+    }
+    check(VecRestoreArrayWrite(mode, &values));
+    for (const Vec earlier : list) {
+      PetscScalar along = 0;
+      check(VecDot(mode, earlier, &along));
+      check(VecAXPY(mode, -along, earlier));
+    }
+    PetscReal norm = 0;
+    check(VecNorm(mode, NORM_2, &norm));
+    if (norm < 1e-10) continue;  // everything of it is held
+    check(VecScale(mode, 1.0 / norm));
+    list.push_back(mode);
+  }
+  Handle<MatNullSpace> space;
+  check(MatNullSpaceCreate(part_.comm, PETSC_FALSE, static_cast<PetscInt>(list.size()), list.data(), space.put()));
+  check(MatSetNearNullSpace(tangent_.matrix(), space));
+}
+
+void Equilibrium::take(Vec x) {
+  const PetscScalar* values = nullptr;
+  check(VecGetArrayRead(x, &values));
+  const double scale = 1.0 / model_.length_scale();
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
+    const PetscScalar* v = values + b * n;
+    double* record = state_.record(b);
+    for (std::size_t k = 0; k < 3; ++k) record[k] = v[k];
+    double* q = record + Spatial::rotation;
+    if (model_.kinematics() == Kinematics::linear) {
+      q[0] = 1;
+      for (std::size_t k = 0; k < 3; ++k) q[1 + k] = 0.5 * scale * v[3 + k];
+      continue;
+    }
+    const double* r = &reference_[b * reference_size];
+    const Vec3<double> spin{scale * v[3] - r[4], scale * v[4] - r[5], scale * v[5] - r[6]};
+    const Quat<double> now = normalised(product(exp_rotation(spin), Quat<double>{r[0], r[1], r[2], r[3]}));
+    q[0] = now.w, q[1] = now.x, q[2] = now.y, q[3] = now.z;
+  }
+  check(VecRestoreArrayRead(x, &values));
+  part_.ghosts.update(state_.records, Spatial::record);
+}
+
+void Equilibrium::rebase(Vec x) {
+  const PetscScalar* values = nullptr;
+  check(VecGetArrayRead(x, &values));
+  const double scale = 1.0 / model_.length_scale();
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
+    const double* q = state_.record(b) + Spatial::rotation;
+    double* r = &reference_[b * reference_size];
+    std::copy(q, q + 4, r);
+    for (std::size_t k = 0; k < 3; ++k) r[4 + k] = scale * values[b * n + 3 + k];
+  }
+  check(VecRestoreArrayRead(x, &values));
+}
+
+/// Wrenches force by force: the size of what must balance is the external forces' and the reactions'.
+void Equilibrium::fill_residual(Vec f) {
+  const Timed timed(Event::forces);
+  const double scale = 1.0 / model_.length_scale();
+  std::fill(wrenches_.values.begin(), wrenches_.values.end(), 0.0);
+  external2_ = 0;
+  const auto owned = static_cast<std::size_t>(part_.owned) * n;
+  for (const auto& force : model_.forces()) {
+    if (force.get() == model_.beams()) {
+      force->add(state_, wrenches_);
+      continue;
+    }
+    std::fill(share_.values.begin(), share_.values.end(), 0.0);
+    force->add(state_, share_);
+    for (std::size_t k = 0; k < owned; ++k) {
+      const double value = share_.values[k] * (k % n < 3 ? 1.0 : scale);
+      external2_ += value * value;
+      wrenches_.values[k] += share_.values[k];
+    }
+  }
+  PetscScalar* values = nullptr;
+  check(VecGetArrayWrite(f, &values));
+  for (std::size_t k = 0; k < owned; ++k) {
+    const double value = -wrenches_.values[k] * (k % n < 3 ? 1.0 : scale);
+    const bool held = (model_.held()[k / n] >> (k % n) & 1U) != 0;
+    if (held) external2_ += value * value;
+    values[k] = held ? 0.0 : value;
+  }
+  check(VecRestoreArrayWrite(f, &values));
+}
+
+void Equilibrium::assemble(std::span<const double> increments) {
+  const Timed timed(Event::tangent);
+  tangent_.begin(increments);
+  for (const auto& force : model_.forces()) (void)force->add_tangent(state_, tangent_);
+  tangent_.end();
+}
+
+PetscErrorCode Equilibrium::residual(SNES snes, Vec x, Vec f, void* self) noexcept {
+  auto& me = *static_cast<Equilibrium*>(self);
+  me.take(x);
+  me.fill_residual(f);
+  PetscReal norm = 0;
+  check(VecNorm(f, NORM_2, &norm));
+  if (!std::isfinite(norm)) check(SNESSetFunctionDomainError(snes));
+  return 0;
+}
+
+PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept {
+  auto& me = *static_cast<Equilibrium*>(self);
+  me.take(x);
+  me.rebase(x);
+  me.assemble();
+  return 0;
+}
+
+/// Relative to the forces that balance (external ones and reactions), never below the rounding of the beams' own.
+double Equilibrium::tolerance(double rtol, double atol) {
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  double noise2 = 0;
+  for (std::size_t b = 0; b < stiffness_.size(); ++b) {
+    const Vec3<double> u = displacement(state_, b);
+    noise2 += stiffness_[b] * stiffness_[b] * dot(u, u);
+  }
+  const std::array<double, 2> mine{external2_, noise2};
+  std::array<double, 2> all{};
+  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, part_.comm);
+  return std::max({rtol * std::sqrt(all[0]), rounding * std::sqrt(all[1]), atol});
+}
+
+PetscErrorCode Equilibrium::converged(SNES snes, PetscInt, PetscReal, PetscReal, PetscReal norm,
+                                      SNESConvergedReason* reason, void* self) noexcept {
+  PetscReal atol = 0, rtol = 0;
+  check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
+  *reason = SNES_CONVERGED_ITERATING;
+  if (!std::isfinite(norm)) {
+    *reason = SNES_DIVERGED_FNORM_NAN;
+  } else if (norm <= static_cast<Equilibrium*>(self)->tolerance(rtol, atol)) {
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  }
+  return 0;
+}
+
+/// Brings prescribed unknowns to their values at the new time, and all others along: one linear solve with the
+/// tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
+bool Equilibrium::predict(double time) {
+  std::vector<double> target(static_cast<std::size_t>(part_.local) * n), increments(target.size(), 0.0);
+  model_.prescribe(time, target);
+  const double l = model_.length_scale();
+  // Ghosts' unknowns are wanted too: their present values come with their owners' increments.
+  PetscScalar* x = nullptr;
+  check(VecGetArray(x_, &x));
+  int moves = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+    if ((model_.prescribed()[k / n] >> (k % n) & 1U) == 0) continue;
+    increments[k] = target[k] * (k % n < 3 ? 1.0 : l) - x[k];
+    if (increments[k] != 0) moves = 1;
+  }
+  check(VecRestoreArray(x_, &x));
+  part_.ghosts.update(increments, n);
+  int anyone_moves = 0;
+  MPI_Allreduce(&moves, &anyone_moves, 1, MPI_INT, MPI_MAX, part_.comm);
+
+  state_.time = time;
+  take(x_);
+  fill_residual(f_);
+  PetscReal norm = 0;
+  check(VecNorm(f_, NORM_2, &norm));
+  PetscReal atol = 0, rtol = 0;
+  check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, nullptr, nullptr));
+  if (anyone_moves == 0 && norm <= tolerance(rtol, atol)) return true;
+
+  rebase(x_);
+  assemble(increments);
+  PetscScalar* f = nullptr;
+  check(VecGetArray(f_, &f));
+  for (std::size_t k = 0; k < tangent_.lift().size(); ++k) f[k] = -f[k] - tangent_.lift()[k];
+  check(VecRestoreArray(f_, &f));
+  const Timed timed(Event::solve);
+  KSP ksp = nullptr;
+  check(SNESGetKSP(snes_, &ksp));
+  check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+  check(KSPSolve(ksp, f_, step_));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  check(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0) {
+    why_ = std::string("the linear solver failed (") + KSPConvergedReasons[reason] + ")";
+    return false;
+  }
+  ++iterations_;
+  PetscScalar* d = nullptr;
+  check(VecGetArray(step_, &d));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+    if ((model_.held()[k / n] >> (k % n) & 1U) != 0) d[k] = increments[k];
+  }
+  check(VecRestoreArray(step_, &d));
+  check(VecAXPY(x_, 1.0, step_));
+  return true;
+}
+
+Equilibrium::Saved Equilibrium::save() const {
+  Saved saved{state_, reference_, {}};
+  const PetscScalar* x = nullptr;
+  check(VecGetArrayRead(x_, &x));
+  saved.x.assign(x, x + static_cast<std::size_t>(part_.owned) * n);
+  check(VecRestoreArrayRead(x_, &x));
+  return saved;
+}
+
+void Equilibrium::restore(const Saved& saved) {
+  state_ = saved.state;
+  reference_ = saved.reference;
+  PetscScalar* x = nullptr;
+  check(VecGetArrayWrite(x_, &x));
+  std::copy(saved.x.begin(), saved.x.end(), x);
+  check(VecRestoreArrayWrite(x_, &x));
+  fill_residual(f_);
+}
+
+bool Equilibrium::solve(double time) {
+  const Saved before = save();
+  why_.clear();
+  if (!predict(time)) {
+    restore(before);
+    return false;
+  }
+  const Timed timed(Event::solve);
+  check(SNESSolve(snes_, nullptr, x_));
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt taken = 0;
+  check(SNESGetConvergedReason(snes_, &reason));
+  check(SNESGetIterationNumber(snes_, &taken));
+  iterations_ += taken;
+  if (reason < 0) {
+    why_ = std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " + std::to_string(taken) +
+           " iterations)";
+    restore(before);
+    return false;
+  }
+  take(x_);
+  fill_residual(f_);
+  for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
+  return true;
+}
+
+double Equilibrium::pin_reaction() const {
+  const double scale = 1.0 / model_.length_scale();
+  double largest = 0;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+    const bool pinned = ((model_.held()[k / n] & ~model_.prescribed()[k / n]) >> (k % n) & 1U) != 0;
+    if (pinned) largest = std::max(largest, std::abs(wrenches_.values[k]) * (k % n < 3 ? 1.0 : scale));
+  }
+  const double mine_size = external2_;
+  double reaction = 0, size2 = 0;
+  MPI_Allreduce(&largest, &reaction, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+  MPI_Allreduce(&mine_size, &size2, 1, MPI_DOUBLE, MPI_SUM, part_.comm);
+  return size2 > 0 ? reaction / std::sqrt(size2) : 0.0;
+}
+
+}  // namespace floe

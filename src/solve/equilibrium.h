@@ -1,0 +1,74 @@
+/// \file
+/// The nonlinear equations of static equilibrium as a SNES problem.
+///
+/// Unknowns x (blocks of n per body, PETSc's rows): displacement u [m] and the running sum of rotation increments
+/// times the model's length scale. Rotations follow q = exp((x - x_ref)/length) q_ref; whenever a tangent is formed the
+/// reference moves to the present state, so that there increments are spins and the tangent is exact.
+/// The residual is minus the wrenches (moments divided by the length scale), zero where unknowns are prescribed.
+#pragma once
+
+#include <vector>
+
+#include "floe/base/petsc.h"
+#include "floe/solve/model.h"
+
+namespace floe {
+
+class Equilibrium {
+ public:
+  static constexpr int n = Spatial::unknowns;
+
+  explicit Equilibrium(Model<Spatial>& model);
+  Equilibrium(const Equilibrium&) = delete;
+  Equilibrium& operator=(const Equilibrium&) = delete;
+
+  /// Solves for the state at `time`, starting from the present one. Returns false, with the state as before,
+  /// if Newton fails; why() then says so.
+  bool solve(double time);
+
+  const State<Spatial>& state() const { return state_; }
+  const Wrenches<Spatial>& wrenches() const { return wrenches_; }
+  std::int64_t newton_iterations() const { return iterations_; }
+  const std::string& why() const { return why_; }
+  /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load pushes a
+  /// motion that nothing holds.
+  double pin_reaction() const;
+
+ private:
+  struct Saved {
+    State<Spatial> state;
+    std::vector<double> reference;
+    std::vector<PetscScalar> x;
+  };
+
+  static PetscErrorCode residual(SNES, Vec x, Vec f, void* self) noexcept;
+  static PetscErrorCode jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept;
+  static PetscErrorCode converged(SNES, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal f,
+                                  SNESConvergedReason*, void* self) noexcept;
+
+  void set_defaults();
+  void attach_rigid_modes();
+  void take(Vec x);        ///< state of the unknowns, ghosts included
+  void rebase(Vec x);      ///< moves the reference of the rotations to the present state
+  void fill_residual(Vec f);
+  void assemble(std::span<const double> increments = {});
+  bool predict(double time);
+  double tolerance(double rtol, double atol);
+  Saved save() const;
+  void restore(const Saved& saved);
+
+  Model<Spatial>& model_;
+  const Part& part_;
+  State<Spatial> state_;
+  Wrenches<Spatial> wrenches_, share_;
+  std::vector<double> reference_;  ///< owned bodies: q_ref (4) and the rotation sum at it (3)
+  std::vector<double> stiffness_;  ///< per owned body, for the rounding level [N/m]
+  double external2_ = 0;           ///< squared norm of each external force's wrenches, summed, this rank
+  Tangent<Spatial> tangent_;
+  Handle<Vec> x_, f_, step_;
+  Handle<SNES> snes_;
+  std::int64_t iterations_ = 0;
+  std::string why_;
+};
+
+}  // namespace floe

@@ -1,0 +1,120 @@
+#include "floe/solve/model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "floe/base/log.h"
+#include "floe/base/petsc.h"
+
+namespace floe {
+
+std::vector<std::uint8_t> prescribed_components(const Lattice& lattice, const std::vector<Boundary>& boundaries) {
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.bodies.size()), 0);
+  for (std::size_t b = 0; b < boundaries.size(); ++b) {
+    const Boundary& boundary = boundaries[b];
+    const auto& set = lattice.set(boundary.set, "boundary: " + boundary.name + ": set");
+    // Boundaries before this one that prescribe the same component of one of its bodies must agree with it.
+    for (std::size_t a = 0; a < b; ++a) {
+      const auto& other = lattice.set(boundaries[a].set, "boundary: " + boundaries[a].name + ": set");
+      std::vector<std::int32_t> common;
+      std::set_intersection(set.begin(), set.end(), other.begin(), other.end(), std::back_inserter(common));
+      if (common.empty()) continue;
+      constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (!boundary.fixed[k] || !boundaries[a].fixed[k]) continue;
+        const double later = std::max({1.0, boundary.ramp.seconds, boundaries[a].ramp.seconds});
+        for (const double time : {0.0, 0.5 * boundary.ramp.seconds, later, 2 * later}) {
+          if (boundary.value(time)[k] != boundaries[a].value(time)[k])
+            throw InputError("boundary: " + boundary.name + ": prescribes " + names[k] + " of " +
+                             std::to_string(common.size()) + " bodies that boundary: " + boundaries[a].name +
+                             " prescribes differently");
+        }
+      }
+    }
+    for (const std::int32_t body : set) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (boundary.fixed[k]) held[static_cast<std::size_t>(body)] |= static_cast<std::uint8_t>(1U << k);
+      }
+    }
+  }
+  return held;
+}
+
+template <class Space>
+Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries)
+    : part_(partition(lattice, comm)) {
+  const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
+  for (const std::int32_t body : part_.global) prescribed_.push_back(all[static_cast<std::size_t>(body)]);
+  held_ = prescribed_;
+  for (const Boundary& boundary : boundaries)
+    boundaries_.push_back({boundary, part_.localise(lattice.set(boundary.set, "boundary: " + boundary.name))});
+  // Rotations are solved for as lengths (see Tangent): times the mean beam, or a body's radius of gyration.
+  double sum = 0;
+  for (const double length : lattice.beams.length) sum += length;
+  if (lattice.beams.size() > 0) {
+    length_scale_ = sum / lattice.beams.size();
+  } else {
+    length_scale_ = std::sqrt(lattice.bodies.inertia[0][0] / lattice.bodies.mass[0]);
+  }
+}
+
+template <class Space>
+void Model<Space>::set_beams(std::unique_ptr<BeamForce<Space>> beams, Kinematics kinematics) {
+  beams_ = beams.get();
+  kinematics_ = kinematics;
+  forces_.push_back(std::move(beams));
+}
+
+template <class Space>
+void Model<Space>::evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const {
+  const Timed timed(Event::forces);
+  std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
+  for (const auto& force : forces_) force->add(state, wrenches);
+}
+
+template <class Space>
+void Model<Space>::pin(const std::vector<Pin>& pins) {
+  held_ = prescribed_;
+  for (const Pin& p : pins) {
+    const std::int32_t local = part_.local_index(p.body);
+    if (local >= 0) held_[static_cast<std::size_t>(local)] |= static_cast<std::uint8_t>(1U << p.component);
+  }
+}
+
+template <class Space>
+void Model<Space>::prescribe(double time, std::span<double> values) const {
+  std::fill(values.begin(), values.end(), 0.0);
+  for (const PlacedBoundary& placed : boundaries_) {
+    const std::array<double, 6> value = placed.boundary.value(time);
+    for (const std::int32_t body : placed.bodies) {
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (placed.boundary.fixed[k]) values[static_cast<std::size_t>(body) * n + k] = value[k];
+      }
+    }
+  }
+}
+
+template <class Space>
+std::vector<std::pair<std::string, double>> Model<Space>::report(const State<Space>& state) const {
+  Columns columns;
+  for (const auto& force : forces_) force->report(state, columns);
+  // Forces of one kind (several loads) share a column.
+  std::vector<std::pair<std::string, double>> sums;
+  for (const auto& [name, value] : columns.values()) {
+    const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == name; });
+    if (found == sums.end()) {
+      sums.emplace_back(name, value);
+    } else {
+      found->second += value;
+    }
+  }
+  for (auto& [name, value] : sums) {
+    const double mine = value;
+    MPI_Allreduce(&mine, &value, 1, MPI_DOUBLE, MPI_SUM, part_.comm);
+  }
+  return sums;
+}
+
+template class Model<Spatial>;
+
+}  // namespace floe

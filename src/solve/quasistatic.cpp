@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <sstream>
+
+#include "floe/base/log.h"
+#include "floe/solve/integrator.h"
+#include "solve/equilibrium.h"
+
+namespace floe {
+namespace {
+
+constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, before a run is given up
+constexpr double pin_tolerance = 1e-6;  // of the forces in balance: more means a free motion is loaded
+
+std::string text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+}  // namespace
+
+RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Observer<Spatial>& observer) {
+  Equilibrium equilibrium(model);
+  RunResult result;
+  const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
+  const auto accept = [&](std::int64_t step) {
+    result.newton_iterations = equilibrium.newton_iterations();
+    observer({equilibrium.state(), equilibrium.wrenches(), step});
+  };
+
+  if (!equilibrium.solve(0.0)) {
+    result.message = "no equilibrium at time 0: " + equilibrium.why();
+    return result;
+  }
+  accept(0);
+  Progress progress("load steps", time.end);
+  double now = 0, dt = given;
+  constexpr double rounding = 1e-12;  // a last step shorter than this part of a step is none
+  while (time.end - now > rounding * given) {
+    const double left = time.end - now;
+    // Equal steps that end at the end: a remainder within rounding of a step is a step.
+    const double step = dt >= left * (1 - rounding) ? left : dt;
+    const double next = step == left ? time.end : now + step;
+    if (!equilibrium.solve(next)) {
+      dt = 0.5 * step;
+      if (dt < smallest_fraction * given) {
+        result.message = "no equilibrium beyond time " + text(now) + " (load step cut to " + text(step) +
+                         "): " + equilibrium.why();
+        return result;
+      }
+      continue;
+    }
+    now = next;
+    ++result.steps;
+    result.dt = step;
+    accept(result.steps);
+    if (const double reaction = equilibrium.pin_reaction(); reaction > pin_tolerance) {
+      result.message = "no equilibrium at time " + text(now) +
+                       ": a motion that nothing holds is loaded (by " + text(reaction) + " of the forces)";
+      return result;
+    }
+    progress.update(now, "step " + std::to_string(result.steps) + ", " +
+                             std::to_string(equilibrium.newton_iterations()) + " iterations");
+    dt = std::min(given, 2 * dt);
+  }
+  result.done = true;
+  return result;
+}
+
+}  // namespace floe
