@@ -17,6 +17,11 @@ BODY_QUANTITIES = {
     "ry": ("bodies_rotation", 1, "rad", "rotation about y"),
     "rz": ("bodies_rotation", 2, "rad", "rotation about z"),
 }
+BEAM_STRESSES = {
+    "axial": "axial stress of the beams",             # N/A
+    "tensile": "largest tensile stress of the beams",  # of the section: N/A and bending
+    "shear": "shear stress of the beams",
+}
 
 
 def matrices(quaternions):
@@ -57,12 +62,10 @@ class Output:
         return np.linalg.norm(values, axis=1) if column is None else values[:, column], unit, label
 
     def beam_stress(self, name, time):
-        """Values m [Pa] and label: `axial` = N/A; `tensile`, the largest in the section; `shear`."""
+        """Values m [Pa] of a quantity of BEAM_STRESSES, and its label."""
         if name == "axial":
-            return self.field("beams_force", time)[:, 0] / self.beams["area"], "axial stress of the beams"
-        column, label = {"tensile": (0, "largest tensile stress of the beams"),
-                         "shear": (1, "shear stress of the beams")}[name]
-        return self.field("beams_stress", time)[:, column], label
+            return self.field("beams_force", time)[:, 0] / self.beams["area"], BEAM_STRESSES[name]
+        return self.field("beams_stress", time)[:, {"tensile": 0, "shear": 1}[name]], BEAM_STRESSES[name]
 
     def plans(self):
         """Per body the corners k x 2 [m], seen from above, of its most upward face, in the reference state."""

@@ -1,0 +1,106 @@
+#!/usr/bin/python3
+"""ParaView opens fields.xmf and sees what fields.h5 holds: cells, times, bounds, values.
+
+Needs ParaView and a virtual display (tools/setup --pictures); skipped where they are not installed.
+"""
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
+
+# Runs inside pvpython: per time and block the counts, bounds and ranges of the cell data, as JSON.
+LOOK = """
+import json, sys
+from paraview.simple import OpenDataFile
+from paraview import servermanager
+
+def leaves(data):
+    if not data.IsA("vtkCompositeDataSet"):
+        return [("", data)]
+    found, at = [], data.NewIterator()
+    while not at.IsDoneWithTraversal():
+        found.append((at.GetCurrentMetaData().Get(data.NAME()), at.GetCurrentDataObject()))
+        at.GoToNextItem()
+    return found
+
+def describe(block):
+    cells = block.GetCellData()
+    arrays = [cells.GetArray(i) for i in range(cells.GetNumberOfArrays())]
+    ranges = {a.GetName(): [a.GetRange(k) for k in range(a.GetNumberOfComponents())] for a in arrays}
+    return {"cells": block.GetNumberOfCells(), "bounds": block.GetBounds(), "ranges": ranges}
+
+reader = OpenDataFile(sys.argv[1])
+seen = []
+for time in reader.TimestepValues:
+    reader.UpdatePipeline(time)
+    blocks = leaves(servermanager.Fetch(reader))
+    seen.append({"time": time, "blocks": {name: describe(block) for name, block in blocks}})
+with open(sys.argv[2], "w") as out:
+    json.dump(seen, out)
+"""
+
+
+def count_polygons(topology):
+    """Number of cells in an XDMF Mixed stream of polygons: 3, n, then n vertices, again and again."""
+    cells, at = 0, 0
+    while at < len(topology):
+        if topology[at] != 3:
+            raise AssertionError(f"cell code {topology[at]} at {at}, expected 3")
+        at += 2 + topology[at + 1]
+        cells += 1
+    return cells
+
+
+@unittest.skipUnless(shutil.which("pvpython") and shutil.which("xvfb-run"),
+                     "ParaView is not installed (tools/setup --pictures)")
+class ParaView(unittest.TestCase):
+    def test_opens_fields(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/tension.yaml"), "-sheet_length", "12",
+                                  "-sheet_width", "10", "-sheet_iterations", "10", "-boundary_right_ramp", "1",
+                                  "-time_dt", "0.5", "-output_fields", "0.5", "-output_dir", f"{folder}/out"],
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            seen = self.look(Path(folder), Path(folder, "out/fields.xmf"))
+            self.compare(seen, Path(folder, "out"))
+
+    def look(self, folder, file):
+        """What ParaView sees in a file."""
+        script, found = folder / "look.py", folder / "seen.json"
+        script.write_text(LOOK)
+        run = subprocess.run(["xvfb-run", "-a", "pvpython", str(script), str(file), str(found)],
+                             capture_output=True, text=True, timeout=300)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        return json.loads(found.read_text())
+
+    def compare(self, seen, out):
+        """What was seen against fields.h5 and lattice.h5."""
+        with h5py.File(out / "fields.h5") as fields, h5py.File(out / "lattice.h5") as lattice:
+            faces = count_polygons(fields["mesh/topology"][:])
+            self.assertEqual(faces, len(lattice["shapes/corner_of"]) - 1)
+            samples = sorted((g for g in fields.values() if "time" in g.attrs), key=lambda g: g.attrs["time"])
+            self.assertEqual([s["time"] for s in seen], [0, 0.5, 1])
+            self.assertEqual([float(g.attrs["time"]) for g in samples], [0, 0.5, 1])
+            for sample, group in zip(seen, samples):
+                bodies, beams = sample["blocks"]["bodies"], sample["blocks"]["beams"]
+                self.assertEqual(bodies["cells"], faces)
+                self.assertEqual(beams["cells"], len(lattice["beams/bodies"]))
+                points = group["points"][:]
+                bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
+                np.testing.assert_allclose(bodies["bounds"], bounds, atol=1e-6)
+                force = group["beams_force"][:]
+                ranges = np.column_stack([force.min(axis=0), force.max(axis=0)])
+                np.testing.assert_allclose(beams["ranges"]["beams_force"], ranges, rtol=1e-6, atol=1e-9)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""The picture tools: Kelvin's function against tabulated values, and pictures from real runs."""
+import importlib.machinery
+import importlib.util
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
+
+
+def load(name):
+    """A tool without .py as a module."""
+    loader = importlib.machinery.SourceFileLoader(name, str(REPOSITORY / "tools" / name))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
+    loader.exec_module(module)
+    return module
+
+
+class Curve(unittest.TestCase):
+    def test_wyman(self):
+        wyman = load("plot_deflection").wyman
+        ratio = np.array([0, 0.5, 1, 1.5, 2, 3, 5])
+        np.testing.assert_allclose(wyman(ratio), [1, .85508, .63025, .42195, .25770, .06509, -.01424], atol=6e-6)
+        self.assertAlmostEqual(float(wyman(1e-9)), 1, 12)
+
+    def test_kei_is_smooth_where_its_branches_meet(self):
+        kei = load("plot_deflection").kei
+        x = np.array([0.9e-8, 1.1e-8, 1e-4])
+        np.testing.assert_allclose(kei(x), -np.pi / 4, atol=1e-6)
+
+
+class Plate(unittest.TestCase):
+    def test_characteristic_length_and_deflection(self):
+        plate = load("plot_deflection").plate
+        for h, length, w0 in ((0.5, 8.2450, 1.8558e-3), (1, 13.8663, .65614e-3), (1.5, 18.7945, .35716e-3)):
+            options = {"ice_young": "4e9", "ice_poisson": "0.3", "sheet_thickness": str(h), "gravity": "9.81",
+                       "water_density": "1010", "load_names": "centre", "load_centre_force": "0, 0, -1e4"}
+            got = plate(options)
+            self.assertAlmostEqual(got[0], length, 3)
+            self.assertAlmostEqual(got[1] / w0, 1, 4)
+
+
+class Pictures(unittest.TestCase):
+    def draw(self, scene, options, tool, *arguments):
+        """Runs a small variant of a scene, then a tool on its output, which must leave these pictures."""
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([FLOE, str(REPOSITORY / "input" / scene), "-sheet_iterations", "10", *options,
+                                  "-output_dir", folder + "/out"], capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            plot = subprocess.run([str(REPOSITORY / "tools" / tool), folder + "/out", *arguments],
+                                  capture_output=True, text=True)
+            self.assertEqual(plot.returncode, 0, plot.stderr)
+            written = [Path(line) for line in plot.stdout.split()]
+            self.assertEqual([file.suffix for file in written], [".png", ".svg"])
+            self.assertTrue(written[0].read_bytes().startswith(b"\x89PNG"))
+            self.assertGreater(len(written[1].read_text()), 10000)
+
+    def test_sheet(self):
+        self.draw("tension.yaml", ["-sheet_length", "12", "-sheet_width", "10"], "plot_sheet", "--colour", "ux")
+
+    def test_deflection(self):
+        self.draw("bending.yaml", ["-sheet_length", "20", "-sheet_width", "20"], "plot_deflection")
+
+    def test_not_an_output_folder(self):
+        for tool in ("plot_sheet", "plot_deflection"):
+            run = subprocess.run([str(REPOSITORY / "tools" / tool), "/nonexistent"], capture_output=True, text=True)
+            self.assertEqual(run.returncode, 2)
+            self.assertIn("/nonexistent", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
