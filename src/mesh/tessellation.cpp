@@ -61,6 +61,9 @@ Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
 }
 
 Tessellation tessellate(const SheetPlan& plan, std::vector<std::array<double, 2>> generators) {
+  for (const auto& [x, y] : generators)
+    if (!(std::abs(x) <= plan.length / 2 && std::abs(y) <= plan.width / 2))
+      throw InputError("sheet: a generator of the mesh lies outside the plan");
   const auto order = mesh::hilbert_order(generators, plan.length, plan.width);
   return mesh::Voronoi(plan, permuted(generators, order), mesh::Share()).finish(order);
 }

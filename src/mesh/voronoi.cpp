@@ -10,7 +10,8 @@ Voronoi::Voronoi(const SheetPlan& plan, std::vector<Point2> generators, const Sh
     : l_(plan.element_size),
       x1_(plan.length / 2),
       y1_(plan.width / 2),
-      distance_(3 * plan.element_size),
+      distance_(3 * std::max(plan.element_size, std::sqrt(plan.length * plan.width /
+                                                          static_cast<double>(generators.size())))),
       share_(share),
       generators_(std::move(generators)) {
   frame();
@@ -40,17 +41,21 @@ void Voronoi::frame() {
   delaunay_.build(std::move(points));
 }
 
+namespace {
+
+/// The mark of a cell next to a guard that stands too near; it tells the other ranks.
+constexpr Cell open{-1e300, {}, 0};
+bool is_open(const Cell& cell) { return cell.area == open.area; }
+
+}  // namespace
+
 void Voronoi::update_cells() {
   const auto n = static_cast<std::int32_t>(generators_.size());
   cells_.resize(generators_.size());
   for (;;) {
     const bool covered = cover(share_.begin(n), share_.end(n));
     share_.gather(cells_);
-    // A cell without area stands for a guard too near (on the rank that saw it, and now on all).
-    if (share_.size == 1 ? covered : std::all_of(cells_.begin(), cells_.end(), [](const Cell& c) {
-          return c.area > 0;
-        }))
-      return;
+    if (share_.size == 1 ? covered : std::none_of(cells_.begin(), cells_.end(), is_open)) return;
     distance_ *= 2;
     frame();
   }
@@ -69,7 +74,7 @@ bool Voronoi::cover(std::int32_t first, std::int32_t last) {
       polygon_.push_back(centre_[e / 3]);
       out |= out_[e / 3];
       if (delaunay_.origin(Delaunay::next(e)) >= n && !guard_stays_out(e)) {
-        cells_[k].area = 0;
+        cells_[k] = open;
         return false;
       }
       e = delaunay_.turn(e);
@@ -88,7 +93,9 @@ bool Voronoi::cover(std::int32_t first, std::int32_t last) {
       polar += c * (ax * ax + ax * bx + bx * bx + ay * ay + ay * by + by * by);
       ax = bx, ay = by;
     }
-    cells_[k] = {area2 / 2, {z[0] + sx / (3 * area2), z[1] + sy / (3 * area2)}, polar / 12};
+    const double third =
+        area2 > 0 ? 1 / (3 * area2) : 0;  // no area: two generators (almost) coincide
+    cells_[k] = {area2 / 2, {z[0] + sx * third, z[1] + sy * third}, polar / 12};
   }
   return true;
 }
