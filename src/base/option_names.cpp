@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "option_values.h"
@@ -10,30 +12,47 @@
 namespace floe {
 namespace {
 
-/// First words of PETSc 3.18's options (from the strings of its library), as far as a solver run can use
-/// them; names that end in "_" are prefixes. Inner solvers have prefixes of their own.
+/// First words of PETSc 3.18's options (from the strings of its library), as far as a solver run
+/// can use them; names that end in "_" are prefixes. Inner solvers have prefixes of their own.
 constexpr std::array petsc_families{
     // solvers and algebra
     "snes_", "ksp_", "pc_", "mat_", "vec_", "ts_", "tao_", "is_", "sf_", "dm_", "ao_", "matptap_",
-    "matrart_", "matmatmult_", "mattransposematmult_", "matmattransmult_", "matmatmatmult_", "matstash_",
-    "matden2sp_", "matis_", "vecstash_", "vecscatter_", "splitreduction_", "random_", "petscpartitioner_",
+    "matrart_", "matmatmult_", "mattransposematmult_", "matmattransmult_", "matmatmatmult_",
+    "matstash_", "matden2sp_", "matis_", "vecstash_", "vecscatter_", "splitreduction_", "random_",
+    "petscpartitioner_",
     // inner solvers
     "mg_", "sub_", "npc_", "fieldsplit_", "redundant_", "telescope_", "esteig_", "inner_", "fas_",
     "pc_gamg_", "gamg_", "adapt_", "schur_", "bjkokkos_",
     // the session
     "log_", "options_", "viewer_", "malloc", "malloc_", "info", "info_", "on_error_", "fp_trap",
-    "memory_view", "citations", "version", "skip_petscrc", "nox", "nox_warning", "no_signal_handler",
-    "error_output_", "start_in_debugger", "stop_for_debugger", "debugger_", "debug_terminal", "display",
-    "check_pointer_intensity", "objects_dump", "get_total_flops", "mpi_", "mpidump", "shared_tmp",
-    "not_shared_tmp", "tmp", "draw_", "x_virtual", "saws_", "device_", "use_gpu_aware_mpi", "petsc_ci",
-    "checkfunctionlist", "python", "python_", "dll_"};
+    "memory_view", "citations", "version", "skip_petscrc", "nox", "nox_warning",
+    "no_signal_handler", "error_output_", "start_in_debugger", "stop_for_debugger", "debugger_",
+    "debug_terminal", "display", "check_pointer_intensity", "objects_dump", "get_total_flops",
+    "mpi_", "mpidump", "shared_tmp", "not_shared_tmp", "tmp", "draw_", "x_virtual", "saws_",
+    "device_", "use_gpu_aware_mpi", "petsc_ci", "checkfunctionlist", "python", "python_", "dll_"};
 
 /// The names people misspell most, for a better hint than a family alone.
-constexpr std::array petsc_names{
-    "snes_type", "snes_rtol", "snes_atol", "snes_stol", "snes_max_it", "snes_monitor", "snes_view",
-    "snes_converged_reason", "snes_linesearch_type", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it",
-    "ksp_monitor", "ksp_view", "ksp_converged_reason", "pc_type", "pc_factor_mat_solver_type", "log_view",
-    "options_left", "options_view"};
+constexpr std::array petsc_names{"snes_type",
+                                 "snes_rtol",
+                                 "snes_atol",
+                                 "snes_stol",
+                                 "snes_max_it",
+                                 "snes_monitor",
+                                 "snes_view",
+                                 "snes_converged_reason",
+                                 "snes_linesearch_type",
+                                 "ksp_type",
+                                 "ksp_rtol",
+                                 "ksp_atol",
+                                 "ksp_max_it",
+                                 "ksp_monitor",
+                                 "ksp_view",
+                                 "ksp_converged_reason",
+                                 "pc_type",
+                                 "pc_factor_mat_solver_type",
+                                 "log_view",
+                                 "options_left",
+                                 "options_view"};
 
 bool belongs(std::string_view name, std::string_view family) {
   return family.ends_with('_') ? name.starts_with(family) : name == family;
@@ -62,7 +81,8 @@ int distance_to_key(std::string_view name, std::string_view key) {
   if (const auto at = known.find("NAME"); at != std::string::npos) {
     const auto first = name.find('_');
     const auto second = first == std::string_view::npos ? first : name.find('_', first + 1);
-    if (second != std::string_view::npos) known.replace(at, 4, name.substr(first + 1, second - first - 1));
+    if (second != std::string_view::npos)
+      known.replace(at, 4, name.substr(first + 1, second - first - 1));
   }
   const std::string_view word = key.substr(key.rfind(' ') + 1);
   int best = distance(name, known);
@@ -82,23 +102,32 @@ bool is_petsc_option(std::string_view name) {
                      [&](std::string_view family) { return belongs(name, family); });
 }
 
-std::string nearest_option(std::string_view name, std::span<const OptionSpec> table) {
+std::string nearest_option(std::string_view option, std::span<const OptionSpec> table) {
+  std::string name(option);
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::string nearest;
-  int best = static_cast<int>(name.size()) + 100;
+  int best = std::max(2, static_cast<int>(name.size()) / 3) + 1;  // farther is no help
   const auto take = [&](std::string candidate, int far) {
     if (far < best) {
       best = far;
       nearest = std::move(candidate);
     }
   };
-  for (const OptionSpec& spec : table) take(std::string(spec.key), distance_to_key(name, spec.key));
+  for (const OptionSpec& spec : table) {
+    take(std::string(spec.key), distance_to_key(name, spec.key));
+    const std::string section(section_of(spec.key));
+    if (!section.empty()) take(section + ":", distance(name, section));
+  }
   for (const std::string_view known : petsc_names) take(std::string(known), distance(name, known));
   const auto cut = name.find('_');
-  if (cut == std::string_view::npos) return nearest;
-  const std::string_view first = name.substr(0, cut + 1), rest = name.substr(cut + 1);
+  if (cut == std::string::npos) return nearest;
+  const std::string first = name.substr(0, cut + 1), rest = name.substr(cut + 1);
   for (const std::string_view family : petsc_families) {
-    // Nothing vouches for the rest of the name, so a known name wins when both are as near.
-    if (family.ends_with('_')) take(std::string(family) + std::string(rest), distance(first, family));
+    // Nothing vouches for the rest of the name, so the first word must be nearly right.
+    constexpr int misspelt = 2;
+    const int far = distance(first, family);
+    if (family.ends_with('_') && far > 0 && far <= misspelt) take(std::string(family) + rest, far);
   }
   return nearest;
 }

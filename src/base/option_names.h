@@ -13,8 +13,8 @@ namespace floe {
 /// Whether PETSc (3.18) or one of the packages under it could ask for an option of this name.
 bool is_petsc_option(std::string_view name);
 
-/// The known name nearest to `name` (joined with "_"): a key of the table as in YAML, or, if that is
-/// nearer, one of PETSc's families with the rest of the name.
+/// The known name nearest to `name` (joined with "_"): a key of the table as in YAML, or, if that
+/// is nearer, one of PETSc's families with the rest of the name. Empty if nothing is near.
 std::string nearest_option(std::string_view name, std::span<const OptionSpec> table);
 
 }  // namespace floe

@@ -11,7 +11,8 @@ namespace {
 /// A YAML scalar: plain where that is safe, else in double quotes.
 std::string quoted(std::string_view value) {
   const auto safe = [](unsigned char c) {
-    return std::isalnum(c) || std::string_view("_./+-").find(static_cast<char>(c)) != std::string_view::npos;
+    return std::isalnum(c) ||
+           std::string_view("_./+-").find(static_cast<char>(c)) != std::string_view::npos;
   };
   const bool plain = std::all_of(value.begin(), value.end(), safe) && value.front() != '-';
   if (plain || to_number(value)) return std::string(value);
@@ -95,7 +96,8 @@ std::string help_markdown(std::span<const OptionSpec> table) {
   for (const OptionSpec& line : table) {
     if (section_of(line.key) != section) {
       section = section_of(line.key);
-      text += "\n## " + (section.empty() ? std::string("Top level") : "`" + std::string(section) + ":`") +
+      text += "\n## " +
+              (section.empty() ? std::string("Top level") : "`" + std::string(section) + ":`") +
               "\n\n| key | must be | default | |\n|---|---|---|---|\n";
     }
     text += "| `" + std::string(line.key) + "` | " + cell(allowed_text(line)) + " | " +

@@ -121,15 +121,22 @@ std::string allowed_text(const OptionSpec& spec) {
   const std::string range = spec.allowed.empty() ? "" : " " + std::string(spec.allowed);
   const std::string unit = spec.unit.empty() ? "" : " [" + std::string(spec.unit) + "]";
   switch (spec.kind) {
-    case Kind::flag: return "true or false";
-    case Kind::number: return "a finite number" + range + unit;
-    case Kind::integer: return "an integer" + range + unit;
-    case Kind::numbers: return std::to_string(spec.count) + " finite numbers" + range + unit;
+    case Kind::flag:
+      return "true or false";
+    case Kind::number:
+      return "a finite number" + range + unit;
+    case Kind::integer:
+      return "an integer" + range + unit;
+    case Kind::numbers:
+      return std::to_string(spec.count) + " finite numbers" + range + unit;
     case Kind::choice:
       return (choices_of(spec.allowed).size() > 1 ? "one of" + range : "the word" + range);
-    case Kind::choices: return "a list of" + range + ", none twice";
-    case Kind::names: return "a list of names (lower-case letters and digits, none twice)";
-    case Kind::text: return "a text";
+    case Kind::choices:
+      return "a list of" + range + ", none twice";
+    case Kind::names:
+      return "a list of names (lower-case letters and digits, none twice)";
+    case Kind::text:
+      return "a text";
   }
   return "";
 }

@@ -7,7 +7,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "floe/base/petsc.h"
 #include "option_names.h"
 #include "option_values.h"
 
@@ -34,8 +33,8 @@ std::string find_value(const std::string& option) {
   return value ? value : "";
 }
 
-/// Options that PetscInitialize has used already (log_view and the like). PETSc gives them only as one
-/// line of text; a word counts as an option if PETSc knows it as a used one.
+/// Options that PetscInitialize has used already (log_view and the like). PETSc gives them only as
+/// one line of text; a word counts as an option if PETSc knows it as a used one.
 Pairs used_options() {
   char* all = nullptr;
   check(PetscOptionsGetAll(nullptr, &all));
@@ -57,7 +56,8 @@ bool is_value(std::string_view fallback) { return !fallback.empty() && fallback.
 
 /// What PETSc asks for only while it ends.
 bool may_be_late(std::string_view name) {
-  constexpr std::array late{"options_left", "citations", "get_total_flops", "mpidump", "objects_dump"};
+  constexpr std::array late{"options_left",    "options_view", "citations",
+                            "get_total_flops", "mpidump",      "objects_dump"};
   return std::find(late.begin(), late.end(), name) != late.end() ||
          name.find("_view") != std::string_view::npos || name.starts_with("viewer_") ||
          name.starts_with("malloc_");
@@ -102,13 +102,16 @@ void Options::sort_given(const Pairs& database) {
       given_[name] = value;
     } else if (is_section(name)) {
       if (!value.empty() && value != "~" && value != "null")
-        throw InputError(name + ": is a section of options, not one with a value (" + shown(value) + ")");
+        throw InputError(name + ": is a section of options, not one with a value (" + shown(value) +
+                         ")");
       find_value(name);  // marks it as used
     } else if (is_petsc_option(name)) {
       petsc_.emplace_back(name, value);
     } else {
-      throw InputError(name + ": unknown option; the nearest known one is '" +
-                       nearest_option(name, table_) + "' (floe -help lists them)");
+      const std::string near = nearest_option(name, table_);
+      throw InputError(name + ": unknown option" +
+                       (near.empty() ? "" : "; the nearest known one is '" + near + "'") +
+                       " (floe -help lists them)");
     }
   }
 }
@@ -143,7 +146,8 @@ void Options::check_name_of(std::string_view option) const {
   for (const OptionSpec& line : table_) {
     if (!has_name(line.key)) continue;
     const std::string_view section = section_of(line.key);
-    if (!option.starts_with(std::string(section) + "_") || option == option_name(line.key)) continue;
+    if (!option.starts_with(std::string(section) + "_") || option == option_name(line.key))
+      continue;
     const std::string_view rest = option.substr(section.size() + 1);
     const auto cut = rest.find('_');
     if (cut == std::string_view::npos) continue;  // the list of names itself
@@ -171,7 +175,8 @@ void Options::check_sections_of_names() const {
 const OptionSpec& Options::spec(std::string_view key) const {
   const auto line = std::find_if(table_.begin(), table_.end(),
                                  [&](const OptionSpec& candidate) { return candidate.key == key; });
-  if (line == table_.end()) throw std::logic_error("not in the table of options: " + std::string(key));
+  if (line == table_.end())
+    throw std::logic_error("not in the table of options: " + std::string(key));
   return *line;
 }
 
@@ -229,7 +234,8 @@ bool Options::flag(std::string_view key, std::string_view name) {
   return *value;
 }
 
-double Options::number(std::string_view key, std::string_view name, std::optional<double> otherwise) {
+double Options::number(std::string_view key, std::string_view name,
+                       std::optional<double> otherwise) {
   const Reading reading = read(key, name);
   if (!reading.value && otherwise) {
     record(reading, shortest(*otherwise));
@@ -314,16 +320,30 @@ void Options::reject_unread() const {
   }
 }
 
+void throw_verdict(std::string verdict, MPI_Comm comm) {
+  auto length = static_cast<int>(verdict.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+  verdict.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(verdict.data(), length, MPI_CHAR, 0, comm);
+  if (!verdict.empty()) throw InputError(verdict);
+}
+
 void reject_unused_options() {
-  for (const auto& [name, value] : unused_options()) {
-    if (!may_be_late(name))
-      throw InputError(name + ": nothing in this run has asked for this PETSc option");
+  std::string verdict;
+  const Pairs unused = unused_options();
+  const auto first = std::find_if(unused.begin(), unused.end(),
+                                  [](const auto& option) { return !may_be_late(option.first); });
+  if (first != unused.end()) {
+    verdict = first->first + ": nothing in this run has asked for this PETSc option";
+    const std::string near = nearest_option(first->first, {});
+    if (!near.empty() && near != first->first) verdict += "; is it '" + near + "'?";
   }
+  throw_verdict(verdict, PETSC_COMM_WORLD);  // a rank may have asked for less than rank 0
 }
 
 void warn_unused_options() {
   for (const auto& [name, value] : unused_options()) {
-    if (rank() == 0 && name != "options_left" && name != "options_view")
+    if (rank() == 0 && !name.starts_with("options_"))
       std::fprintf(stderr, "floe: warning: %s: nothing in this run has asked for this option\n",
                    name.c_str());
   }

@@ -17,8 +17,9 @@
 namespace floe {
 namespace {
 
-constexpr std::size_t longest_key = 60;  // PETSc cuts longer names (PETSC_MAX_OPTION_NAME) in silence
-constexpr int deepest_key = 8;           // PETSc aborts beyond 25; also ends an alias that holds itself
+constexpr std::size_t longest_key =
+    60;                         // PETSc cuts longer names (PETSC_MAX_OPTION_NAME) in silence
+constexpr int deepest_key = 8;  // PETSc aborts beyond 25; also ends an alias that holds itself
 constexpr std::size_t largest_scene = 16U << 20;
 constexpr std::size_t longest_path = 4000;  // below PETSC_MAX_PATH_LEN
 
@@ -26,8 +27,11 @@ constexpr std::size_t longest_path = 4000;  // below PETSC_MAX_PATH_LEN
 constexpr std::array<std::string_view, 5> from_elsewhere{
     "options_file", "options_file_yaml", "options_string_yaml", "prefix_push", "prefix_pop"};
 /// Options that PETSc takes from the command line only, and wants true or false for, or aborts.
-constexpr std::array<std::string_view, 4> command_line_only{"help", "options_monitor",
-                                                            "options_monitor_cancel", "skip_petscrc"};
+constexpr std::array<std::string_view, 5> command_line_only{
+    "help", "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci"};
+/// PETSc would begin a file of its own before we could refuse the word as unknown.
+constexpr auto begins_a_file = "history";
+constexpr auto not_history = ": unknown option; the nearest known one is 'output: history'";
 
 template <std::size_t N>
 bool contains(const std::array<std::string_view, N>& words, std::string_view word) {
@@ -50,14 +54,14 @@ std::string lower(std::string_view text) {
 
 void check_option(std::string_view word, std::string_view value) {
   const std::string shown_word = shown(word);
-  if (word.starts_with("--"))
-    throw InputError(shown_word + ": options have one dash: -key value");
+  if (word.starts_with("--")) throw InputError(shown_word + ": options have one dash: -key value");
   if (word.find('=') != std::string_view::npos)
     throw InputError(shown_word + ": options are written -key value, without '='");
   if (word.size() > longest_key) throw InputError(shown_word + ": longer than any option");
   const std::string_view name = word.substr(1);
   if (contains(from_elsewhere, name))
     throw InputError(shown_word + ": not supported; put the options into the scene");
+  if (name == begins_a_file) throw InputError(shown_word + not_history);
   if (contains(command_line_only, name) && !to_flag(value))
     throw InputError(shown_word + ": " + shown(value) + " must be true or false");
 }
@@ -107,7 +111,8 @@ class SceneText {
     if (parser_.error == YAML_READER_ERROR)
       throw InputError(path_ + ": not a YAML text: " + problem + " (byte " +
                        std::to_string(parser_.problem_offset) + ")");
-    throw InputError(path_ + ": line " + std::to_string(parser_.problem_mark.line + 1) + ": " + problem);
+    throw InputError(path_ + ": line " + std::to_string(parser_.problem_mark.line + 1) + ": " +
+                     problem);
   }
 
   [[noreturn]] void refuse(const yaml_node_t& node, const std::string& why) const {
@@ -130,6 +135,7 @@ class SceneText {
     if (joined.size() > longest_key) refuse(node, shown(joined) + " is longer than any key");
     if (contains(from_elsewhere, joined) || contains(command_line_only, joined))
       refuse(node, joined + " is for the command line or not supported, not for a scene");
+    if (joined == begins_a_file) refuse(node, joined + not_history);
     // PETSc does not tell upper from lower case.
     const auto [first, fresh] = lines_.try_emplace(lower(joined), node.start_mark.line + 1);
     if (!fresh)
@@ -140,7 +146,8 @@ class SceneText {
   void check_map(yaml_document_t* document, const yaml_node_t& map, const std::string& prefix,
                  int depth) {
     if (depth > deepest_key) refuse(map, "nested deeper than any key");
-    for (const auto* pair = map.data.mapping.pairs.start; pair < map.data.mapping.pairs.top; ++pair) {
+    for (const auto* pair = map.data.mapping.pairs.start; pair < map.data.mapping.pairs.top;
+         ++pair) {
       const yaml_node_t& key = *yaml_document_get_node(document, pair->key);
       const yaml_node_t& value = *yaml_document_get_node(document, pair->value);
       const std::string joined = checked_key(key, prefix);
@@ -149,8 +156,10 @@ class SceneText {
     }
   }
 
-  void check_list(yaml_document_t* document, const yaml_node_t& list, const std::string& key) const {
-    for (const auto* item = list.data.sequence.items.start; item < list.data.sequence.items.top; ++item) {
+  void check_list(yaml_document_t* document, const yaml_node_t& list,
+                  const std::string& key) const {
+    for (const auto* item = list.data.sequence.items.start; item < list.data.sequence.items.top;
+         ++item) {
       const yaml_node_t& node = *yaml_document_get_node(document, *item);
       if (node.type != YAML_SCALAR_NODE || scalar(node).empty())
         refuse(node, key + ": a list holds plain values only");
@@ -169,8 +178,9 @@ std::string read_file(const std::string& path) {
   if (stat(path.c_str(), &status) != 0)
     throw InputError("scene " + shown(path) + ": " + std::strerror(errno));
   if (!S_ISREG(status.st_mode))
-    throw InputError("scene " + shown(path) + ": " +
-                     (S_ISDIR(status.st_mode) ? "is a directory, not a file" : "is not a regular file"));
+    throw InputError(
+        "scene " + shown(path) + ": " +
+        (S_ISDIR(status.st_mode) ? "is a directory, not a file" : "is not a regular file"));
   if (static_cast<std::size_t>(status.st_size) > largest_scene)
     throw InputError("scene " + shown(path) + ": too large for a scene");
   std::ifstream file(path, std::ios::binary);
@@ -200,8 +210,7 @@ std::string check_command_line(int argc, const char* const* argv) {
     throw InputError(std::string("no scene is named; ") + usage);
   for (int k = 2; k < argc; ++k) {
     const std::string_view word = argv[k];
-    if (!is_option(word))
-      throw InputError(shown(word) + ": belongs to no option; " + usage);
+    if (!is_option(word)) throw InputError(shown(word) + ": belongs to no option; " + usage);
     const bool has_value = k + 1 < argc && !is_option(argv[k + 1]);
     check_option(word, has_value ? argv[k + 1] : "");
     if (has_value) ++k;
@@ -219,11 +228,7 @@ void read_scene_text(const std::string& path, MPI_Comm comm) {
       verdict = error.what();
     }
   }
-  auto length = static_cast<int>(verdict.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  verdict.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(verdict.data(), length, MPI_CHAR, 0, comm);
-  if (!verdict.empty()) throw InputError(verdict);
+  throw_verdict(std::move(verdict), comm);
 }
 
 }  // namespace floe

@@ -7,8 +7,8 @@ namespace {
 
 using enum Kind;
 
-// A new key is one line here and one where scene.cpp reads it. Words of a choice stand in the order of
-// their enum. Columns: key, kind, default, unit, allowed, doc, count.
+// A new key is one line here and one where scene.cpp reads it. Words of a choice stand in the order
+// of their enum. Columns: key, kind, default, unit, allowed, doc, count.
 constexpr std::array table{
     OptionSpec{"integrator", choice, "quasistatic", "", "quasistatic",
                "how the state moves on: static equilibrium at each load step"},
@@ -22,7 +22,8 @@ constexpr std::array table{
     OptionSpec{"check", flag, "false", "", "",
                "read, mesh and build everything, write nothing, stop before the run"},
 
-    OptionSpec{"sheet: length", number, "40", "m", "> 0", "extent in x; the plan is centred on the origin"},
+    OptionSpec{"sheet: length", number, "40", "m", "> 0",
+               "extent in x; the plan is centred on the origin"},
     OptionSpec{"sheet: width", number, "(sheet: length)", "m", "> 0", "extent in y"},
     OptionSpec{"sheet: thickness", number, "1", "m", "> 0", "extent in z"},
     OptionSpec{"sheet: element_size", number, "2", "m", "> 0",
@@ -30,12 +31,15 @@ constexpr std::array table{
     OptionSpec{"sheet: seed", integer, "1", "", ">= 0",
                "of the random generators: same seed, same mesh, on any number of ranks"},
     OptionSpec{"sheet: relaxation", choice, "lloyd", "", "lloyd | quasi_newton",
-               "how cells become centroidal: Lloyd's algorithm (Du et al. 1999) or L-BFGS (Liu et al. 2009)"},
-    OptionSpec{"sheet: iterations", integer, "150", "", ">= 0", "most iterations of the relaxation"},
+               "how cells become centroidal: Lloyd's algorithm (Du et al. 1999) or L-BFGS (Liu et "
+               "al. 2009)"},
+    OptionSpec{"sheet: iterations", integer, "150", "", ">= 0",
+               "most iterations of the relaxation"},
     OptionSpec{"sheet: tolerance", number, "0", "", ">= 0",
                "the relaxation ends when no generator moves by more than this times element_size"},
 
-    OptionSpec{"region: names", names, "(none)", "", "", "further sets of bodies: one section each"},
+    OptionSpec{"region: names", names, "(none)", "", "",
+               "further sets of bodies: one section each"},
     OptionSpec{"region: NAME: box", numbers, "(required)", "m", "",
                "x0, x1, y0, y1, z0, z1: the set is the bodies with their centroid inside", 6},
     OptionSpec{"cut: names", names, "(none)", "", "", "cuts through the sheet: one section each"},
@@ -47,8 +51,9 @@ constexpr std::array table{
     OptionSpec{"ice: poisson", number, "0.3", "", "in (-1, 0.5)", "Poisson's ratio of the beams"},
     OptionSpec{"ice: density", number, "920", "kg/m^3", "> 0", "density of the bodies"},
 
-    OptionSpec{"beam: shear", choice, "one_point", "", "one_point | exact | none",
-               "transverse stiffness: one-point Timoshenko, locking-free Timoshenko, Euler-Bernoulli"},
+    OptionSpec{
+        "beam: shear", choice, "one_point", "", "one_point | exact | none",
+        "transverse stiffness: one-point Timoshenko, locking-free Timoshenko, Euler-Bernoulli"},
     OptionSpec{"beam: shear_factor", number, "0.8333333333333334", "", "> 0",
                "shear correction of the section, 5/6 for a rectangle"},
     OptionSpec{"beam: torsion", choice, "saint_venant", "", "saint_venant | polar",
@@ -56,33 +61,40 @@ constexpr std::array table{
     OptionSpec{"beam: kinematics", choice, "corotational", "", "corotational | linear",
                "any rotation (Crisfield 1990), or small displacements and rotations"},
 
-    OptionSpec{"water: density", number, "1010", "kg/m^3", "> 0", "density of the water; its level is z = 0"},
+    OptionSpec{"water: density", number, "1010", "kg/m^3", "> 0",
+               "density of the water; its level is z = 0"},
 
     OptionSpec{"boundary: names", names, "(none)", "", "", "prescribed motions: one section each"},
     OptionSpec{"boundary: NAME: set", text, "(required)", "", "", "the set of bodies"},
     OptionSpec{"boundary: NAME: fix", choices, "(required)", "", "x | y | z | rx | ry | rz",
                "the components that are prescribed; all others are free"},
-    OptionSpec{"boundary: NAME: velocity", numbers, "0 0 0", "m/s", "", "of the fixed components", 3},
+    OptionSpec{"boundary: NAME: velocity", numbers, "0 0 0", "m/s", "", "of the fixed components",
+               3},
     OptionSpec{"boundary: NAME: displacement", numbers, "(velocity)", "m", "",
                "of the fixed components, instead of velocity", 3},
-    OptionSpec{"boundary: NAME: angular_velocity", numbers, "0 0 0", "rad/s", "", "of the fixed components",
-               3},
-    OptionSpec{"boundary: NAME: ramp", number, "0", "s", ">= 0", "the motion rises linearly over this time"},
+    OptionSpec{"boundary: NAME: angular_velocity", numbers, "0 0 0", "rad/s", "",
+               "of the fixed components", 3},
+    OptionSpec{"boundary: NAME: ramp", number, "0", "s", ">= 0",
+               "the motion rises linearly over this time"},
 
-    OptionSpec{"load: names", names, "(none)", "", "", "dead loads in world axes: one section each"},
+    OptionSpec{"load: names", names, "(none)", "", "",
+               "dead loads in world axes: one section each"},
     OptionSpec{"load: NAME: set", text, "(point)", "", "",
                "the set of bodies that share the load equally; either this or point"},
-    OptionSpec{"load: NAME: point", numbers, "(set)", "m", "", "x, y: the nearest body carries the load", 2},
+    OptionSpec{"load: NAME: point", numbers, "(set)", "m", "",
+               "x, y: the nearest body carries the load", 2},
     OptionSpec{"load: NAME: force", numbers, "0 0 0", "N", "", "the total force", 3},
     OptionSpec{"load: NAME: moment", numbers, "0 0 0", "N m", "", "the total moment", 3},
-    OptionSpec{"load: NAME: ramp", number, "0", "s", ">= 0", "the load rises linearly over this time"},
+    OptionSpec{"load: NAME: ramp", number, "0", "s", ">= 0",
+               "the load rises linearly over this time"},
 
     OptionSpec{"time: end", number, "1", "s", "> 0",
                "end of the pseudo-time, from 0; what has no ramp acts fully all the time"},
     OptionSpec{"time: dt", number, "(time: end)", "s", "> 0", "load step"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
-    OptionSpec{"output: history", number, "(every load step)", "s", "> 0", "between rows of history.csv"},
+    OptionSpec{"output: history", number, "(every load step)", "s", "> 0",
+               "between rows of history.csv"},
     OptionSpec{"output: fields", number, "(first and last state)", "s", "> 0",
                "between frames of fields.h5"},
 };

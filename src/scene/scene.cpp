@@ -55,13 +55,14 @@ void read_sheet(Options& options, Scene& scene) {
   const double shorter = std::min(plan.length, plan.width);
   if (plan.element_size > shorter)
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
-                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") + text_of(shorter) +
-                     " [m]");
+                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
+                     text_of(shorter) + " [m]");
   constexpr double most_bodies = 1e8;  // indices of beams and facets are 32-bit
   const double bodies = (plan.length / plan.element_size) * (plan.width / plan.element_size);
   if (bodies > most_bodies)
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +
-                     text_of(bodies) + " bodies, at most " + text_of(most_bodies) + " are possible");
+                     text_of(bodies) + " bodies, at most " + text_of(most_bodies) +
+                     " are possible");
 }
 
 void read_ice(Options& options, Scene& scene) {
@@ -77,7 +78,8 @@ void read_lattice_source(Options& options, Scene& scene) {
   scene.has_sheet = options.given_section("sheet");
   const bool has_file = options.given("lattice_file");
   if (scene.has_sheet && has_file)
-    throw InputError("lattice_file: a scene has either 'sheet' or 'lattice_file', this one has both");
+    throw InputError(
+        "lattice_file: a scene has either 'sheet' or 'lattice_file', this one has both");
   if (!scene.has_sheet && !has_file)
     throw InputError("sheet: a scene needs either 'sheet' or 'lattice_file', this one has neither");
   if (scene.has_sheet) {
@@ -96,7 +98,8 @@ void read_regions_and_cuts(Options& options, Scene& scene) {
     const Region region{name, options.numbers<6>("region: NAME: box", name)};
     const auto& box = region.box;
     if (box[0] > box[1] || box[2] > box[3] || box[4] > box[5])
-      throw InputError("region: " + name + ": box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, "
+      throw InputError("region: " + name +
+                       ": box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, "
                        "y0 <= y1, z0 <= z1 [m]");
     const auto last = scene.has_sheet ? sheet_sets.begin() : sheet_sets.end() - 1;
     if (std::find(last, sheet_sets.end(), name) != sheet_sets.end())
@@ -117,8 +120,8 @@ void check_fixed(const Boundary& boundary, const std::string& key, const Point3&
   for (std::size_t k = 0; k < 3; ++k) {
     if (values[k] != 0 && !boundary.fixed[first + k])
       throw InputError("boundary: " + boundary.name + ": " + key + ": " + text_of(values[k]) +
-                       " has no effect: '" + std::string(components[first + k]) + "' is not in 'boundary: " +
-                       boundary.name + ": fix'");
+                       " has no effect: '" + std::string(components[first + k]) +
+                       "' is not in 'boundary: " + boundary.name + ": fix'");
   }
 }
 
@@ -184,14 +187,18 @@ void read_report(Options& options, Scene& scene) {
   }
 }
 
-/// Why results cannot be written below `dir`, or nothing. Looks, but makes nothing.
-std::string output_problem(const std::filesystem::path& dir) {
+/// Why results cannot be written to `dir`, or nothing. Looks, but makes nothing.
+std::string output_problem(const std::string& dir) {
   std::error_code error;
   std::filesystem::path there = std::filesystem::absolute(dir, error);
-  while (!std::filesystem::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  // A link to nowhere counts as being there: no folder can be made in its place.
+  while (!std::filesystem::exists(std::filesystem::symlink_status(there, error)) &&
+         there.has_relative_path())
+    there = there.parent_path();
   if (!std::filesystem::is_directory(there, error))
-    return "'" + there.string() + "' is not a folder";
-  if (access(there.c_str(), W_OK | X_OK) != 0) return "'" + there.string() + "' is not writable";
+    return "output: dir: " + dir + " cannot be a folder: " + there.string() + " is not one";
+  if (access(there.c_str(), W_OK | X_OK) != 0)
+    return "output: dir: " + dir + " cannot be written: no permission for " + there.string();
   return {};
 }
 
@@ -199,14 +206,7 @@ void read_output(Options& options, Scene& scene) {
   scene.output.dir = options.text("output: dir", {}, "out/" + scene.name);
   if (options.given("output: history")) scene.output.history = options.number("output: history");
   if (options.given("output: fields")) scene.output.fields = options.number("output: fields");
-  // Only rank 0 writes, and its verdict is everybody's.
-  std::string problem = rank() == 0 ? output_problem(scene.output.dir) : std::string();
-  auto length = static_cast<int>(problem.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, PETSC_COMM_WORLD);
-  problem.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(problem.data(), length, MPI_CHAR, 0, PETSC_COMM_WORLD);
-  if (!problem.empty())
-    throw InputError("output: dir: " + scene.output.dir + " cannot be made: " + problem);
+  throw_verdict(rank() == 0 ? output_problem(scene.output.dir) : "", PETSC_COMM_WORLD);
 }
 
 /// A floating sheet needs a draft within its thickness.
@@ -236,7 +236,8 @@ Scene read_scene(const std::string& path) {
   check_floats(scene);
   for (const std::string& name : options.names("boundary"))
     scene.boundaries.push_back(read_boundary(options, name));
-  for (const std::string& name : options.names("load")) scene.loads.push_back(read_load(options, name));
+  for (const std::string& name : options.names("load"))
+    scene.loads.push_back(read_load(options, name));
   read_time(options, scene);
   read_report(options, scene);
   read_output(options, scene);
@@ -249,8 +250,10 @@ Scene read_scene(const std::string& path) {
 std::string options_help() {
   return "floe: a floating ice sheet as rigid bodies joined by beams\n\n"
          "usage: floe SCENE.yaml [-key value ...]      (or: mpiexec -n N floe ...)\n\n"
-         "Options nest in the scene (sheet: {length: 40}) and join on the command line (-sheet_length 40),\n"
-         "which wins. Lists are separated by commas or blanks. Solver options are PETSc's own: -snes_*,\n"
+         "Options nest in the scene (sheet: {length: 40}) and join on the command line "
+         "(-sheet_length 40),\n"
+         "which wins. Lists are separated by commas or blanks. Solver options are PETSc's own: "
+         "-snes_*,\n"
          "-ksp_*, -pc_*, -log_view, ...\n\n" +
          help_text(scene_keys());
 }
@@ -258,10 +261,14 @@ std::string options_help() {
 std::string options_markdown() {
   return "# Options\n\n"
          "Written by `floe -help_markdown` from the table in `src/scene/keys.cpp`; do not edit.\n\n"
-         "In a scene, options nest (`sheet: {length: 40}`); on the command line they join with `_`\n"
-         "(`-sheet_length 40`) and win over the scene. Lists are separated by commas or blanks. `NAME`\n"
-         "stands for each name of the section's list `names`. An option that would have no effect is an\n"
-         "error. Solver options are PETSc's own (`-snes_*`, `-ksp_*`, `-pc_*`, `-log_view`, ...).\n" +
+         "In a scene, options nest (`sheet: {length: 40}`); on the command line they join with "
+         "`_`\n"
+         "(`-sheet_length 40`) and win over the scene. Lists are separated by commas or blanks. "
+         "`NAME`\n"
+         "stands for each name of the section's list `names`. An option that would have no effect "
+         "is an\n"
+         "error. Solver options are PETSc's own (`-snes_*`, `-ksp_*`, `-pc_*`, `-log_view`, "
+         "...).\n" +
          help_markdown(scene_keys());
 }
 

@@ -1,8 +1,8 @@
 /// \file
-/// A table of options and the one reader of their values. The table gives every option's name, type,
-/// default, unit, range and doc; `floe -help`, docs/options.md and all error messages come from it.
-/// Values lie in PETSc's options database (scene file, then command line) and are read as text, because
-/// PETSc's own readers accept nan, too many numbers and trailing words.
+/// A table of options and the one reader of their values. The table gives every option's name,
+/// type, default, unit, range and doc; `floe -help`, docs/options.md and all error messages come
+/// from it. Values lie in PETSc's options database (scene file, then command line) and are read as
+/// text, because PETSc's own readers accept nan, too many numbers and trailing words.
 #pragma once
 
 #include <array>
@@ -14,6 +14,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "floe/base/petsc.h"
 
 namespace floe {
 
@@ -31,25 +33,30 @@ enum class Kind {
 
 /// One line of the table.
 struct OptionSpec {
-  /// As in YAML: "sheet: length"; "boundary: NAME: fix" for each name of the list "boundary: names".
-  /// With "_" instead of ": " it is the option of the command line and of PETSc's database.
+  /// As in YAML: "sheet: length"; "boundary: NAME: fix" for each name of the list "boundary:
+  /// names". With "_" instead of ": " it is the option of the command line and of PETSc's database.
   std::string_view key;
   Kind kind;
-  /// Default as text; in parentheses if it is no value: "(required)", or what happens without the option.
+  /// Default as text; in parentheses if it is no value: "(required)", or what happens without the
+  /// option.
   std::string_view fallback;
-  std::string_view unit;     ///< empty: a pure number, or no number
-  std::string_view allowed;  ///< numbers: "", "> 0", ">= 0" or "in (-1, 0.5)"; words: "one | two | three"
+  std::string_view unit;  ///< empty: a pure number, or no number
+  std::string_view
+      allowed;  ///< numbers: "", "> 0", ">= 0" or "in (-1, 0.5)"; words: "one | two | three"
   std::string_view doc;
   int count = 1;  ///< of Kind::numbers
 };
 
-/// The options given to this run, read by the keys of the table. Every error is an InputError of one line
-/// that names key, value and what is allowed; all ranks hold the same database, so all ranks raise it.
+/// The options given to this run, read by the keys of the table. Every error is an InputError of
+/// one line that names key, value and what is allowed; all ranks hold the same database, so all
+/// ranks raise it.
 class Options {
  public:
   /// Looks at everything in PETSc's database.
-  /// \throws InputError if an option is neither in the table nor of one of PETSc's families, with the
-  ///         nearest known name; or if a section NAME is not listed in `names`, or listed without a section.
+  /// \throws InputError if an option is neither in the table nor of one of PETSc's families, with
+  /// the
+  ///         nearest known name; or if a section NAME is not listed in `names`, or listed without a
+  ///         section.
   explicit Options(std::span<const OptionSpec> table);
 
   /// Whether an option has been given. `name` stands for NAME in the key.
@@ -61,7 +68,8 @@ class Options {
 
   // Each option is read once, by one of these. Without a value in the table `otherwise` is taken.
   bool flag(std::string_view key, std::string_view name = {});
-  double number(std::string_view key, std::string_view name = {}, std::optional<double> otherwise = {});
+  double number(std::string_view key, std::string_view name = {},
+                std::optional<double> otherwise = {});
   std::int64_t integer(std::string_view key, std::string_view name = {});
   std::string text(std::string_view key, std::string_view name = {},
                    std::optional<std::string> otherwise = {});
@@ -103,17 +111,24 @@ class Options {
   void check_sections_of_names() const;
 
   std::span<const OptionSpec> table_;
-  std::map<std::string, std::string, std::less<>> given_;  ///< ours, by the name in the database
+  std::map<std::string, std::string, std::less<>> given_;   ///< ours, by the name in the database
   std::vector<std::pair<std::string, std::string>> petsc_;  ///< PETSc's
   std::map<std::string, std::vector<std::string>, std::less<>> names_;  ///< by section
-  std::map<std::string, std::string, std::less<>> read_;  ///< values as read, by name in the database
+  std::map<std::string, std::string, std::less<>>
+      read_;  ///< values as read, by name in the database
 };
 
-/// Throws InputError naming the first option of PETSc's database that nothing has asked for. To be called
-/// after the first solve (MUMPS reads late). Viewers are exempt: they may be asked for at the end.
+/// Throws InputError with rank 0's verdict on all ranks, unless it is empty: for what one rank
+/// looks at and all must agree on. Collective; works before PetscInitialize too.
+void throw_verdict(std::string verdict, MPI_Comm comm);
+
+/// Throws InputError naming the first option of PETSc's database that nothing has asked for.
+/// Collective; to be called after the first solve (MUMPS reads late). Viewers are exempt: they may
+/// be asked for at the end.
 void reject_unused_options();
 
-/// Warns on rank 0's standard error of every option that nothing has asked for. To be called at the end.
+/// Warns on rank 0's standard error of every option that nothing has asked for. To be called at the
+/// end.
 void warn_unused_options();
 
 /// A table as text for a terminal, and as Markdown.

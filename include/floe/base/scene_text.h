@@ -1,6 +1,6 @@
 /// \file
-/// The command line and the text of a scene, looked at before PETSc takes them: PETSc aborts, hangs or
-/// says nothing where a user needs one clear line.
+/// The command line and the text of a scene, looked at before PETSc takes them: PETSc aborts, hangs
+/// or says nothing where a user needs one clear line.
 #pragma once
 
 #include <string>
@@ -16,14 +16,15 @@ enum class Help { none, text, markdown };
 Help wants_help(int argc, const char* const* argv);
 
 /// The path of the scene, the first word of the command line.
-/// \throws InputError if it is missing, or for stray words, --key, -key=value, and what PETSc would take
+/// \throws InputError if it is missing, or for stray words, --key, -key=value, and what PETSc would
+/// take
 ///         from elsewhere (-options_file and its kin).
 std::string check_command_line(int argc, const char* const* argv);
 
-/// Checks that PETSc can read the scene: a regular file, one YAML document, a map of plain keys to values,
-/// lists of plain values or maps; no key given twice, nor two that join to one name. Collective: rank 0
-/// reads, all ranks throw the same.
-/// \throws InputError with the file's name and the line.
+/// Checks that PETSc can read the scene: a regular file, one YAML document, a map of plain keys to
+/// values, lists of plain values or maps; no key given twice, nor two that join to one name.
+/// Collective: rank 0 reads, all ranks throw the same. \throws InputError with the file's name and
+/// the line.
 void read_scene_text(const std::string& path, MPI_Comm comm = MPI_COMM_WORLD);
 
 }  // namespace floe

@@ -1,0 +1,383 @@
+// Options: the table's reader, the scene's keys, the command line and the text of a scene.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "base/option_names.h"
+#include "base/option_values.h"
+#include "floe/base/options.h"
+#include "floe/base/scene_text.h"
+#include "floe/scene.h"
+#include "scene/keys.h"
+
+namespace floe {
+namespace {
+
+/// The message of the InputError that `call` throws, "" if it throws none.
+template <class Call>
+std::string error_of(Call&& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+constexpr auto minimal = "forces: [beam, gravity, buoyancy]\nsheet: {length: 40}\n";
+
+class SceneOptions : public testing::Test {
+ protected:
+  void SetUp() override { check(PetscOptionsClear(nullptr)); }
+  void TearDown() override { check(PetscOptionsClear(nullptr)); }
+
+  static void add(const std::string& yaml) {
+    check(PetscOptionsInsertStringYAML(nullptr, yaml.c_str()));
+  }
+  static Scene scene_of(const std::string& yaml) {
+    check(PetscOptionsClear(nullptr));
+    add(yaml);
+    return read_scene("folder/story.yaml");
+  }
+  static std::string scene_error(const std::string& yaml) {
+    return error_of([&] { scene_of(yaml); });
+  }
+  /// Of the minimal scene with one more line.
+  static std::string error_with(const std::string& line) { return scene_error(minimal + line); }
+};
+
+TEST(OptionValues, AreConvertedStrictly) {
+  EXPECT_EQ(to_number(" 4e9 "), 4e9);
+  EXPECT_EQ(to_number("+.5"), 0.5);
+  EXPECT_EQ(to_number("-1e4"), -1e4);
+  for (const auto* bad :
+       {"", " ", "nan", "inf", "-inf", "1e999", "3m", "1 2", "0x10", "+-1", "1,2", "--1"})
+    EXPECT_FALSE(to_number(bad)) << bad;
+  EXPECT_EQ(to_integer("9223372036854775807"), 9223372036854775807);
+  for (const auto* bad : {"", "1.5", "1e3", "9223372036854775808", "x"})
+    EXPECT_FALSE(to_integer(bad)) << bad;
+  for (const auto* yes : {"", "true", "Yes", "1"}) EXPECT_EQ(to_flag(yes), true) << yes;
+  for (const auto* no : {"false", "NO", "0"}) EXPECT_EQ(to_flag(no), false) << no;
+  EXPECT_FALSE(to_flag("maybe"));
+}
+
+TEST(OptionValues, ListsAreSeparatedByCommasOrBlanks) {
+  using List = std::vector<std::string>;
+  EXPECT_EQ(to_list("a,b"), (List{"a", "b"}));
+  EXPECT_EQ(to_list(" a b ,  c "), (List{"a", "b", "c"}));
+  EXPECT_EQ(to_list(""), List{});
+  for (const auto* bad : {"a,,b", ",a", "a,", ","}) EXPECT_FALSE(to_list(bad)) << bad;
+}
+
+TEST(OptionValues, RangesAreOpenOrClosedAsWritten) {
+  EXPECT_FALSE(in_range(0, "> 0"));
+  EXPECT_TRUE(in_range(0, ">= 0"));
+  EXPECT_TRUE(in_range(0.49, "in (-1, 0.5)"));
+  EXPECT_FALSE(in_range(0.5, "in (-1, 0.5)"));
+  EXPECT_FALSE(in_range(-1, "in (-1, 0.5)"));
+  EXPECT_TRUE(in_range(-7, ""));
+  EXPECT_THROW(in_range(0, "about 3"), std::logic_error);
+}
+
+TEST(OptionNames, NearestIsASpellingOrTheRightWordInTheWrongSection) {
+  const auto nearest = [](const char* name) { return nearest_option(name, scene_keys()); };
+  EXPECT_EQ(nearest("shet_length"), "sheet: length");
+  EXPECT_EQ(nearest("sheet_lenght"), "sheet: length");
+  EXPECT_EQ(nearest("length"), "sheet: length");
+  EXPECT_EQ(nearest("ice_thickness"), "sheet: thickness");
+  EXPECT_EQ(nearest("boundary_push_fx"), "boundary: NAME: fix");
+  EXPECT_EQ(nearest("shet"), "sheet:");
+  EXPECT_EQ(nearest("kps_type"), "ksp_type");
+  EXPECT_EQ(nearest("sness_divergence_tolerance"), "snes_divergence_tolerance");
+  EXPECT_EQ(nearest("colour"), "");
+}
+
+TEST(OptionNames, PetscFamiliesAreLeftToPetsc) {
+  for (const auto* name :
+       {"snes_rtol", "ksp_type", "pc_factor_mat_solver_type", "mat_mumps_icntl_14", "log_view",
+        "options_left", "fieldsplit_0_ksp_type", "info", "malloc_debug"})
+    EXPECT_TRUE(is_petsc_option(name)) << name;
+  for (const auto* name : {"foo", "sheet_length", "history", "information", "snes"})
+    EXPECT_FALSE(is_petsc_option(name)) << name;
+}
+
+TEST(SceneKeys, TableIsConsistent) {
+  for (const OptionSpec& line : scene_keys()) {
+    EXPECT_FALSE(is_petsc_option(option_name(line.key))) << line.key;
+    EXPECT_FALSE(line.doc.empty()) << line.key;
+    EXPECT_EQ(line.kind == Kind::numbers, line.count > 1) << line.key;
+    if (line.kind != Kind::number) continue;
+    EXPECT_NO_THROW(in_range(1, line.allowed)) << line.key;
+  }
+}
+
+TEST_F(SceneOptions, DefaultsOfTheTableAreThoseOfTheStructs) {
+  const Scene scene = scene_of("forces: [beam, gravity, buoyancy]\nsheet: {seed: 1}\n");
+  const Scene plain;
+  EXPECT_EQ(scene.sheet.length, plain.sheet.length);
+  EXPECT_EQ(scene.sheet.width, plain.sheet.width);
+  EXPECT_EQ(scene.sheet.element_size, plain.sheet.element_size);
+  EXPECT_EQ(scene.sheet.seed, plain.sheet.seed);
+  EXPECT_EQ(scene.sheet.relaxation, plain.sheet.relaxation);
+  EXPECT_EQ(scene.sheet.iterations, plain.sheet.iterations);
+  EXPECT_EQ(scene.sheet.tolerance, plain.sheet.tolerance);
+  EXPECT_EQ(scene.thickness, plain.thickness);
+  EXPECT_EQ(scene.ice.young, plain.ice.young);
+  EXPECT_EQ(scene.ice.poisson, plain.ice.poisson);
+  EXPECT_EQ(scene.ice.density, plain.ice.density);
+  EXPECT_EQ(scene.shear_factor, plain.shear_factor);
+  EXPECT_EQ(scene.torsion, plain.torsion);
+  EXPECT_EQ(scene.beam.shear, plain.beam.shear);
+  EXPECT_EQ(scene.beam.kinematics, plain.beam.kinematics);
+  EXPECT_EQ(scene.gravity, plain.gravity);
+  EXPECT_EQ(scene.water_density, plain.water_density);
+  EXPECT_EQ(scene.time.end, plain.time.end);
+  EXPECT_EQ(scene.time.dt, plain.time.dt);
+  EXPECT_EQ(scene.output.history, plain.output.history);
+  EXPECT_EQ(scene.output.fields, plain.output.fields);
+  EXPECT_EQ(scene.check_only, plain.check_only);
+  EXPECT_EQ(scene.name, "story");
+  EXPECT_EQ(scene.output.dir, "out/story");
+}
+
+TEST_F(SceneOptions, EveryKeyArrivesInItsPlace) {
+  const Scene s = scene_of(
+      "integrator: quasistatic\nforces: beam gravity, buoyancy\ngravity: 1.62\nreport: [bending, "
+      "tension]\n"
+      "check: yes\n"
+      "sheet: {length: 10, width: 8, thickness: 0.5, element_size: 1, seed: 9223372036854775807,\n"
+      "  relaxation: quasi_newton, iterations: 3, tolerance: 1e-6}\n"
+      "region: {names: [r, 2b], r: {box: [0, 1, 2, 3, 4, 5]}, 2b: {box: -1 1 -1 1 -1 1}}\n"
+      "cut: {names: c, c: {from: [1, 2], to: [3, 4]}}\n"
+      "ice: {young: 1e9, poisson: 0.25, density: 900}\n"
+      "beam: {shear: none, shear_factor: 0.9, torsion: polar, kinematics: linear}\n"
+      "water: {density: 1025}\n"
+      "boundary:\n  names: [a, b]\n"
+      "  a: {set: left, fix: [x, rz], velocity: [0.1, 0, 0], angular_velocity: [0, 0, 2], ramp: "
+      "3}\n"
+      "  b: {set: r, fix: z, displacement: [0, 0, -1]}\n"
+      "load:\n  names: [p, q]\n"
+      "  p: {point: [1, 2], force: [1, 2, 3], moment: [4, 5, 6], ramp: 7}\n"
+      "  q: {set: right, force: [0, 0, 1]}\n"
+      "time: {end: 4, dt: 0.5}\noutput: {dir: some where, history: 0.1, fields: 0.2}\n");
+  EXPECT_TRUE(s.forces.beam && s.forces.gravity && s.forces.buoyancy && s.has_sheet &&
+              s.check_only);
+  EXPECT_TRUE(s.report.bending && s.report.tension);
+  EXPECT_EQ(s.gravity, 1.62);
+  EXPECT_EQ(s.sheet.width, 8);
+  EXPECT_EQ(s.sheet.seed, 9223372036854775807U);
+  EXPECT_EQ(s.sheet.relaxation, Relaxation::quasi_newton);
+  EXPECT_EQ(s.sheet.iterations, 3);
+  EXPECT_EQ(s.sheet.tolerance, 1e-6);
+  ASSERT_EQ(s.regions.size(), 2U);
+  EXPECT_EQ(s.regions[0].box, (std::array<double, 6>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(s.regions[1].name, "2b");
+  ASSERT_EQ(s.cuts.size(), 1U);
+  EXPECT_EQ(s.cuts[0].to, (Point2{3, 4}));
+  EXPECT_EQ(s.ice.poisson, 0.25);
+  EXPECT_EQ(s.beam.shear, Shear::none);
+  EXPECT_EQ(s.beam.kinematics, Kinematics::linear);
+  EXPECT_EQ(s.torsion, Torsion::polar);
+  EXPECT_EQ(s.shear_factor, 0.9);
+  EXPECT_EQ(s.water_density, 1025);
+  ASSERT_EQ(s.boundaries.size(), 2U);
+  EXPECT_EQ(s.boundaries[0].fixed, (std::array<bool, 6>{true, false, false, false, false, true}));
+  EXPECT_EQ(s.boundaries[0].velocity, (Point3{0.1, 0, 0}));
+  EXPECT_FALSE(s.boundaries[0].displacement);
+  EXPECT_EQ(s.boundaries[0].angular_velocity, (Point3{0, 0, 2}));
+  EXPECT_EQ(s.boundaries[0].ramp.seconds, 3);
+  EXPECT_EQ(s.boundaries[1].displacement, (Point3{0, 0, -1}));
+  EXPECT_FALSE(s.boundaries[1].velocity);
+  ASSERT_EQ(s.loads.size(), 2U);
+  EXPECT_EQ(s.loads[0].point, (Point2{1, 2}));
+  EXPECT_EQ(s.loads[0].moment, (Point3{4, 5, 6}));
+  EXPECT_EQ(s.loads[1].set, "right");
+  EXPECT_FALSE(s.loads[1].point);
+  EXPECT_EQ(s.time.end, 4);
+  EXPECT_EQ(s.time.dt, 0.5);
+  EXPECT_EQ(s.output.dir, "some where");
+  EXPECT_EQ(s.output.history, 0.1);
+  EXPECT_EQ(s.output.fields, 0.2);
+}
+
+TEST_F(SceneOptions, OptionsAsUsedRepeatTheRun) {
+  const Scene first = scene_of(
+      std::string(minimal) +
+      "boundary: {names: [a], a: {set: left, fix: [x], displacement: [1, 0, 0]}}\n"
+      "region: {names: [r], r: {box: [0, 1, 0, 1, 0, 1]}}\noutput: {dir: 'some \"where\"'}\n"
+      "snes_rtol: 1e-9\nksp_view:\nlog_view: ':log.txt'\n");
+  EXPECT_TRUE(contains(first.options_yaml, "snes_rtol: 1e-9\n"));
+  EXPECT_TRUE(contains(first.options_yaml, "ksp_view:\n"));
+  EXPECT_TRUE(contains(first.options_yaml, "log_view: \":log.txt\"\n"));
+  check(PetscOptionsClear(nullptr));
+  add(first.options_yaml);
+  const Scene again = read_scene("elsewhere/options.yaml");
+  EXPECT_EQ(again.options_yaml, first.options_yaml);
+  EXPECT_EQ(again.output.dir, "some \"where\"");
+}
+
+TEST_F(SceneOptions, AnUnknownOptionNamesTheNearest) {
+  EXPECT_EQ(error_with("shet: {length: 3}\n"),
+            "shet_length: unknown option; the nearest known one is 'sheet: length' (floe -help "
+            "lists them)");
+  EXPECT_TRUE(contains(error_with("kps_type: cg\n"), "ksp_type"));
+}
+
+TEST_F(SceneOptions, ErrorsNameKeyValueAndWhatIsAllowed) {
+  EXPECT_EQ(error_with("sheet_thickness: -3\n"),
+            "sheet: thickness: -3 must be a finite number > 0 [m]");
+  EXPECT_EQ(error_with("ice: {young: nan}\n"), "ice: young: nan must be a finite number > 0 [Pa]");
+  EXPECT_EQ(error_with("ice: {young: }\n"),
+            "ice: young: no value given, must be a finite number > 0 [Pa]");
+  EXPECT_EQ(error_with("beam: {shear: strong}\n"),
+            "beam: shear: strong must be one of one_point | exact | none");
+  EXPECT_EQ(error_with("load: {names: [p], p: {set: left, force: [1, 2, 3, 4]}}\n"),
+            "load: p: force: 1,2,3,4 must be 3 finite numbers [N]");
+  EXPECT_EQ(
+      error_with("boundary: {names: [a], a: {set: left}}\n"),
+      "boundary: a: fix: is missing; it must be a list of x | y | z | rx | ry | rz, none twice");
+}
+
+TEST_F(SceneOptions, WhatWouldHaveNoEffectIsAnError) {
+  const std::string file = "forces: [beam]\nlattice_file: a.h5\n";
+  EXPECT_EQ(scene_error(file), "");
+  for (const auto* line : {"ice: {young: 1}", "beam: {shear_factor: 1}", "beam: {torsion: polar}",
+                           "sheet: {length: 3}", "gravity: 9.81", "water: {density: 1000}"})
+    EXPECT_NE(scene_error(file + line), "") << line;
+  EXPECT_NE(scene_error("forces: [beam]\n"), "");
+  EXPECT_TRUE(contains(scene_error("forces: [gravity]\nsheet: {length: 3}\nbeam: {shear: none}\n"),
+                       "beam: shear: would have no effect"));
+}
+
+TEST_F(SceneOptions, SectionsOfNamesMustMatchTheirList) {
+  EXPECT_TRUE(contains(error_with("region: {names: [r]}\n"), "no such section"));
+  EXPECT_TRUE(contains(error_with("region: {names: [r], r: }\n"), "no such section"));
+  EXPECT_TRUE(contains(error_with("region: {r: {box: [0, 1, 0, 1, 0, 1]}}\n"), "not listed"));
+  for (const auto* names : {"[a, a]", "[A]", "[a_b]", "[names]", "['']"})
+    EXPECT_NE(error_with("region: {names: " + std::string(names) + ", a: {box: 0 1 0 1 0 1}}\n"),
+              "")
+        << names;
+  EXPECT_EQ(error_with("region:\nload: {}\nboundary: {names: []}\n"), "")
+      << "empty sections are absent";
+}
+
+TEST_F(SceneOptions, CrossChecks) {
+  EXPECT_EQ(error_with("sheet_element_size: 41\n"),
+            "sheet: element_size: 41 must be <= sheet: length 40 [m]");
+  EXPECT_NE(error_with("sheet_element_size: 1e-5\n"), "");
+  EXPECT_NE(error_with("ice: {poisson: 0.5}\n"), "");
+  EXPECT_NE(error_with("ice: {density: 1010}\n"), "") << "sinks";
+  EXPECT_NE(error_with("time: {dt: 2}\n"), "");
+  EXPECT_NE(error_with("cut: {names: c, c: {from: [1, 1], to: [1, 1]}}\n"), "");
+  EXPECT_NE(error_with("region: {names: left, left: {box: 0 1 0 1 0 1}}\n"), "");
+  EXPECT_NE(scene_error("forces: [beam, buoyancy]\nsheet: {length: 40}\n"), "");
+  const auto boundary = [](const std::string& rest) {
+    return error_with("boundary: {names: [a], a: {set: left, fix: x y rz, " + rest + "}}\n");
+  };
+  EXPECT_EQ(boundary("velocity: [1, 2, 0]"), "");
+  EXPECT_TRUE(contains(boundary("velocity: [1, 2, 3]"), "'z' is not in"));
+  EXPECT_TRUE(contains(boundary("angular_velocity: [1, 0, 0]"), "'rx' is not in"));
+  EXPECT_NE(boundary("velocity: [1, 0, 0], displacement: [1, 0, 0]"), "");
+  const auto load = [](const std::string& rest) {
+    return error_with("load: {names: [p], p: {force: [1, 0, 0], " + rest + "}}\n");
+  };
+  EXPECT_EQ(load("point: [0, 0]"), "");
+  EXPECT_NE(load("point: [0, 0], set: left"), "");
+  EXPECT_NE(load("ramp: 1"), "");
+}
+
+TEST_F(SceneOptions, OutputFolderMustBePossible) {
+  const std::string file = testing::TempDir() + "floe_regular_file";
+  std::ofstream(file) << "x";
+  EXPECT_TRUE(contains(error_with("output: {dir: " + file + "/below}\n"), "is not one"));
+  EXPECT_NE(error_with("output: {dir: " + file + "}\n"), "");
+  EXPECT_EQ(error_with("output: {dir: " + testing::TempDir() + "floe/new/folder}\n"), "");
+  EXPECT_FALSE(std::filesystem::exists(testing::TempDir() + "floe/new"));
+  std::filesystem::remove(file);
+}
+
+TEST_F(SceneOptions, UnusedPetscOptionsAreRejectedUnlessTheyMayBeLate) {
+  scene_of(std::string(minimal) + "ksp_view:\nviewer_x: 1\n");
+  EXPECT_EQ(error_of(reject_unused_options), "");
+  scene_of(std::string(minimal) + "ksp_tpye: cg\n");
+  EXPECT_TRUE(contains(error_of(reject_unused_options), "is it 'ksp_type'?"));
+}
+
+std::string command_line_error(std::vector<const char*> words) {
+  words.insert(words.begin(), "floe");
+  return error_of([&] { check_command_line(static_cast<int>(words.size()), words.data()); });
+}
+
+TEST(CommandLine, WordsMustBelongToAnOption) {
+  EXPECT_EQ(command_line_error({"a.yaml", "-gravity", "-9.81", "-check", "-output_dir", "x"}), "");
+  EXPECT_EQ(command_line_error({"a.yaml", "-sheet_length", "-inf"}), "")
+      << "refused later, as a value";
+  for (const auto* word : {"stray", "-", "-1", "", "--key", "-key=3", "-options_file", "-history"})
+    EXPECT_NE(command_line_error({"a.yaml", word}), "") << word;
+  EXPECT_NE(command_line_error({"a.yaml", "-check", "no", "stray"}), "");
+  EXPECT_NE(command_line_error({"a.yaml", "-skip_petscrc", "perhaps"}), "");
+  EXPECT_TRUE(contains(command_line_error({}), "usage"));
+  EXPECT_TRUE(contains(command_line_error({"-check", "a.yaml"}), "usage"));
+}
+
+TEST(CommandLine, HelpNeedsNoScene) {
+  const auto help = [](std::vector<const char*> words) {
+    return wants_help(static_cast<int>(words.size()), words.data());
+  };
+  EXPECT_EQ(help({"floe", "a.yaml", "-check"}), Help::none);
+  EXPECT_EQ(help({"floe", "-help"}), Help::text);
+  EXPECT_EQ(help({"floe", "a.yaml", "-check", "-help"}), Help::text);
+  EXPECT_EQ(help({"floe", "-help_markdown"}), Help::markdown);
+}
+
+std::string text_error(const std::string& text) {
+  const std::string path = testing::TempDir() + "floe_scene_text.yaml";
+  std::ofstream(path, std::ios::binary) << text;
+  std::string error = error_of([&] { read_scene_text(path); });
+  std::filesystem::remove(path);
+  return error;
+}
+
+TEST(SceneText, SyntaxErrorsNameTheLine) {
+  EXPECT_EQ(text_error("a: 1\nb: [1, 2, {c: 3}]\n").find("line 2") == std::string::npos, false);
+  EXPECT_TRUE(contains(text_error("a: 1\nb: c: d\n"), "line 2"));
+  EXPECT_TRUE(contains(text_error("a: 1\n\n\tb: 2\n"), "line 3"));
+  EXPECT_NE(text_error("a: \x01\n"), "");
+  EXPECT_NE(text_error(std::string("a: 1\n\0b: 2\n", 11)), "");
+}
+
+TEST(SceneText, KeysAreGivenOnce) {
+  EXPECT_TRUE(
+      contains(text_error("a: 1\nb: 2\na: 3\n"), "line 3: a is given twice, first in line 1"));
+  EXPECT_TRUE(contains(text_error("sheet: {length: 1}\nsheet_length: 1\n"), "given twice"));
+  EXPECT_TRUE(contains(text_error("sheet:\n  length: 1\nsheet:\n  width: 1\n"), "given twice"));
+  EXPECT_TRUE(contains(text_error("a: 1\nA: 1\n"), "given twice"))
+      << "PETSc does not tell them apart";
+  EXPECT_EQ(text_error("a: {b: 1}\nb: {a: 1}\n"), "");
+}
+
+TEST(SceneText, OnlyWhatPetscTakesFaithfully) {
+  EXPECT_EQ(text_error("---\na: 1\nb: [1, x, -3e4]\nc: {d: {e: ~}}\nf:\n"), "");
+  EXPECT_EQ(text_error(""), "");
+  for (const auto* bad :
+       {"- 1\n", "word\n", "a: 1\n---\nb: 1\n", "a: [[1]]\n", "a: [1, '']\n", "a b: 1\n",
+        "'a-b': 1\n", "? [a]\n: 1\n", "<<: {a: 1}\n", "$$x: 1\n", "1a: 1\n", "help: true\n",
+        "options_file: x\n", "history: 1\n", "&x a: *x\nb: *y\n", "a: &x {b: *x}\n"})
+    EXPECT_NE(text_error(bad), "") << bad;
+  EXPECT_NE(text_error(std::string(70, 'k') + ": 1\n"), "");
+}
+
+TEST(SceneText, OnlyRegularFiles) {
+  EXPECT_TRUE(contains(error_of([] { read_scene_text(testing::TempDir()); }), "directory"));
+  EXPECT_TRUE(contains(error_of([] { read_scene_text("no/such/file.yaml"); }), "No such file"));
+  EXPECT_NE(error_of([] { read_scene_text("/dev/null"); }), "");
+}
+
+}  // namespace
+}  // namespace floe
