@@ -35,7 +35,7 @@ std::string yaml_value(Kind kind, const std::string& value) {
 
 /// The default as people read it.
 std::string fallback_text(const OptionSpec& line) {
-  return line.fallback.empty() ? "none" : std::string(line.fallback);
+  return line.fallback == "(required)" ? "required" : std::string(line.fallback);
 }
 
 }  // namespace
@@ -80,7 +80,8 @@ std::string help_text(std::span<const OptionSpec> table) {
     std::string option = "-" + option_name(line.key);
     option.resize(std::max<std::size_t>(option.size() + 1, 34), ' ');
     text += "  " + option + std::string(line.doc) + "\n" + std::string(36, ' ') +
-            allowed_text(line) + "; default " + fallback_text(line) + "\n";
+            allowed_text(line) + (line.fallback == "(required)" ? "; " : "; default ") +
+            fallback_text(line) + "\n";
   }
   return text;
 }

@@ -52,6 +52,16 @@ Pairs used_options() {
   return options;
 }
 
+/// Whether `option` is this line's, for some NAME if it has one.
+bool is_option_of(const OptionSpec& line, std::string_view option) {
+  if (!has_name(line.key)) return option == option_name(line.key);
+  const std::string front = std::string(section_of(line.key)) + "_";
+  const std::string back = "_" + std::string(last_word(line.key));
+  return option.size() > front.size() + back.size() && option.starts_with(front) &&
+         option.ends_with(back) &&
+         is_name(option.substr(front.size(), option.size() - front.size() - back.size()));
+}
+
 bool is_value(std::string_view fallback) { return !fallback.empty() && fallback.front() != '('; }
 
 /// What PETSc asks for only while it ends.
@@ -90,15 +100,9 @@ Options::Options(std::span<const OptionSpec> table) : table_(table) {
 /// Ours into given_, PETSc's into petsc_. What is neither and has no value may be an empty section.
 void Options::sort_given(const Pairs& database) {
   for (const auto& [name, value] : database) {
-    const auto match = [&, option = std::string_view(name)](const OptionSpec& line) {
-      if (!has_name(line.key)) return option == option_name(line.key);
-      const std::string front = std::string(section_of(line.key)) + "_";
-      const std::string back = "_" + std::string(line.key.substr(line.key.rfind(' ') + 1));
-      return option.size() > front.size() + back.size() && option.starts_with(front) &&
-             option.ends_with(back) &&
-             is_name(option.substr(front.size(), option.size() - front.size() - back.size()));
-    };
-    if (std::any_of(table_.begin(), table_.end(), match)) {
+    const bool ours = std::any_of(table_.begin(), table_.end(),
+                                  [&](const OptionSpec& line) { return is_option_of(line, name); });
+    if (ours) {
       given_[name] = value;
     } else if (is_section(name)) {
       if (!value.empty() && value != "~" && value != "null")
@@ -143,21 +147,17 @@ void Options::read_names() {
 
 /// An option of a named section must belong to a listed name.
 void Options::check_name_of(std::string_view option) const {
-  for (const OptionSpec& line : table_) {
-    if (!has_name(line.key)) continue;
-    const std::string_view section = section_of(line.key);
-    if (!option.starts_with(std::string(section) + "_") || option == option_name(line.key))
-      continue;
-    const std::string_view rest = option.substr(section.size() + 1);
-    const auto cut = rest.find('_');
-    if (cut == std::string_view::npos) continue;  // the list of names itself
-    const std::string name(rest.substr(0, cut));
-    const auto& known = names(section);
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError(std::string(section) + ": " + name + ": is not listed in '" +
-                       std::string(section) + ": names', so it would have no effect");
-    return;
-  }
+  const auto line = std::find_if(table_.begin(), table_.end(), [&](const OptionSpec& candidate) {
+    return has_name(candidate.key) && is_option_of(candidate, option);
+  });
+  if (line == table_.end()) return;
+  const std::string section(section_of(line->key));
+  const std::string_view rest = option.substr(section.size() + 1);
+  const std::string name(rest.substr(0, rest.find('_')));
+  const auto& known = names(section);
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw InputError(section + ": " + name + ": is not listed in '" + section +
+                     ": names', so it would have no effect");
 }
 
 void Options::check_sections_of_names() const {

@@ -1,0 +1,208 @@
+#!/usr/bin/python3
+"""Bad input ends with one line on standard error, exit code 2 and nothing written, at 1 and at 2 ranks.
+
+Each case is (scene text or None for no scene file, words after the scene, words its error must hold). It runs
+in a temporary folder of its own, as a user would run it, with a time limit: a rank that waits for another
+that has given up is the failure this looks for.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+sys.path.insert(0, str(REPOSITORY / "tools"))
+import floe_lattice as fl  # noqa: E402
+
+SECONDS = 60  # one run takes well below 1 s; the machine may be busy
+ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+SHEET = "sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}\n"
+HELD = "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
+GOOD = "forces: [beam]\n" + SHEET + HELD
+FLOATING = "forces: [beam, gravity, buoyancy]\n" + SHEET
+FILE = "forces: [beam]\nlattice_file: bad.h5\nboundary: {names: [a], a: {set: root, fix: x y z rx ry rz}}\n"
+
+
+def held(rest):
+    return "forces: [beam]\n" + SHEET + "boundary: {names: [a], a: {set: left, " + rest + "}}\n"
+
+
+def loaded(rest):
+    return GOOD + "load: {names: [p], p: {" + rest + "}}\n"
+
+
+COMMAND_LINE = {
+    "stray word": (GOOD, ["stray"], "stray"),
+    "stray word after a flag with a value": (GOOD, ["-check", "no", "stray"], "stray"),
+    "key=value": (GOOD, ["-sheet_length=3"], "-sheet_length=3"),
+    "two dashes": (GOOD, ["--sheet_length", "3"], "--sheet_length"),
+    "misspelt": (GOOD, ["-shet_length", "3"], "sheet: length"),
+    "no value": (GOOD, ["-sheet_length"], "sheet: length"),
+    "not a number": (GOOD, ["-sheet_length", "3m"], "3m"),
+    "options from a file": (GOOD, ["-options_file", "more"], "-options_file"),
+    "PETSc's history file": (GOOD, ["-history", "3"], "output: history"),
+    "unknown PETSc family": (GOOD, ["-kps_type", "cg"], "ksp_type"),
+    "unknown PETSc option": (GOOD, ["-ksp_tpye", "cg"], "ksp_type"),
+    "unknown linear solver": (GOOD, ["-ksp_type", "conjugate"], "conjugate"),
+    "unknown preconditioner": (GOOD, ["-pc_type", "magic"], "magic"),
+    "unknown nonlinear solver": (GOOD, ["-snes_type", "magic"], "magic"),
+}
+
+SCENES = {
+    "broken YAML": ("forces: [beam\nsheet: 3\n", "line 2"),
+    "tab": ("forces: [beam]\n\tsheet: 3\n", "line 2"),
+    "key given twice": (GOOD + "forces: [beam]\n", "given twice"),
+    "two keys that join to one name": (GOOD + "sheet_length: 1\n", "given twice"),
+    "list of maps": (GOOD + "region: [{r: 1}]\n", "list"),
+    "two documents": (GOOD + "---\nforces: [beam]\n", "document"),
+    "not a map": ("- 1\n- 2\n", "map"),
+    "empty": ("", "forces"),
+    "no forces": (SHEET, "forces"),
+    "no sheet": ("forces: [beam]\n", "sheet"),
+    "misspelt key": (GOOD + "ice: {yuong: 1}\n", "ice: young"),
+    "misspelt section": (GOOD + "ise: {young: 1}\n", "ice: young"),
+    "value for a section": (GOOD + "ice: 3\n", "section"),
+    "wrong type": (GOOD + "ice: {young: stiff}\n", "ice: young: stiff"),
+    "wrong word": (GOOD + "beam: {shear: strong}\n", "one_point"),
+    "wrong force": ("forces: [beam, wind]\n" + SHEET, "wind"),
+    "nan": (GOOD + "ice: {young: nan}\n", "nan"),
+    "infinite": (GOOD + "ice: {young: .inf}\n", "inf"),
+    "negative thickness": (GOOD, "sheet: thickness: -1", ["-sheet_thickness", "-1"]),
+    "element larger than the sheet": (GOOD, "sheet: element_size", ["-sheet_element_size", "11"]),
+    "more bodies than memory": (GOOD, "sheet: element_size", ["-sheet_element_size", "1e-6"]),
+    "negative seed": (GOOD, "sheet: seed: -1", ["-sheet_seed", "-1"]),
+    "Poisson's ratio": (GOOD + "ice: {poisson: 0.5}\n", "ice: poisson"),
+    "a sheet that sinks": (FLOATING + "ice: {density: 1100}\n", "ice: density"),
+    "buoyancy without gravity": ("forces: [beam, buoyancy]\n" + SHEET, "gravity"),
+    "section of a force that is not named": (GOOD + "water: {density: 1000}\n", "water: density"),
+    "gravity that does not act": (GOOD + "gravity: 9.81\n", "gravity"),
+    "sheet and lattice file": (GOOD + "lattice_file: a.h5\n", "lattice_file"),
+    "lattice file that is not there": (FILE, "bad.h5"),
+    "ice with a lattice file": (FILE + "ice: {young: 1}\n", "ice: young"),
+    "unknown set of a boundary": (GOOD.replace("set: left", "set: lefft"), "lefft"),
+    "unknown set of a load": (loaded("set: rihgt, force: [1, 0, 0]"), "rihgt"),
+    "four numbers for a vector": (loaded("set: right, force: [1, 2, 3, 4]"), "load: p: force: 1,2,3,4"),
+    "two numbers for a vector": (loaded("set: right, force: [1, 2]"), "load: p: force: 1,2"),
+    "load on a set and at a point": (loaded("set: right, point: [0, 0], force: [1, 0, 0]"), "not both"),
+    "load nowhere": (loaded("force: [1, 0, 0]"), "set or point"),
+    "unlisted load": (GOOD + "load: {p: {set: right, force: [1, 0, 0]}}\n", "load: names"),
+    "listed load without a section": (GOOD + "load: {names: [p]}\n", "no such section"),
+    "name given twice": (GOOD + "load: {names: [p, p], p: {set: right, force: [1, 0, 0]}}\n", "p,p"),
+    "nothing fixed": (held("ramp: 1"), "boundary: a: fix"),
+    "value for a free component": (held("fix: x, velocity: [0, 1, 0]"), "'y'"),
+    "component fixed twice": (held("fix: x x"), "x x"),
+    "velocity and displacement": (held("fix: x, velocity: [1, 0, 0], displacement: [1, 0, 0]"), "not both"),
+    "nothing holds the sheet against its load":
+        ("forces: [beam]\n" + SHEET + "load: {names: [p], p: {set: right, force: [1, 0, 0]}}\n", "hold"),
+    "two boundaries that disagree":
+        ("forces: [beam]\n" + SHEET + "boundary:\n  names: [a, b]\n  a: {set: all, fix: x}\n"
+         "  b: {set: left, fix: x, displacement: [1, 0, 0]}\n", "boundary: "),
+    "region without bodies": (GOOD + "region: {names: [r], r: {box: 90 91 0 1 0 1}}\n", "region: r"),
+    "region upside down": (GOOD + "region: {names: [r], r: {box: 1 0 0 1 0 1}}\n", "region: r: box"),
+    "load step beyond the end": (GOOD + "time: {end: 1, dt: 2}\n", "time: dt"),
+    "output below a regular file": (GOOD + "output: {dir: scene.yaml/out}\n", "output: dir"),
+    "output in place of a regular file": (GOOD + "output: {dir: scene.yaml}\n", "output: dir"),
+}
+
+
+def spoil(name, value):
+    """Puts another value in place of a dataset, or removes it if the value is None."""
+    def change(file):
+        del file[name]
+        if value is not None:
+            file[name] = value
+    return change
+
+
+LATTICE_FILES = {
+    "positions with two columns": (spoil("bodies/position", np.zeros((5, 2))), "/bodies/position"),
+    "one mass too few": (spoil("bodies/mass", np.ones(4)), "/bodies/mass"),
+    "no masses": (spoil("bodies/mass", None), "/bodies/mass"),
+    "negative mass": (spoil("bodies/mass", -np.ones(5)), "/bodies/mass"),
+    "nan": (spoil("bodies/mass", np.array([1, 1, np.nan, 1, 1])), "/bodies/mass"),
+    "not a unit quaternion": (spoil("bodies/orientation", np.full((5, 4), 0.9)), "/bodies/orientation"),
+    "beam to a body that is not there":
+        (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 5]], np.int32)), "/beams/bodies"),
+    "beam to a negative body":
+        (spoil("beams/bodies", np.array([[-1, 1], [1, 2], [2, 3], [3, 4]], np.int32)), "/beams/bodies"),
+    "beam of one body":
+        (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 3]], np.int32)), "/beams/bodies"),
+    "beams with three columns": (spoil("beams/bodies", np.ones((4, 3), np.int32)), "/beams/bodies"),
+    "wrong length": (spoil("beams/length", np.full(4, 7.0)), "/beams/length"),
+    "set of a body that is not there": (spoil("sets/root", np.array([5], np.int32)), "/sets/root"),
+}
+
+
+class BadInput(unittest.TestCase):
+    maxDiff = None
+
+    def refused(self, words, part, ranks, folder):
+        """Runs floe with `words` in `folder`; checks how it ends and that nothing has been written."""
+        before = sorted(folder.rglob("*"))
+        command = [str(FLOE), *words]
+        if ranks > 1:
+            command = ["mpiexec", "-q", "-n", str(ranks), *command]
+        run = subprocess.run(command, cwd=folder, env={**os.environ, **ENVIRONMENT}, capture_output=True,
+                             text=True, timeout=SECONDS)
+        lines = run.stderr.splitlines()
+        self.assertEqual(len(lines), 1, f"one line expected: {run.stderr!r} {run.stdout!r}")
+        self.assertIn(part, lines[0])
+        self.assertEqual(run.returncode, 2, lines[0])
+        self.assertEqual(sorted(folder.rglob("*")), before, "something has been written")
+
+    def on_ranks(self, name, words, part, prepare):
+        for ranks in (1, 2):
+            with self.subTest(case=name, ranks=ranks), tempfile.TemporaryDirectory() as folder:
+                prepare(Path(folder))
+                self.refused(words, part, ranks, Path(folder))
+
+    def test_command_line(self):
+        for name, (scene, words, part) in COMMAND_LINE.items():
+            self.on_ranks(name, ["scene.yaml", *words], part,
+                          lambda folder: (folder / "scene.yaml").write_text(scene))
+
+    def test_scenes(self):
+        for name, (scene, part, *words) in SCENES.items():
+            self.on_ranks(name, ["scene.yaml", *(words[0] if words else [])], part,
+                          lambda folder: (folder / "scene.yaml").write_text(scene))
+
+    def test_scene_files(self):
+        self.on_ranks("no scene", [], "usage", lambda folder: None)
+        self.on_ranks("an option in place of the scene", ["-check"], "usage", lambda folder: None)
+        self.on_ranks("missing file", ["missing.yaml"], "missing.yaml", lambda folder: None)
+        self.on_ranks("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())
+        self.on_ranks("device", ["/dev/null"], "/dev/null", lambda folder: None)
+        self.on_ranks("binary", ["a.h5"], "a.h5", lambda folder: h5py.File(folder / "a.h5", "w").close())
+
+    def test_lattice_files(self):
+        frame = fl.straight_frame(length=4, elements=4, section=fl.Section(1, 1))
+        for name, (change, part) in LATTICE_FILES.items():
+            def prepare(folder):
+                (folder / "scene.yaml").write_text(FILE)
+                frame.write(folder / "bad.h5")
+                with h5py.File(folder / "bad.h5", "r+") as file:
+                    change(file)
+            self.on_ranks(name, ["scene.yaml"], part, prepare)
+        self.on_ranks("not HDF5", ["scene.yaml"], "bad.h5",
+                      lambda folder: [(folder / "scene.yaml").write_text(FILE),
+                                      (folder / "bad.h5").write_text("no")])
+
+    def test_more_ranks_than_bodies(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder)
+            (path / "scene.yaml").write_text(GOOD)
+            words = ["scene.yaml", "-sheet_length", "1", "-sheet_element_size", "1"]  # 2 bodies
+            self.refused(words, "ranks", 3, path)
+
+
+if __name__ == "__main__":
+    unittest.main()
