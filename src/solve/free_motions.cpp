@@ -13,7 +13,12 @@ namespace floe {
 namespace {
 
 using Row = Eigen::Matrix<double, 1, 6>;
-using Basis = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;  // no allocation
+
+/// Orthonormal columns, the first `count` of six; the others are zero.
+struct Basis {
+  Eigen::Matrix<double, 6, 6> columns = Eigen::Matrix<double, 6, 6>::Zero();
+  int count = 0;
+};
 
 /// Connected pieces of the lattice, numbered by their first body (union-find).
 std::vector<std::int32_t> connected_pieces(const Lattice& lattice) {
@@ -97,36 +102,41 @@ Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(gram);
   const double largest = solver.eigenvalues()[5];
   constexpr double relative_zero = 1e-14;  // of squares: supports 1e-7 of the piece's size apart still hold it
-  int count = 0;
-  while (count < 6 && solver.eigenvalues()[count] <= relative_zero * largest) ++count;
-  return solver.eigenvectors().leftCols(count);
+  Basis basis;
+  for (; basis.count < 6 && solver.eigenvalues()[basis.count] <= relative_zero * largest; ++basis.count)
+    basis.columns.col(basis.count) = solver.eigenvectors().col(basis.count);
+  return basis;
 }
 
 /// Picks one unknown per free motion, each time the one that the motions left move most.
 void choose_pins(const Piece& piece, Basis basis, std::span<const std::uint8_t> held,
                  std::span<const std::uint8_t> avoid, std::vector<Pin>& pins) {
-  constexpr double avoidance = 1e-3;  // an avoided body is taken only where no other comes near
-  while (basis.cols() > 0) {
+  constexpr double avoidance = 1e-6;  // an avoided body is taken only where no other comes near
+  while (basis.count > 0) {
     double best = 0;
     Pin pin{-1, 0};
     for (const std::int32_t b : piece.bodies()) {
       const auto body = static_cast<std::size_t>(b);
       for (int k = 0; k < 6; ++k) {
         if ((held[body] >> k & 1U) != 0) continue;
-        double size = (piece.row(b, k) * basis).norm();
-        if (!avoid.empty() && avoid[body] != 0) size *= avoidance;
-        if (size > best * (1 + 1e-9)) {  // the first of equals, whatever the rounding
-          best = size;
+        const Row moved = piece.row(b, k) * basis.columns;
+        double size2 = moved.dot(moved);
+        if (!avoid.empty() && avoid[body] != 0) size2 *= avoidance;
+        if (size2 > best * (1 + 1e-9)) {  // the first of equals, whatever the rounding
+          best = size2;
           pin = {b, k};
         }
       }
     }
     pins.push_back(pin);
-    // Keep the motions that leave the pinned unknown at rest.
-    const Eigen::VectorXd moved = (piece.row(pin.body, pin.component) * basis).transpose();
-    const Eigen::MatrixXd rest =
-        Eigen::MatrixXd(moved.householderQr().householderQ()).rightCols(basis.cols() - 1);
-    basis = (basis * rest).eval();
+    // Keep the motions that leave the pinned unknown at rest: a Householder reflection turns the one that moves it
+    // into the first column, which is dropped.
+    Row v = piece.row(pin.body, pin.component) * basis.columns;
+    v[0] += std::copysign(std::sqrt(v.dot(v)), v[0]);
+    const Eigen::Matrix<double, 6, 6> turned = basis.columns - (basis.columns * v.transpose()) * (2 / v.dot(v) * v);
+    basis.columns.setZero();
+    for (int m = 1; m < basis.count; ++m) basis.columns.col(m - 1) = turned.col(m);
+    --basis.count;
   }
 }
 
@@ -143,12 +153,12 @@ FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> h
     const double gyration = std::sqrt(lattice.bodies.inertia[b][0] / lattice.bodies.mass[b]);
     const Piece piece(lattice, std::move(bodies), gyration);
     const Basis basis = null_space(piece, held, floating);
-    for (int m = 0; m < basis.cols(); ++m) {
+    for (int m = 0; m < basis.count; ++m) {
       FreeMotion motion{first, piece.centre(), piece.radius(), {}};
-      for (int k = 0; k < 6; ++k) motion.coefficients[static_cast<std::size_t>(k)] = basis(k, m);
+      for (int k = 0; k < 6; ++k) motion.coefficients[static_cast<std::size_t>(k)] = basis.columns(k, m);
       free.motions.push_back(motion);
     }
-    if (basis.cols() > 0) choose_pins(piece, basis, held, avoid, free.pins);
+    if (basis.count > 0) choose_pins(piece, basis, held, avoid, free.pins);
   }
   return free;
 }

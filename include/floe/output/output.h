@@ -1,0 +1,64 @@
+/// \file
+/// The output folder of a run: lattice.h5, options.yaml, history.csv, fields.h5 + fields.xmf, summary.json.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "floe/forces/load.h"
+#include "floe/solve/integrator.h"
+
+namespace floe {
+
+struct OutputOptions {
+  std::string dir;
+  double history = 0;  ///< time between rows [s]; 0: every accepted step
+  double fields = 0;   ///< time between frames [s]; 0: the first and the last state
+};
+
+/// Sums over a named boundary's bodies. Reactions are what the boundary exerts on the sheet.
+struct BoundarySample {
+  Point3 force{};         ///< [N]
+  Point3 moment{};        ///< about the set's mean position at rest [N m]
+  Point3 displacement{};  ///< mean [m]
+};
+
+/// One row of history.csv, on every rank.
+struct Sample {
+  double time = 0;
+  std::map<std::string, BoundarySample> boundaries;
+  std::map<std::string, Point3> loads;  ///< mean displacement of the points where loads act [m]
+  std::vector<std::pair<std::string, double>> forces;  ///< energies and counts, as the forces report them
+};
+
+/// Takes every accepted state; writes on rank 0. Collective throughout.
+class Output {
+ public:
+  /// Makes the folder and writes lattice.h5 and options.yaml.
+  /// \param lattice  the whole lattice; rank 0 keeps a reference for the fields' geometry
+  /// \throws InputError if the folder cannot be made
+  Output(const OutputOptions& options, const Lattice& lattice, const Model<Spatial>& model,
+         const std::vector<PlacedLoad>& loads, const std::string& options_yaml);
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  void accept(const Accepted<Spatial>& accepted);
+  /// Writes the last accepted state if it is not on file yet.
+  void finish();
+
+  const Sample& first() const;
+  const Sample& last() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Writes `text` to a file under a temporary name, then renames it. One rank.
+void write_whole(const std::string& path, const std::string& text);
+
+}  // namespace floe

@@ -1,0 +1,96 @@
+// floe SCENE.yaml [-key value ...]: reads like the method section of a paper.
+
+#include <cstdio>
+#include <string>
+
+#include "floe/base/log.h"
+#include "floe/base/options.h"
+#include "floe/base/petsc.h"
+#include "floe/base/scene_text.h"
+#include "floe/build.h"
+#include "floe/output/output.h"
+
+namespace {
+
+// What a shell sees. 2 is floe::InputError.
+enum Exit { done = 0, failed = 1, bad_input = 2 };
+
+void say(const std::string& text, std::FILE* where = stdout) {
+  if (floe::rank() == 0) {
+    std::fputs(text.c_str(), where);
+    std::fflush(where);
+  }
+}
+
+int run(const std::string& path) {
+  using namespace floe;
+  const double start = MPI_Wtime();
+
+  // 1. The scene
+  const Scene scene = read_scene(path);
+  check_reports(scene);
+
+  // 2. Sheet -> lattice
+  MeshReport mesh;
+  Lattice lattice = make_lattice(scene, PETSC_COMM_WORLD, mesh);
+
+  // 3. The model: this rank's part of the lattice, boundaries, forces
+  const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
+  Model<Spatial> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
+  add_forces(scene, loads, model);
+  hold_free_motions(scene, lattice, model);
+  if (scene.check_only) {
+    say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
+        std::to_string(model.part().global_beams) + " beams\n");
+    return done;
+  }
+
+  // 4. Output
+  Output output({scene.output.dir, scene.output.history, scene.output.fields}, lattice, model, loads,
+                scene.options_yaml);
+  if (rank() != 0) lattice = {};  // only rank 0 writes geometry
+
+  // 5. Run
+  const RunResult result =
+      run_quasistatic(model, {scene.time.end, scene.time.dt}, [&](const Accepted<Spatial>& accepted) {
+        output.accept(accepted);
+        if (accepted.step == 1) reject_unused_options();
+      });
+  output.finish();
+
+  // 6. Results
+  const Summary summary =
+      summarise(scene, model, mesh, result, output.first(), output.last(), MPI_Wtime() - start);
+  if (rank() == 0) write_whole(scene.output.dir + "/summary.json", summary.json);
+  say(summary.text);
+  if (!result.done) say("floe: " + result.message + "\n", stderr);
+  warn_unused_options();
+  return result.done ? done : failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  switch (floe::wants_help(argc, argv)) {
+    case floe::Help::text: std::fputs(floe::options_help().c_str(), stdout); return done;
+    case floe::Help::markdown: std::fputs(floe::options_markdown().c_str(), stdout); return done;
+    case floe::Help::none: break;
+  }
+  floe::Mpi mpi(argc, argv);
+  try {
+    const std::string path = floe::check_command_line(argc, argv);
+    floe::read_scene_text(path);
+    floe::Session session(argc, argv, path);
+    try {
+      return run(path);
+    } catch (const floe::InputError& error) {  // before PETSc ends, so that only rank 0 speaks
+      say(std::string("floe: ") + error.what() + "\n", stderr);
+      return bad_input;
+    }
+  } catch (const floe::InputError& error) {
+    int me = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &me);
+    if (me == 0) std::fprintf(stderr, "floe: %s\n", error.what());
+    return bad_input;
+  }
+}

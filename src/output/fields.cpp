@@ -1,0 +1,181 @@
+#include "output/fields.h"
+
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "floe/base/rotation.h"
+#include "floe/output/output.h"
+
+namespace floe {
+namespace {
+
+std::string group_name(std::size_t k) {
+  char name[16];
+  std::snprintf(name, sizeof name, "/t%06zu", k);
+  return name;
+}
+
+constexpr int xdmf_polygon = 3;
+
+std::string item(const std::string& where, const std::string& dimensions, const char* type, int precision) {
+  return "<DataItem Format=\"HDF\" NumberType=\"" + std::string(type) + "\" Precision=\"" + std::to_string(precision) +
+         "\" Dimensions=\"" + dimensions + "\">fields.h5:" + where + "</DataItem>";
+}
+
+std::string attribute(const std::string& name, const std::string& group, std::size_t rows, int columns,
+                      const char* centre, int precision) {
+  const std::string dimensions = std::to_string(rows) + (columns > 1 ? " " + std::to_string(columns) : "");
+  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + (columns == 3 ? "Vector" : columns == 1 ? "Scalar" : "Matrix") +
+         "\" Center=\"" + centre + "\">" + item(group + "/" + name, dimensions, "Float", precision) + "</Attribute>\n";
+}
+
+}  // namespace
+
+Fields::Fields(const std::string& dir, const Lattice& lattice)
+    : dir_(dir), lattice_(lattice), file_(Hdf5File::create_growing(dir + "/fields.h5")) {
+  write_mesh();
+}
+
+void Fields::write_mesh() {
+  const Shapes& s = lattice_.shapes;
+  std::vector<std::int32_t> topology;
+  for (std::int32_t b = 0; b < s.bodies(); ++b) {
+    const auto body = static_cast<std::size_t>(b);
+    for (std::int32_t f = s.face_of[body]; f < s.face_of[body + 1]; ++f) {
+      const auto face = static_cast<std::size_t>(f);
+      topology.push_back(xdmf_polygon);
+      topology.push_back(s.corner_of[face + 1] - s.corner_of[face]);
+      topology.insert(topology.end(), s.corners.begin() + s.corner_of[face], s.corners.begin() + s.corner_of[face + 1]);
+      body_of_face_.push_back(b);
+    }
+  }
+  if (s.empty()) {  // bodies without a shape are shown as points
+    for (std::int32_t b = 0; b < lattice_.bodies.size(); ++b) {
+      topology.push_back(b);
+      body_of_face_.push_back(b);
+    }
+  }
+  points_ = s.empty() ? lattice_.bodies.position.size() : s.vertices.size();
+  topology_ = topology.size();
+  file_.write("/mesh/topology", topology);
+  file_.write("/mesh/body", body_of_face_);
+  if (lattice_.beams.size() > 0)
+    file_.write("/mesh/beams",
+                std::span<const std::int32_t>(lattice_.beams.bodies[0].data(), 2 * lattice_.beams.bodies.size()), 2);
+}
+
+void Fields::write(const Frame& frame) {
+  const std::string group = group_name(times_.size());
+  write_bodies(group, frame);
+  if (lattice_.beams.size() > 0) write_beams(group, frame);
+  file_.attribute(group, "time", frame.time);
+  file_.flush();
+  times_.push_back(frame.time);
+  write_xmf();  // after the flush: it never names a frame that is not on disk
+}
+
+void Fields::write_bodies(const std::string& group, const Frame& frame) {
+  const std::size_t n = lattice_.bodies.position.size();
+  std::vector<double> centres(3 * n), points;
+  points.reserve(3 * points_);
+  for (std::size_t b = 0; b < n; ++b) {
+    for (std::size_t k = 0; k < 3; ++k)
+      centres[3 * b + k] = lattice_.bodies.position[b][k] + frame.displacement[3 * b + k];
+    if (lattice_.shapes.empty()) continue;
+    const auto [w, x, y, z] = lattice_.bodies.orientation[b];
+    const double* q = &frame.rotation[4 * b];
+    const Triad<double> axes = triad(product(normalised({q[0], q[1], q[2], q[3]}), Quat<double>{w, x, y, z}));
+    for (std::int32_t v = lattice_.shapes.vertex_of[b]; v < lattice_.shapes.vertex_of[b + 1]; ++v) {
+      const Point3& r = lattice_.shapes.vertices[static_cast<std::size_t>(v)];
+      const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
+      points.insert(points.end(), {centres[3 * b] + p.x, centres[3 * b + 1] + p.y, centres[3 * b + 2] + p.z});
+    }
+  }
+  file_.write(group + "/centres", centres, 3);
+  file_.write(group + "/points", lattice_.shapes.empty() ? centres : points, 3);
+  file_.write(group + "/bodies_displacement", frame.displacement, 3);
+  file_.write(group + "/bodies_rotation", frame.rotation_vector, 3);
+  std::vector<float> displacement, rotation;
+  displacement.reserve(3 * body_of_face_.size());
+  rotation.reserve(3 * body_of_face_.size());
+  for (const std::int32_t body : body_of_face_) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      displacement.push_back(static_cast<float>(frame.displacement[3 * static_cast<std::size_t>(body) + k]));
+      rotation.push_back(static_cast<float>(frame.rotation_vector[3 * static_cast<std::size_t>(body) + k]));
+    }
+  }
+  file_.write(group + "/face_displacement", displacement, 3);
+  file_.write(group + "/face_rotation", rotation, 3);
+}
+
+/// Stresses of the section (physics.md section 7): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z), and
+/// tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
+void Fields::write_beams(const std::string& group, const Frame& frame) {
+  const Beams& beams = lattice_.beams;
+  const auto m = static_cast<std::size_t>(beams.size());
+  std::vector<double> force(3 * m), moment(3 * m), stress(2 * m);
+  for (std::size_t k = 0; k < m; ++k) {
+    const double* s = &frame.sections[6 * k];
+    std::copy_n(s, 3, &force[3 * k]);
+    std::copy_n(s + 3, 3, &moment[3 * k]);
+    double sigma = s[0] / beams.area[k], tau = std::hypot(s[1], s[2]) / beams.area[k];
+    if (!beams.width.empty() && !beams.height.empty()) {
+      const double w = beams.width[k], h = beams.height[k], a = std::max(w, h), b = std::min(w, h);
+      sigma += std::abs(s[4]) * h / (2 * beams.inertia_y[k]) + std::abs(s[5]) * w / (2 * beams.inertia_z[k]);
+      tau += std::abs(s[3]) * (3 + 1.8 * b / a) / (a * b * b);
+    }
+    stress[2 * k] = sigma;
+    stress[2 * k + 1] = tau;
+  }
+  file_.write(group + "/beams_force", force, 3);
+  file_.write(group + "/beams_moment", moment, 3);
+  file_.write(group + "/beams_stress", stress, 2);
+  std::vector<double> sigma(m), tau(m);
+  for (std::size_t k = 0; k < m; ++k) {
+    sigma[k] = stress[2 * k];
+    tau[k] = stress[2 * k + 1];
+  }
+  file_.write(group + "/tensile_stress", sigma);
+  file_.write(group + "/shear_stress", tau);
+}
+
+/// The two grids of one time: bodies as polygons, beams as lines.
+std::string Fields::grid(std::size_t k) const {
+  const std::string group = group_name(k), faces = std::to_string(body_of_face_.size());
+  const std::size_t n = lattice_.bodies.position.size(), m = lattice_.beams.bodies.size();
+  std::ostringstream out;
+  out.precision(17);
+  out << "    <Grid Name=\"sheet\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
+      << "      <Time Value=\"" << times_[k] << "\"/>\n"
+      << "      <Grid Name=\"bodies\">\n        <Topology TopologyType=\""
+      << (lattice_.shapes.empty() ? "Polyvertex\" NodesPerElement=\"1" : "Mixed") << "\" NumberOfElements=\"" << faces
+      << "\">" << item("/mesh/topology", std::to_string(topology_), "Int", 4) << "</Topology>\n"
+      << "        <Geometry GeometryType=\"XYZ\">" << item(group + "/points", std::to_string(points_) + " 3", "Float", 8)
+      << "</Geometry>\n        <Attribute Name=\"body\" AttributeType=\"Scalar\" Center=\"Cell\">"
+      << item("/mesh/body", faces, "Int", 4) << "</Attribute>\n"
+      << attribute("face_displacement", group, body_of_face_.size(), 3, "Cell", 4)
+      << attribute("face_rotation", group, body_of_face_.size(), 3, "Cell", 4) << "      </Grid>\n";
+  if (m > 0) {
+    out << "      <Grid Name=\"beams\">\n        <Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
+        << "NumberOfElements=\"" << m << "\">" << item("/mesh/beams", std::to_string(m) + " 2", "Int", 4)
+        << "</Topology>\n        <Geometry GeometryType=\"XYZ\">"
+        << item(group + "/centres", std::to_string(n) + " 3", "Float", 8) << "</Geometry>\n"
+        << attribute("bodies_displacement", group, n, 3, "Node", 8)
+        << attribute("bodies_rotation", group, n, 3, "Node", 8) << attribute("beams_force", group, m, 3, "Cell", 8)
+        << attribute("beams_moment", group, m, 3, "Cell", 8) << attribute("tensile_stress", group, m, 1, "Cell", 8)
+        << attribute("shear_stress", group, m, 1, "Cell", 8) << "      </Grid>\n";
+  }
+  out << "    </Grid>\n";
+  return out.str();
+}
+
+void Fields::write_xmf() const {
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n"
+      "  <Grid Name=\"floe\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+  for (std::size_t k = 0; k < times_.size(); ++k) text += grid(k);
+  write_whole(dir_ + "/fields.xmf", text + "  </Grid>\n</Domain>\n</Xdmf>\n");
+}
+
+}  // namespace floe

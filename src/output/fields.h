@@ -1,0 +1,50 @@
+/// \file
+/// fields.h5 and fields.xmf: bodies and beams over time, for ParaView and for plots.
+///
+/// fields.h5: /mesh/topology (XDMF mixed: 3, number of corners, corners ... per face; one point per body if the
+/// lattice has no shapes), /mesh/body (body of each face), /mesh/beams (m x 2), and per time a group /t000000 with
+/// the attribute `time` and
+///   points (vertices in the world), centres (n x 3, bodies' centroids),
+///   bodies_displacement, bodies_rotation (n x 3; rotation vectors), face_displacement, face_rotation (the same, per face),
+///   beams_force (N, Q2, Q3), beams_moment (T, M2, M3), beams_stress (largest tensile stress, shear stress).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "floe/base/hdf5.h"
+#include "floe/lattice/lattice.h"
+
+namespace floe {
+
+/// One state in global order.
+struct Frame {
+  double time = 0;
+  std::vector<double> displacement;  ///< n x 3
+  std::vector<double> rotation;      ///< n x 4, from rest
+  std::vector<double> rotation_vector;  ///< n x 3
+  std::vector<double> sections;      ///< m x 6
+};
+
+/// Lives on rank 0.
+class Fields {
+ public:
+  Fields(const std::string& dir, const Lattice& lattice);
+  void write(const Frame& frame);
+
+ private:
+  void write_mesh();
+  void write_bodies(const std::string& group, const Frame& frame);
+  void write_beams(const std::string& group, const Frame& frame);
+  void write_xmf() const;
+  std::string grid(std::size_t k) const;
+
+  std::string dir_;
+  const Lattice& lattice_;
+  Hdf5File file_;
+  std::vector<double> times_;
+  std::vector<std::int32_t> body_of_face_;
+  std::size_t points_ = 0, topology_ = 0;
+};
+
+}  // namespace floe

@@ -1,0 +1,256 @@
+#include "floe/output/output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "floe/base/log.h"
+#include "floe/base/options.h"
+#include "output/fields.h"
+#include "output/gather.h"
+
+namespace floe {
+namespace {
+
+/// Where a load acts: local bodies and the arm at rest.
+struct LoadPoint {
+  std::string name;
+  std::vector<std::int32_t> bodies;
+  std::size_t count;  ///< over all ranks
+  Vec3<double> arm;
+};
+
+Point3 sum_over_ranks(const Point3& mine, MPI_Comm comm) {
+  Point3 all{};
+  MPI_Allreduce(mine.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, comm);
+  return all;
+}
+
+void make_folder(const std::string& dir, MPI_Comm comm) {
+  std::string verdict;
+  if (rank(comm) == 0) {
+    std::error_code error;
+    std::filesystem::create_directories(dir, error);
+    if (error || !std::filesystem::is_directory(dir))
+      verdict = "output: dir: cannot make the folder '" + dir + "': " + error.message();
+  }
+  throw_verdict(verdict, comm);
+}
+
+}  // namespace
+
+struct Output::Impl {
+  const OutputOptions options;
+  const Model<Spatial>& model;
+  const Part& part;
+  std::vector<LoadPoint> loads;
+  std::vector<std::pair<std::size_t, Point3>> sets;  ///< per boundary: bodies in all, mean position at rest
+  Gather bodies, beams;
+  std::vector<std::int32_t> counted;   ///< local beams that this rank reports
+  std::optional<Fields> fields;        ///< rank 0
+  std::ofstream history;               ///< rank 0
+  Sample first, last;
+  std::optional<State<Spatial>> pending;  ///< accepted, but not on file
+  double next_history = 0, next_fields = 0;
+
+  Impl(const OutputOptions& o, const Model<Spatial>& m)
+      : options(o),
+        model(m),
+        part(m.part()),
+        bodies(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)), part.global_bodies),
+        beams(part.comm, counted_global(), part.global_beams) {
+    for (std::size_t k = 0; k < part.counts_here.size(); ++k) {
+      if (part.counts_here[k]) counted.push_back(static_cast<std::int32_t>(k));
+    }
+  }
+
+  std::vector<std::int32_t> counted_global() const {
+    std::vector<std::int32_t> global;
+    for (std::size_t k = 0; k < part.counts_here.size(); ++k) {
+      if (part.counts_here[k]) global.push_back(part.global_beam[k]);
+    }
+    return global;
+  }
+
+  Sample sample(const Accepted<Spatial>& accepted) const;
+  void write_row(const Sample& sample);
+  void write_frame(const State<Spatial>& state);
+};
+
+Output::Output(const OutputOptions& options, const Lattice& lattice, const Model<Spatial>& model,
+               const std::vector<PlacedLoad>& loads, const std::string& options_yaml) {
+  const Timed timed(Event::output);
+  make_folder(options.dir, model.part().comm);
+  impl_ = std::make_unique<Impl>(options, model);
+  for (const PlacedLoad& placed : loads)
+    impl_->loads.push_back({placed.load.name, impl_->part.localise(placed.bodies), placed.bodies.size(),
+                            {placed.arm[0], placed.arm[1], placed.arm[2]}});
+  for (const PlacedBoundary& placed : model.boundaries()) {
+    const auto& set = lattice.set(placed.boundary.set, "boundary");
+    Point3 mean{};
+    for (const std::int32_t b : set) {
+      for (std::size_t k = 0; k < 3; ++k)
+        mean[k] += lattice.bodies.position[static_cast<std::size_t>(b)][k] / static_cast<double>(set.size());
+    }
+    impl_->sets.emplace_back(set.size(), mean);
+  }
+  if (rank(model.part().comm) != 0) return;
+  write_lattice(lattice, options.dir + "/lattice.h5");
+  write_whole(options.dir + "/options.yaml", options_yaml);
+  // What an earlier run left would contradict this one until its own is written.
+  for (const char* old : {"/summary.json", "/fields.xmf"}) std::filesystem::remove(options.dir + old);
+  impl_->fields.emplace(options.dir, lattice);
+  impl_->history.open(options.dir + "/history.csv");
+}
+
+Output::~Output() = default;
+
+const Sample& Output::first() const { return impl_->first; }
+const Sample& Output::last() const { return impl_->last; }
+
+Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
+  Sample s;
+  s.time = accepted.state.time;
+  for (std::size_t k = 0; k < model.boundaries().size(); ++k) {
+    const PlacedBoundary& placed = model.boundaries()[k];
+    const auto& [count, mean] = sets[k];
+    BoundarySample mine;
+    for (const std::int32_t body : placed.bodies) {
+      if (body >= part.owned) continue;
+      const auto b = static_cast<std::size_t>(body);
+      const double* w = accepted.wrenches.of(b);
+      Vec3<double> force{0, 0, 0}, moment{0, 0, 0};
+      if (placed.boundary.fixed[0]) force.x = -w[0];
+      if (placed.boundary.fixed[1]) force.y = -w[1];
+      if (placed.boundary.fixed[2]) force.z = -w[2];
+      if (placed.boundary.fixed[3]) moment.x = -w[3];
+      if (placed.boundary.fixed[4]) moment.y = -w[4];
+      if (placed.boundary.fixed[5]) moment.z = -w[5];
+      const Vec3<double> u = displacement(accepted.state, b);
+      const Point3& x = part.bodies.position[b];
+      moment = moment + cross(Vec3<double>{x[0] + u.x - mean[0], x[1] + u.y - mean[1], x[2] + u.z - mean[2]}, force);
+      mine.force = {mine.force[0] + force.x, mine.force[1] + force.y, mine.force[2] + force.z};
+      mine.moment = {mine.moment[0] + moment.x, mine.moment[1] + moment.y, mine.moment[2] + moment.z};
+      const double share = 1.0 / static_cast<double>(count);
+      mine.displacement = {mine.displacement[0] + share * u.x, mine.displacement[1] + share * u.y,
+                           mine.displacement[2] + share * u.z};
+    }
+    s.boundaries[placed.boundary.name] = {sum_over_ranks(mine.force, part.comm), sum_over_ranks(mine.moment, part.comm),
+                                          sum_over_ranks(mine.displacement, part.comm)};
+  }
+  for (const LoadPoint& load : loads) {
+    Point3 mine{};
+    const double share = 1.0 / static_cast<double>(load.count);
+    for (const std::int32_t body : load.bodies) {
+      if (body >= part.owned) continue;
+      const auto b = static_cast<std::size_t>(body);
+      const Vec3<double> u = displacement(accepted.state, b) +
+                             (rotate(normalised(rotation(accepted.state, b)), load.arm) - load.arm);
+      mine = {mine[0] + share * u.x, mine[1] + share * u.y, mine[2] + share * u.z};
+    }
+    s.loads[load.name] = sum_over_ranks(mine, part.comm);
+  }
+  s.forces = model.report(accepted.state);
+  return s;
+}
+
+void Output::Impl::write_row(const Sample& s) {
+  if (!history.is_open()) return;
+  constexpr const char* axes[] = {"x", "y", "z"};
+  if (history.tellp() == 0) {
+    history << "time";
+    for (const auto& [name, b] : s.boundaries) {
+      for (const char* what : {"force", "moment", "displacement"}) {
+        for (const char* axis : axes) history << ',' << name << '_' << what << '_' << axis;
+      }
+    }
+    for (const auto& [name, u] : s.loads) {
+      for (const char* axis : axes) history << ',' << name << "_load_displacement_" << axis;
+    }
+    for (const auto& [name, value] : s.forces) history << ',' << name;
+    history << '\n';
+  }
+  char text[32];
+  const auto put = [&](double value) {
+    std::snprintf(text, sizeof text, ",%.12g", value);
+    history << text;
+  };
+  std::snprintf(text, sizeof text, "%.12g", s.time);
+  history << text;
+  for (const auto& [name, b] : s.boundaries) {
+    for (const Point3* p : {&b.force, &b.moment, &b.displacement}) std::for_each(p->begin(), p->end(), put);
+  }
+  for (const auto& [name, u] : s.loads) std::for_each(u.begin(), u.end(), put);
+  for (const auto& [name, value] : s.forces) put(value);
+  history << '\n' << std::flush;
+}
+
+void Output::Impl::write_frame(const State<Spatial>& state) {
+  const auto owned = static_cast<std::size_t>(part.owned);
+  std::vector<double> u, q, vector;
+  for (std::size_t b = 0; b < owned; ++b) {
+    const double* r = state.record(b);
+    u.insert(u.end(), r, r + 3);
+    q.insert(q.end(), r + Spatial::rotation, r + Spatial::rotation + 4);
+    const Quat<double> now = rotation(state, b);
+    const Vec3<double> t = model.kinematics() == Kinematics::linear ? Vec3<double>{2 * now.x, 2 * now.y, 2 * now.z}
+                                                                    : log_rotation(now);
+    vector.insert(vector.end(), {t.x, t.y, t.z});
+  }
+  Frame frame{state.time, bodies(u, 3), bodies(q, 4), bodies(vector, 3), {}};
+  if (model.beams() != nullptr) {
+    const std::vector<BeamSection> all = model.beams()->sections(state);
+    std::vector<double> mine;
+    mine.reserve(counted.size() * 6);
+    for (const std::int32_t k : counted) {
+      const BeamSection& s = all[static_cast<std::size_t>(k)];
+      mine.insert(mine.end(), s.begin(), s.end());
+    }
+    frame.sections = beams(mine, 6);
+  }
+  if (fields) fields->write(frame);
+}
+
+void Output::accept(const Accepted<Spatial>& accepted) {
+  const Timed timed(Event::output);
+  Impl& me = *impl_;
+  const double time = accepted.state.time;
+  constexpr double early = 1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
+  me.last = me.sample(accepted);
+  if (accepted.step == 0) me.first = me.last;
+  if (me.options.history <= 0 || time >= me.next_history - early * me.options.history) {
+    me.write_row(me.last);
+    if (me.options.history > 0)
+      me.next_history = me.options.history * (std::floor(time / me.options.history + early) + 1);
+  }
+  const bool due = accepted.step == 0 ||
+                   (me.options.fields > 0 && time >= me.next_fields - early * me.options.fields);
+  if (due) {
+    me.write_frame(accepted.state);
+    me.pending.reset();
+    if (me.options.fields > 0) me.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
+  } else {
+    me.pending = accepted.state;
+  }
+}
+
+void Output::finish() {
+  const Timed timed(Event::output);
+  if (impl_->pending) impl_->write_frame(*impl_->pending);
+  impl_->pending.reset();
+}
+
+void write_whole(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  {
+    std::ofstream file(temporary);
+    file << text;
+    if (!file.flush()) throw std::runtime_error("cannot write " + temporary);
+  }
+  std::filesystem::rename(temporary, path);
+}
+
+}  // namespace floe

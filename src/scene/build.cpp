@@ -1,0 +1,103 @@
+#include "floe/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "floe/base/log.h"
+#include "floe/base/petsc.h"
+#include "floe/forces/buoyancy.h"
+#include "floe/forces/gravity.h"
+
+namespace floe {
+namespace {
+
+/// A floating sheet's mid-plane: its draft is h rho_i/rho_w; without buoyancy it lies at z = 0.
+double mid_plane(const Scene& scene) {
+  if (!scene.forces.buoyancy) return 0;
+  const double relative_density = scene.ice.density / scene.water_density;
+  if (relative_density >= 1)
+    throw InputError("ice: density: " + std::to_string(scene.ice.density) + " must be < water: density, or the sheet sinks");
+  return scene.thickness * (0.5 - relative_density);
+}
+
+Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
+  const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor, scene.torsion};
+  Tessellation cells;
+  {
+    const Timed timed(Event::mesh);
+    Progress progress("mesh", scene.sheet.iterations);
+    cells = tessellate(scene.sheet, comm, [&](int iteration, double move) {
+      char note[48];
+      std::snprintf(note, sizeof note, "largest move %.2g l", move);
+      progress.update(iteration, note);
+    });
+  }
+  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate};
+  const Timed timed(Event::lattice);
+  return make_sheet(cells, section);
+}
+
+/// Bodies cut by the water surface where they lie at rest.
+std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
+  std::vector<std::uint8_t> at(static_cast<std::size_t>(lattice.bodies.size()), 0);
+  const Shapes& shapes = lattice.shapes;
+  for (std::size_t b = 0; b < at.size() && !shapes.empty(); ++b) {
+    const auto [w, x, y, z] = lattice.bodies.orientation[b];
+    const Triad<double> axes = triad(Quat<double>{w, x, y, z});
+    bool above = false, below = false;
+    for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
+      const Point3& r = shapes.vertices[static_cast<std::size_t>(v)];
+      const double height = lattice.bodies.position[b][2] + axes.to_world({r[0], r[1], r[2]}).z;
+      above = above || height > 0;
+      below = below || height < 0;
+    }
+    at[b] = above && below;
+  }
+  return at;
+}
+
+}  // namespace
+
+Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
+  Lattice lattice = scene.has_sheet ? mesh_sheet(scene, comm, report) : read_lattice(scene.lattice_file);
+  const Timed timed(Event::lattice);
+  if (scene.forces.beam && lattice.beams.size() == 0)
+    throw InputError(scene.has_sheet ? "sheet: element_size: the sheet has a single cell and no beam"
+                                     : "forces: beam: '" + scene.lattice_file + "' has no beams");
+  for (const Cut& c : scene.cuts) cut(lattice, c.from, c.to);
+  if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
+  auto& all = lattice.sets["all"];
+  all.resize(static_cast<std::size_t>(lattice.bodies.size()));
+  std::iota(all.begin(), all.end(), 0);
+  for (const Region& region : scene.regions)
+    add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
+  return lattice;
+}
+
+std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) {
+  std::vector<PlacedLoad> placed;
+  for (const Load& load : scene.loads) placed.push_back(place(load, lattice));
+  return placed;
+}
+
+void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model) {
+  const Part& part = model.part();
+  if (scene.forces.beam)
+    model.set_beams(make_beam_force<Spatial>(part, scene.beam), scene.beam.kinematics);
+  if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
+  if (scene.forces.buoyancy)
+    model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
+  for (const PlacedLoad& load : loads) model.add_force(make_load<Spatial>(part, load));
+}
+
+void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {
+  const std::vector<std::uint8_t> prescribed = prescribed_components(lattice, scene.boundaries);
+  const std::vector<std::uint8_t> floating =
+      scene.forces.buoyancy ? bodies_at_surface(lattice) : std::vector<std::uint8_t>{};
+  const FreeMotions free = free_motions(lattice, prescribed, floating);
+  require_balance(model, lattice, free, scene.time.end);
+  model.pin(free.pins);
+}
+
+}  // namespace floe
