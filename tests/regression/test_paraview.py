@@ -97,9 +97,14 @@ class ParaView(unittest.TestCase):
                 points = group["points"][:]
                 bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
                 np.testing.assert_allclose(bodies["bounds"], bounds, atol=1e-6)
-                force = group["beams_force"][:]
-                ranges = np.column_stack([force.min(axis=0), force.max(axis=0)])
-                np.testing.assert_allclose(beams["ranges"]["beams_force"], ranges, rtol=1e-6, atol=1e-9)
+                self.same_ranges(bodies["ranges"]["face_displacement"], group["bodies_displacement"][:], 1e-6)
+                self.same_ranges(beams["ranges"]["beams_force"], group["beams_force"][:], 1e-12)
+                self.assertEqual(bodies["ranges"]["body"], [[0, len(lattice["bodies/mass"]) - 1]])
+
+    def same_ranges(self, seen, values, tolerance):
+        """Least and largest value of each column of `values`, to a tolerance relative to the largest of all."""
+        ranges = np.column_stack([values.min(axis=0), values.max(axis=0)])
+        np.testing.assert_allclose(seen, ranges, rtol=tolerance, atol=tolerance * np.abs(values).max())
 
 
 if __name__ == "__main__":

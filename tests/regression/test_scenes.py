@@ -37,9 +37,9 @@ def last_row(output):
 
 
 def force(output, boundaries, component):
-    """Sum of the last reactions of named boundaries, the force on the bodies [N]."""
+    """Sum of the last reactions of named boundaries, what they exert on the sheet [N]."""
     row = last_row(output)
-    return sum(row[f"{name}_f{component}"] for name in boundaries)
+    return sum(row[f"{name}_force_{component}"] for name in boundaries)
 
 
 def check_tension(test, run):
@@ -87,7 +87,7 @@ def stresses(output):
     """Stress over Young's modulus in x and, if `top` is prescribed, in y, from the reactions."""
     names = last_row(output)
     x = force(output, ("right", "rightinner"), "x") / (10 * np.sqrt(3) * YOUNG)
-    return x, force(output, ("top",), "y") / (20 * YOUNG) if "top_fy" in names else 0
+    return x, force(output, ("top",), "y") / (20 * YOUNG) if "top_force_y" in names else 0
 
 
 def check_triangles_tension(test, run):
