@@ -18,7 +18,8 @@ double saint_venant_torsion(double a, double b) {
   for (int n = 1; n <= 13; n += 2) {
     const double decay = std::exp(-n * pi * ratio);
     if (decay < 1e-18) break;
-    sum -= 2 * decay / ((1 + decay) * std::pow(n, 5));
+    const double n2 = n * n;
+    sum -= 2 * decay / ((1 + decay) * n2 * n2 * n);
   }
   return a * b * b * b * (1.0 / 3 - 64 / (pi * pi * pi * pi * pi * ratio) * sum);
 }
