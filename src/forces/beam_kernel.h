@@ -2,13 +2,15 @@
 /// One beam: strain energy and its exact gradient, on any scalar (physics.md section 2).
 ///
 /// Two rigid bodies i and j, displaced by u_i, u_j and rotated by q_i, q_j from the state at rest, are joined by a
-/// shear-flexible beam from centroid to centroid.
-///   e0 = X_j - X_i, d = u_j - u_i, e = e0 + d, l = |e|, l0 = |e0|;  t0 the beam's triad at rest
-///   a = q_i t0, b = q_j t0   the triads that the two bodies carry
+/// shear-flexible beam from centroid to centroid, whose triad at rest is T (e1 along the beam). All is computed in T:
+/// there the chord at rest is (l0, 0, 0) and small rotations are small numbers, so that strains keep their relative
+/// precision down to 1e-12 where components in the world would leave 1e-16 of l0.
+///   d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
+///   a, b = q_i, q_j with vector parts taken to T     (T^* q T: the triads that the bodies carry, seen from T)
 ///   r = a* b = (w, v)        with the sign that makes w >= 0
 ///   psi = 2 atan2(|v|, w) v/|v|                       relative rotation [rad]
 ///   m = (a + b)/|a + b|, E = R_m^T e                  the chord in the mean triad
-///   Delta = d.(2 e0 + d)/(l + l0)                     elongation [m], exact at any rotation and strain
+///   Delta = d.(2 (l0, 0, 0) + d)/(l + l0)             elongation [m], exact at any rotation and strain
 ///   gamma_y = l0 E_2/l, gamma_z = l0 E_3/l            shear of the chord against the mean triad, as a length [m]
 ///   U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2 + kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
 /// With g = asin|v|/|v| = (phi/2)/sin(phi/2), phi = |psi|:  psi = 2 g v.
@@ -21,13 +23,24 @@
 
 namespace floe {
 
-/// What a beam is at rest: chord e0 [m], its length, triad t0, stiffnesses [N/m, N m].
+/// What a beam is at rest: its triad, its length [m], its stiffnesses [N/m, N m].
 template <class C>
 struct BeamConstants {
-  Vec3<C> e0;
+  Triad<C> rest;
   C l0;
-  Quat<C> t0;
-  C kn, ksy, ksz, kt, kby, kbz;
+  C kn, ksz, ksy, kt, kby, kbz;
+
+  /// Components of a world vector in the triad at rest, and back.
+  template <class T>
+  Vec3<T> to_rest(const Vec3<T>& v) const {
+    return {dot(rest.e1, v), dot(rest.e2, v), dot(rest.e3, v)};
+  }
+  template <class T>
+  Vec3<T> to_world(const Vec3<T>& v) const {
+    return {T(T(rest.e1.x * v.x) + T(rest.e2.x * v.y)) + T(rest.e3.x * v.z),
+            T(T(rest.e1.y * v.x) + T(rest.e2.y * v.y)) + T(rest.e3.y * v.z),
+            T(T(rest.e1.z * v.x) + T(rest.e2.z * v.y)) + T(rest.e3.z * v.z)};
+  }
 };
 
 /// The six strains, and what the gradient needs with them.
@@ -37,7 +50,7 @@ struct BeamStrains {
   Vec3<T> psi;                ///< [rad]
   T l;                        ///< present length of the chord [m]
   Vec3<T> chord;              ///< E, components of the chord in the mean triad [m]
-  Triad<T> mean;              ///< R_m
+  Triad<T> mean;              ///< R_m, in the triad at rest
   Vec3<T> v;                  ///< vector part of the relative rotation
   T w, g, h;                  ///< its scalar part; g; h = (1 - g)/|v|^2
 };
@@ -76,25 +89,26 @@ BeamStrains<T> corotational_strains(const BeamConstants<C>& beam, const Vec3<T>&
                                     const Quat<T>& qj) {
   using std::sqrt;
   BeamStrains<T> s;
-  const Quat<T> a = product(qi, beam.t0);
-  Quat<T> b = product(qj, beam.t0);
+  const Vec3<T> ai = beam.to_rest(Vec3<T>{qi.x, qi.y, qi.z}), bj = beam.to_rest(Vec3<T>{qj.x, qj.y, qj.z});
+  const Quat<T> a{qi.w, ai.x, ai.y, ai.z};
+  Quat<T> b{qj.w, bj.x, bj.y, bj.z};
   const Quat<T> r = product(conjugate(a), b);
   const double sign = r.w < 0.0 ? -1.0 : 1.0;  // q and -q are the same rotation
   b = {T(sign * b.w), T(sign * b.x), T(sign * b.y), T(sign * b.z)};
   s.w = sign * r.w;
   s.v = {T(sign * r.x), T(sign * r.y), T(sign * r.z)};
-  Quat<T> m{T(a.w + b.w), T(a.x + b.x), T(a.y + b.y), T(a.z + b.z)};
+  const Quat<T> m{T(a.w + b.w), T(a.x + b.x), T(a.y + b.y), T(a.z + b.z)};
   const T inverse = T(1.0 / sqrt(T(T(m.w * m.w) + T(m.x * m.x)) + T(T(m.y * m.y) + T(m.z * m.z))));
   s.mean = triad(Quat<T>{T(inverse * m.w), T(inverse * m.x), T(inverse * m.y), T(inverse * m.z)});
 
-  const Vec3<T> e{T(beam.e0.x + d.x), T(beam.e0.y + d.y), T(beam.e0.z + d.z)};
+  const Vec3<T> stretch = beam.to_rest(d);
+  const Vec3<T> e{T(beam.l0 + stretch.x), stretch.y, stretch.z};
   s.l = sqrt(dot(e, e));
   s.chord = s.mean.to_local(e);
-  const Vec3<T> twice{T(beam.e0.x + e.x), T(beam.e0.y + e.y), T(beam.e0.z + e.z)};
-  s.delta = dot(d, twice) / T(s.l + beam.l0);
-  const T stretch = T(beam.l0 / s.l);
-  s.gamma_y = stretch * s.chord.y;
-  s.gamma_z = stretch * s.chord.z;
+  s.delta = dot(stretch, Vec3<T>{T(beam.l0 + e.x), stretch.y, stretch.z}) / T(s.l + beam.l0);
+  const T ratio = T(beam.l0 / s.l);
+  s.gamma_y = ratio * s.chord.y;
+  s.gamma_z = ratio * s.chord.z;
   const T s2 = dot(s.v, s.v);
   s.h = asin_remainder(s2, s.w);
   s.g = 1.0 - T(s2 * s.h);
@@ -107,16 +121,12 @@ template <class T, class C>
 BeamStrains<T> linear_strains(const BeamConstants<C>& beam, const Vec3<T>& d, const Quat<T>& qi,
                               const Quat<T>& qj) {
   BeamStrains<T> s;
-  const Triad<C> rest = triad(beam.t0);
-  const auto local = [&](const Vec3<T>& x) {
-    return Vec3<T>{dot(rest.e1, x), dot(rest.e2, x), dot(rest.e3, x)};
-  };
-  const Vec3<T> chord = local(d);
-  const Vec3<T> sum = local({T(qi.x + qj.x), T(qi.y + qj.y), T(qi.z + qj.z)});
+  const Vec3<T> chord = beam.to_rest(d);
+  const Vec3<T> sum = beam.to_rest(Vec3<T>{T(qi.x + qj.x), T(qi.y + qj.y), T(qi.z + qj.z)});
   s.delta = chord.x;
   s.gamma_y = chord.y - T(beam.l0 * sum.z);
   s.gamma_z = chord.z + T(beam.l0 * sum.y);
-  s.psi = 2.0 * local({T(qj.x - qi.x), T(qj.y - qi.y), T(qj.z - qi.z)});
+  s.psi = 2.0 * beam.to_rest(Vec3<T>{T(qj.x - qi.x), T(qj.y - qi.y), T(qj.z - qi.z)});
   return s;
 }
 
@@ -141,22 +151,17 @@ BeamGradient<T> corotational_gradient(const BeamConstants<C>& beam, const BeamSt
   const Vec3<T> q = s.g * c + T(s.h * dot(s.v, c)) * s.v;
   const Vec3<T> z = q + T(0.5 / T(1.0 + s.w)) * cross(s.v, p);
   const Vec3<T> half = 0.5 * p;
-  return {s.mean.to_world(n), s.mean.to_world(half - z), s.mean.to_world(half + z)};
+  return {beam.to_world(s.mean.to_world(n)), beam.to_world(s.mean.to_world(half - z)),
+          beam.to_world(s.mean.to_world(half + z))};
 }
 
 /// Exact gradient of beam_energy for linear strains.
 template <class T, class C>
 BeamGradient<T> linear_gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
-  const Triad<C> rest = triad(beam.t0);
-  const auto world = [&](const Vec3<T>& x) {
-    return Vec3<T>{T(T(rest.e1.x * x.x) + T(rest.e2.x * x.y)) + T(rest.e3.x * x.z),
-                   T(T(rest.e1.y * x.x) + T(rest.e2.y * x.y)) + T(rest.e3.y * x.z),
-                   T(T(rest.e1.z * x.x) + T(rest.e2.z * x.y)) + T(rest.e3.z * x.z)};
-  };
   const T qy = T(beam.ksz * s.gamma_y), qz = T(beam.ksy * s.gamma_z);
   const Vec3<T> half{T(0.0 * qy), T((0.5 * beam.l0) * qz), T((-0.5 * beam.l0) * qy)};
   const Vec3<T> c{T(beam.kt * s.psi.x), T(beam.kby * s.psi.y), T(beam.kbz * s.psi.z)};
-  return {world({T(beam.kn * s.delta), qy, qz}), world(half - c), world(half + c)};
+  return {beam.to_world(Vec3<T>{T(beam.kn * s.delta), qy, qz}), beam.to_world(half - c), beam.to_world(half + c)};
 }
 
 /// The kernel for one choice of kinematics, picked outside the loop over beams.

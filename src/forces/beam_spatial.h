@@ -27,14 +27,14 @@ struct SpatialBeam {
     const Point3& xi = part.bodies.position[static_cast<std::size_t>(i)];
     const Point3& xj = part.bodies.position[static_cast<std::size_t>(j)];
     Constants c{};
-    c.e0 = {xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
-    c.l0 = std::sqrt(dot(c.e0, c.e0));
-    const Vec3<double> e1 = (1.0 / c.l0) * c.e0;
+    const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
+    c.l0 = std::sqrt(dot(e0, e0));
+    const Vec3<double> e1 = (1.0 / c.l0) * e0;
     const Point3& axis = part.beams.axis_y[k];
     Vec3<double> e2{axis[0], axis[1], axis[2]};
     e2 = e2 - dot(e2, e1) * e1;
     e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
-    c.t0 = quaternion({e1, e2, cross(e1, e2)});
+    c.rest = {e1, e2, cross(e1, e2)};
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
     return c;

@@ -210,11 +210,14 @@ PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept
 
 /// Relative to the forces that balance (external ones and reactions), never below the rounding of the beams' own.
 double Equilibrium::tolerance(double rtol, double atol) {
-  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
   double noise2 = 0;
+  const double l = model_.length_scale();
   for (std::size_t b = 0; b < stiffness_.size(); ++b) {
     const Vec3<double> u = displacement(state_, b);
-    noise2 += stiffness_[b] * stiffness_[b] * dot(u, u);
+    const Quat<double> q = rotation(state_, b);
+    const double turned2 = 4 * l * l * (q.x * q.x + q.y * q.y + q.z * q.z);
+    noise2 += stiffness_[b] * stiffness_[b] * (dot(u, u) + turned2);
   }
   const std::array<double, 2> mine{external2_, noise2};
   std::array<double, 2> all{};
