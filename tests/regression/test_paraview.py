@@ -17,18 +17,18 @@ import numpy as np
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
 
-# Runs inside pvpython: per time and block the counts, bounds and ranges of the cell data, as JSON.
+# Runs inside pvpython: per time and grid the counts, bounds and ranges of the cell data, as JSON.
 LOOK = """
 import json, sys
 from paraview.simple import OpenDataFile
 from paraview import servermanager
 
 def leaves(data):
-    if not data.IsA("vtkCompositeDataSet"):
-        return [("", data)]
-    found, at = [], data.NewIterator()
+    # The reader that OpenDataFile takes forgets the grids' names; what they carry tells them apart.
+    found, at = {}, data.NewIterator()
     while not at.IsDoneWithTraversal():
-        found.append((at.GetCurrentMetaData().Get(data.NAME()), at.GetCurrentDataObject()))
+        block = at.GetCurrentDataObject()
+        found["bodies" if block.GetCellData().HasArray("body") else "beams"] = block
         at.GoToNextItem()
     return found
 
@@ -43,7 +43,8 @@ seen = []
 for time in reader.TimestepValues:
     reader.UpdatePipeline(time)
     blocks = leaves(servermanager.Fetch(reader))
-    seen.append({"time": time, "blocks": {name: describe(block) for name, block in blocks}})
+    described = {name: describe(block) for name, block in blocks.items()}
+    seen.append({"time": time, "blocks": described})
 with open(sys.argv[2], "w") as out:
     json.dump(seen, out)
 """
