@@ -77,6 +77,9 @@ void Equilibrium::set_defaults() {
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   check(KSPSetFromOptions(ksp));
   check(SNESSetFromOptions(snes_));
+  PetscBool lag_given = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, "-snes_lag_jacobian", &lag_given));
+  adaptive_ = lag_given == PETSC_FALSE;
 }
 
 /// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic body.
@@ -200,8 +203,16 @@ PetscErrorCode Equilibrium::residual(SNES snes, Vec x, Vec f, void* self) noexce
   return 0;
 }
 
+/// A factorisation costs a dozen solves. The one of the prediction serves on while each iteration takes a digit off
+/// the residual; after a prediction that turned bodies far it is not even tried.
+bool Equilibrium::keeps_factorisation() const {
+  constexpr double a_digit = 0.1;
+  return adaptive_ && small_turns_ && contraction_ <= a_digit;
+}
+
 PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept {
   auto& me = *static_cast<Equilibrium*>(self);
+  if (me.keeps_factorisation()) return 0;
   me.take(x);
   me.rebase(x);
   me.assemble();
@@ -225,14 +236,17 @@ double Equilibrium::tolerance(double rtol, double atol) {
   return std::max({rtol * std::sqrt(all[0]), rounding * std::sqrt(all[1]), atol});
 }
 
-PetscErrorCode Equilibrium::converged(SNES snes, PetscInt, PetscReal, PetscReal, PetscReal norm,
+PetscErrorCode Equilibrium::converged(SNES snes, PetscInt it, PetscReal, PetscReal, PetscReal norm,
                                       SNESConvergedReason* reason, void* self) noexcept {
+  auto& me = *static_cast<Equilibrium*>(self);
+  me.contraction_ = it > 0 && me.last_norm_ > 0 ? norm / me.last_norm_ : 0.0;
+  me.last_norm_ = norm;
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm)) {
     *reason = SNES_DIVERGED_FNORM_NAN;
-  } else if (norm <= static_cast<Equilibrium*>(self)->tolerance(rtol, atol)) {
+  } else if (norm <= me.tolerance(rtol, atol)) {
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
   }
   return 0;
@@ -265,6 +279,7 @@ bool Equilibrium::predict(double time) {
   check(VecNorm(f_, NORM_2, &norm));
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, nullptr, nullptr));
+  small_turns_ = false;
   if (anyone_moves == 0 && norm <= tolerance(rtol, atol)) return true;
 
   rebase(x_);
@@ -286,11 +301,17 @@ bool Equilibrium::predict(double time) {
   }
   ++iterations_;
   PetscScalar* d = nullptr;
+  double turn = 0;
   check(VecGetArray(step_, &d));
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
     if ((model_.held()[k / n] >> (k % n) & 1U) != 0) d[k] = increments[k];
+    if (k % n >= 3) turn = std::max(turn, std::abs(d[k]) / l);
   }
   check(VecRestoreArray(step_, &d));
+  double largest_turn = 0;
+  MPI_Allreduce(&turn, &largest_turn, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+  constexpr double small_turn = 0.02;  // [rad]
+  small_turns_ = largest_turn < small_turn;
   check(VecAXPY(x_, 1.0, step_));
   return true;
 }

@@ -53,6 +53,7 @@ class Equilibrium {
   void fill_residual(Vec f);
   void assemble(std::span<const double> increments = {});
   bool predict(double time);
+  bool keeps_factorisation() const;
   double tolerance(double rtol, double atol);
   Saved save() const;
   void restore(const Saved& saved);
@@ -63,6 +64,9 @@ class Equilibrium {
   Wrenches<Spatial> wrenches_, share_;
   std::vector<double> reference_;  ///< owned bodies: q_ref (4) and the rotation sum at it (3)
   std::vector<double> stiffness_;  ///< per owned body, for the rounding level [N/m]
+  bool adaptive_ = true;           ///< whether to keep a factorisation that still converges (not if the user set a lag)
+  bool small_turns_ = false;       ///< the prediction of this step turned no body by much
+  double last_norm_ = 0, contraction_ = 1;  ///< of the residual, over the last iteration
   double external2_ = 0;           ///< squared norm of each external force's wrenches, summed, this rank
   Tangent<Spatial> tangent_;
   Handle<Vec> x_, f_, step_;
