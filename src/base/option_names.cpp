@@ -102,6 +102,15 @@ bool is_petsc_option(std::string_view name) {
                      [&](std::string_view family) { return belongs(name, family); });
 }
 
+std::string nearest_petsc_option(std::string_view name) {
+  const std::string_view family = name.substr(0, name.find('_') + 1);
+  for (const std::string_view known : petsc_names) {
+    if (known != name && known.starts_with(family) && distance(name, known) <= 2)
+      return std::string(known);
+  }
+  return {};
+}
+
 std::string nearest_option(std::string_view option, std::span<const OptionSpec> table) {
   std::string name(option);
   std::transform(name.begin(), name.end(), name.begin(),

@@ -17,4 +17,7 @@ bool is_petsc_option(std::string_view name);
 /// is nearer, one of PETSc's families with the rest of the name. Empty if nothing is near.
 std::string nearest_option(std::string_view name, std::span<const OptionSpec> table);
 
+/// The well-known option of the same PETSc family that `name` may be a misspelling of, or nothing.
+std::string nearest_petsc_option(std::string_view name);
+
 }  // namespace floe

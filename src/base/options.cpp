@@ -65,12 +65,16 @@ bool is_option_of(const OptionSpec& line, std::string_view option) {
 bool is_value(std::string_view fallback) { return !fallback.empty() && fallback.front() != '('; }
 
 /// What PETSc asks for only while it ends.
-bool may_be_late(std::string_view name) {
-  constexpr std::array late{"options_left",    "options_view", "citations",
-                            "get_total_flops", "mpidump",      "objects_dump"};
-  return std::find(late.begin(), late.end(), name) != late.end() ||
-         name.find("_view") != std::string_view::npos || name.starts_with("viewer_") ||
+bool is_asked_for_at_the_end(std::string_view name) {
+  constexpr std::array late{"citations", "get_total_flops", "mpidump", "objects_dump",
+                            "stack_view"};
+  return std::find(late.begin(), late.end(), name) != late.end() || name.starts_with("options_") ||
          name.starts_with("malloc_");
+}
+
+/// Viewers may be asked for at any time.
+bool is_viewer(std::string_view name) {
+  return name.find("_view") != std::string_view::npos || name.starts_with("viewer_");
 }
 
 [[noreturn]] void refuse_value(const OptionSpec& spec, const std::string& label,
@@ -330,22 +334,22 @@ void throw_verdict(std::string verdict, MPI_Comm comm) {
 
 void reject_unused_options() {
   std::string verdict;
-  const Pairs unused = unused_options();
-  const auto first = std::find_if(unused.begin(), unused.end(),
-                                  [](const auto& option) { return !may_be_late(option.first); });
-  if (first != unused.end()) {
-    verdict = first->first + ": nothing in this run has asked for this PETSc option";
-    const std::string near = nearest_option(first->first, {});
-    if (!near.empty() && near != first->first) verdict += "; is it '" + near + "'?";
+  for (const auto& [name, value] : unused_options()) {
+    if (is_viewer(name) || is_asked_for_at_the_end(name)) continue;
+    const std::string near = nearest_petsc_option(name);
+    verdict = name + ": nothing in this run has asked for this PETSc option" +
+              (near.empty() ? "" : "; is it '" + near + "'?");
+    break;
   }
   throw_verdict(verdict, PETSC_COMM_WORLD);  // a rank may have asked for less than rank 0
 }
 
 void warn_unused_options() {
+  if (rank() != 0) return;
   for (const auto& [name, value] : unused_options()) {
-    if (rank() == 0 && !name.starts_with("options_"))
-      std::fprintf(stderr, "floe: warning: %s: nothing in this run has asked for this option\n",
-                   name.c_str());
+    if (is_asked_for_at_the_end(name)) continue;
+    std::fprintf(stderr, "floe: warning: %s: nothing in this run has asked for this option\n",
+                 name.c_str());
   }
 }
 

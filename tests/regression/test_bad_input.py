@@ -40,6 +40,8 @@ def loaded(rest):
     return GOOD + "load: {names: [p], p: {" + rest + "}}\n"
 
 
+PULLED = loaded("set: right, force: [1e5, 0, 0]")  # what a solver has work with
+
 COMMAND_LINE = {
     "stray word": (GOOD, ["stray"], "stray"),
     "stray word after a flag with a value": (GOOD, ["-check", "no", "stray"], "stray"),
@@ -51,10 +53,13 @@ COMMAND_LINE = {
     "options from a file": (GOOD, ["-options_file", "more"], "-options_file"),
     "PETSc's history file": (GOOD, ["-history", "3"], "output: history"),
     "unknown PETSc family": (GOOD, ["-kps_type", "cg"], "ksp_type"),
-    "unknown PETSc option": (GOOD, ["-ksp_tpye", "cg"], "ksp_type"),
-    "unknown linear solver": (GOOD, ["-ksp_type", "conjugate"], "conjugate"),
-    "unknown preconditioner": (GOOD, ["-pc_type", "magic"], "magic"),
-    "unknown nonlinear solver": (GOOD, ["-snes_type", "magic"], "magic"),
+    "unknown PETSc option": (PULLED, ["-ksp_tpye", "cg"], "ksp_type"),
+    "unknown linear solver": (PULLED, ["-ksp_type", "conjugate"], "conjugate"),
+    "unknown factorisation": (PULLED, ["-pc_factor_mat_solver_type", "magic"], "magic"),
+    "word for a number of PETSc's": (PULLED, ["-snes_rtol", "small"], "small"),
+    "PETSc option of another solver": (PULLED, ["-ts_type", "rk"], "ts_type"),
+    "unknown preconditioner": (PULLED, ["-pc_type", "magic"], "magic"),
+    "unknown nonlinear solver": (PULLED, ["-snes_type", "magic"], "magic"),
 }
 
 SCENES = {
