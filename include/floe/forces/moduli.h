@@ -18,7 +18,7 @@ struct LatticeModuli {
 };
 
 /// \param size  element size l [m]   \param thickness  h [m]
-/// With w = l/sqrt(3), r = k_s/k_n (Karihaloo, Lilliu & van Mier 2003, and other micropolar lattice literature).
+/// With w = l/sqrt(3), r = k_s/k_n (Ostoja-Starzewski 2002; Karihaloo, Shao & Xiao 2003).
 LatticeModuli lattice_moduli(double size, double thickness, const Ice& ice, double shear_factor, Shear shear,
                              Torsion torsion);
 
