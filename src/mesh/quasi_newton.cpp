@@ -116,7 +116,7 @@ PetscErrorCode test_move(Tao tao, void* context) noexcept {
     }
     if (problem.evaluations >= problem.limit)
       return TaoSetConvergedReason(tao, TAO_DIVERGED_MAXFCN);
-    // Nearer than 1e-12 l to a minimum, differences of F are rounding and a line search finds nothing.
+    // Nearer than 1e-12 l to a minimum, differences of F are rounding: nothing for a line search.
     if (move <= std::max(problem.tolerance, 1e-12))
       return TaoSetConvergedReason(tao, TAO_CONVERGED_USER);
     return TaoDefaultConvergenceTest(tao, nullptr);

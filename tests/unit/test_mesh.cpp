@@ -224,6 +224,13 @@ TEST(Tessellation, NearlyDegenerateGridsStillTile) {
     const Tessellation t = tessellate(plan, z);
     expect_well_formed(plan, t);
     EXPECT_EQ(t.facets.size() + t.degenerate, 180u + 81u);
+    for (std::size_t k = 0; k < z.size(); ++k) {  // no edge that is not a facet
+      const auto p = polygon(t, k);
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        const Point2 &a = p[i], &b = p[(i + 1) % p.size()];
+        EXPECT_GE(std::hypot(b[0] - a[0], b[1] - a[1]), 0.999e-9) << k;
+      }
+    }
   }
 }
 

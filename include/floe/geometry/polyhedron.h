@@ -21,9 +21,9 @@ struct PlanProperties {
 };
 PlanProperties plan_properties(std::span<const Point2> polygon);
 
-/// Convex polyhedra of all bodies in one block, in each body's own frame (principal axes, origin at the
-/// centroid). Body b has the faces face_of[b] ... face_of[b+1]-1; face f the vertices corners[corner_of[f]]...,
-/// indices into `vertices`, counter-clockwise seen from outside.
+/// Convex polyhedra of all bodies in one block, in each body's own frame (principal axes, origin at
+/// the centroid). Body b has the faces face_of[b] ... face_of[b+1]-1; face f the vertices
+/// corners[corner_of[f]]..., indices into `vertices`, counter-clockwise seen from outside.
 struct Shapes {
   std::vector<Point3> vertices;
   std::vector<std::int32_t> corners;
@@ -44,18 +44,21 @@ struct VolumeProperties {
 };
 VolumeProperties volume_properties(const Shapes& shapes, std::int32_t body);
 
-/// The part of a convex polyhedron below the plane z = level, after its vertices were placed in the world.
-/// Waterplane moments are about the point (x0, y0) given to the function.
+/// The part of a convex polyhedron below the plane z = level, after its vertices were placed in the
+/// world. Waterplane moments are about the point (x0, y0) given to the function.
 struct Submerged {
-  double volume = 0;         ///< [m^3]
-  Point3 moment{};           ///< int (r - x0) dV over the submerged part [m^4]
-  double waterplane = 0;     ///< area of the cut [m^2]
-  double wx = 0, wy = 0;     ///< int x, y dA over the cut [m^3]
+  double volume = 0;                 ///< [m^3]
+  Point3 moment{};                   ///< int (r - x0) dV over the submerged part [m^4]
+  double waterplane = 0;             ///< area of the cut [m^2]
+  double wx = 0, wy = 0;             ///< int x, y dA over the cut [m^3]
   double wxx = 0, wxy = 0, wyy = 0;  ///< second moments of the cut [m^4]
 };
 
-/// \param placed  world coordinates of the body's vertices, minus those of the reference point (x0, y0, z0)
-/// \param level   height of the water above the reference point [m]
-Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Point3> placed, double level);
+/// A vertex at the level counts as dry: a body that rests on the surface has no waterplane, one
+/// whose top face is awash has that face as its waterplane. \param placed  world coordinates of the
+/// body's vertices, minus those of the reference point (x0, y0, z0) \param level   height of the
+/// water above the reference point [m]
+Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Point3> placed,
+                    double level);
 
 }  // namespace floe
