@@ -104,8 +104,9 @@ Options::Options(std::span<const OptionSpec> table) : table_(table) {
 /// Ours into given_, PETSc's into petsc_. What is neither and has no value may be an empty section.
 void Options::sort_given(const Pairs& database) {
   for (const auto& [name, value] : database) {
-    const bool ours = std::any_of(table_.begin(), table_.end(),
-                                  [&](const OptionSpec& line) { return is_option_of(line, name); });
+    const bool ours = std::any_of(
+        table_.begin(), table_.end(),
+        [&option = name](const OptionSpec& line) { return is_option_of(line, option); });
     if (ours) {
       given_[name] = value;
     } else if (is_section(name)) {
@@ -264,7 +265,7 @@ std::int64_t Options::integer(std::string_view key, std::string_view name) {
 }
 
 std::string Options::text(std::string_view key, std::string_view name,
-                          std::optional<std::string> otherwise) {
+                          const std::optional<std::string>& otherwise) {
   const Reading reading = read(key, name);
   std::string value = reading.value ? *reading.value : otherwise.value_or("");
   if (value.empty()) refuse_value(reading.spec, reading.label, value);

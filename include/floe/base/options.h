@@ -72,7 +72,7 @@ class Options {
                 std::optional<double> otherwise = {});
   std::int64_t integer(std::string_view key, std::string_view name = {});
   std::string text(std::string_view key, std::string_view name = {},
-                   std::optional<std::string> otherwise = {});
+                   const std::optional<std::string>& otherwise = {});
   std::vector<std::string> words(std::string_view key, std::string_view name = {});
   template <std::size_t N>
   std::array<double, N> numbers(std::string_view key, std::string_view name = {}) {
