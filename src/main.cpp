@@ -1,7 +1,9 @@
 // floe SCENE.yaml [-key value ...]: reads like the method section of a paper.
 
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "floe/base/log.h"
 #include "floe/base/options.h"
@@ -40,27 +42,45 @@ int run(const std::string& path) {
   add_forces(scene, loads, model);
   hold_free_motions(scene, lattice, model);
   if (scene.check_only) {
+    check_solver_options(model);
     say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
         std::to_string(model.part().global_beams) + " beams\n");
     return done;
   }
 
-  // 4. Output
-  Output output({scene.output.dir, scene.output.history, scene.output.fields}, lattice, model, loads,
-                scene.options_yaml);
-  if (rank() != 0) lattice = {};  // only rank 0 writes geometry
+  // 4. Output, opened once a step has shown that every option was understood: bad input leaves no
+  // folder behind
+  std::optional<Output> output;
+  std::optional<std::pair<State<Spatial>, Wrenches<Spatial>>> first;
+  const auto open = [&] {
+    reject_unused_options();
+    output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
+                   lattice, model, loads, scene.options_yaml);
+    if (rank() != 0) lattice = {};  // only rank 0 writes geometry
+    output->accept({first->first, first->second, 0});
+    first.reset();
+  };
 
   // 5. Run
-  const RunResult result =
-      run_quasistatic(model, {scene.time.end, scene.time.dt}, [&](const Accepted<Spatial>& accepted) {
-        output.accept(accepted);
-        if (accepted.step == 1) reject_unused_options();
-      });
-  output.finish();
+  const RunResult result = run_quasistatic(model, {scene.time.end, scene.time.dt},
+                                           [&](const Accepted<Spatial>& accepted) {
+                                             if (accepted.step == 0) {
+                                               first.emplace(accepted.state, accepted.wrenches);
+                                               return;
+                                             }
+                                             if (!output) open();
+                                             output->accept(accepted);
+                                           });
+  if (!output && first) open();
+  if (!output) {  // not even a first state
+    say("floe: " + result.message + "\n", stderr);
+    return failed;
+  }
+  output->finish();
 
   // 6. Results
   const Summary summary =
-      summarise(scene, model, mesh, result, output.first(), output.last(), MPI_Wtime() - start);
+      summarise(scene, model, mesh, result, output->first(), output->last(), MPI_Wtime() - start);
   if (rank() == 0) write_whole(scene.output.dir + "/summary.json", summary.json);
   say(summary.text);
   if (!result.done) say("floe: " + result.message + "\n", stderr);
@@ -72,9 +92,14 @@ int run(const std::string& path) {
 
 int main(int argc, char** argv) {
   switch (floe::wants_help(argc, argv)) {
-    case floe::Help::text: std::fputs(floe::options_help().c_str(), stdout); return done;
-    case floe::Help::markdown: std::fputs(floe::options_markdown().c_str(), stdout); return done;
-    case floe::Help::none: break;
+    case floe::Help::text:
+      std::fputs(floe::options_help().c_str(), stdout);
+      return done;
+    case floe::Help::markdown:
+      std::fputs(floe::options_markdown().c_str(), stdout);
+      return done;
+    case floe::Help::none:
+      break;
   }
   floe::Mpi mpi(argc, argv);
   try {

@@ -8,8 +8,10 @@
 namespace floe {
 namespace {
 
-/// PETSc's own words for the last error, kept for fail(); PETSc's default handler would print a page.
-std::string last_message;  // NOLINT: written by PETSc's error handler, which has no other place to put it
+/// PETSc's own words for the last error, kept for fail(); PETSc's default handler would print a
+/// page.
+std::string
+    last_message;  // NOLINT: written by PETSc's error handler, which has no other place to put it
 
 PetscErrorCode remember_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
                               PetscErrorType type, const char* message, void*) {
@@ -45,14 +47,16 @@ void fail(int ierr, const std::source_location& where) {
   std::string text = last_message.empty() ? std::string(generic ? generic : "") : last_message;
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   last_message.clear();
-  if (ierr == PETSC_ERR_ARG_UNKNOWN_TYPE || ierr == PETSC_ERR_USER_INPUT) {
+  const bool not_a_number = ierr == PETSC_ERR_ARG_OUTOFRANGE && text.rfind("Input string", 0) == 0;
+  if (ierr == PETSC_ERR_ARG_UNKNOWN_TYPE || ierr == PETSC_ERR_USER_INPUT ||
+      ierr == PETSC_ERR_MISSING_FACTOR || not_a_number) {
     for (char& c : text) {
       if (c == '\n') c = ' ';
     }
     throw InputError("solver option: " + text);
   }
-  throw std::runtime_error(text + " (code " + std::to_string(ierr) + ", " + where.file_name() + ":" +
-                           std::to_string(where.line()) + ")");
+  throw std::runtime_error(text + " (code " + std::to_string(ierr) + ", " + where.file_name() +
+                           ":" + std::to_string(where.line()) + ")");
 }
 
 Mpi::Mpi(int& argc, char**& argv) {

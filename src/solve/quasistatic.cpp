@@ -19,6 +19,8 @@ std::string text(double value) {
 
 }  // namespace
 
+void check_solver_options(Model<Spatial>& model) { const Equilibrium equilibrium(model); }
+
 RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Observer<Spatial>& observer) {
   Equilibrium equilibrium(model);
   RunResult result;

@@ -19,7 +19,7 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws if a PETSc (or MPI) call failed: InputError if the user asked for a type PETSc does not have,
+/// Throws if a PETSc (or MPI) call failed: InputError if the user asked for what PETSc does not have,
 /// otherwise std::runtime_error, which nobody catches: the terminate handler prints it and aborts all
 /// ranks (unwinding on one rank would run collective destructors and hang).
 [[noreturn]] void fail(int ierr, const std::source_location& where);

@@ -39,4 +39,7 @@ using Observer = std::function<void(const Accepted<Space>&)>;
 /// Newton with preonly + Cholesky by MUMPS on blocked symmetric storage. Collective.
 RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Observer<Spatial>& observer);
 
+/// Sets the static solver up and gives it up again: for -check. \throws InputError for a solver PETSc does not have
+void check_solver_options(Model<Spatial>& model);
+
 }  // namespace floe
