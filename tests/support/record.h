@@ -1,0 +1,63 @@
+/// \file
+/// Numbers that are compared with a reference: expected by GoogleTest and, where FLOE_RECORD names
+/// a file, appended to it as one JSON line each, from which tools/verification_page makes
+/// docs/verification.md.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace floe::test {
+
+/// Whether the long form was asked for: every number, several meshes each.
+inline bool full_form() {
+  const char* full = std::getenv("FLOE_FULL");
+  return full != nullptr && *full != '\0' && *full != '0';
+}
+
+/// One number of the verification.
+struct Checked {
+  std::string section, quantity;
+  double value = 0;
+  std::optional<double> reference, tolerance;  ///< without a tolerance the number is reported only
+  std::string unit = {}, note = {};
+};
+
+inline void record(const Checked& c, bool pass) {
+  const char* file = std::getenv("FLOE_RECORD");
+  if (file == nullptr || *file == '\0') return;
+  nlohmann::ordered_json line;
+  const auto or_null = [](const std::optional<double>& x) {
+    return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr);
+  };
+  line["section"] = c.section;
+  line["quantity"] = c.quantity;
+  line["value"] = c.value;
+  line["reference"] = or_null(c.reference);
+  line["tolerance"] = or_null(c.tolerance);
+  line["unit"] = c.unit;
+  line["note"] = c.note;
+  line["pass"] = pass;
+  std::ofstream out(file, std::ios::app);
+  out << line.dump() << '\n';
+  EXPECT_TRUE(out.flush()) << "cannot write " << file;
+}
+
+/// Records a number and expects it to lie within its tolerance of the reference.
+inline void verify(const Checked& c) {
+  const bool pass = std::abs(c.value - c.reference.value()) <= c.tolerance.value();
+  record(c, pass);
+  EXPECT_TRUE(pass) << c.section << ": " << c.quantity << ": " << c.value << ", expected "
+                    << *c.reference << " +- " << *c.tolerance << " " << c.unit << " " << c.note;
+}
+
+/// Records a number that nothing is compared with.
+inline void report(const Checked& c) { record(c, true); }
+
+}  // namespace floe::test

@@ -1,0 +1,90 @@
+/// \file
+/// A lattice brought to equilibrium in process, by the same functions that main calls.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "floe/build.h"
+
+namespace floe::test {
+
+/// An option of PETSc's database for as long as the object lives.
+class PetscOption {
+ public:
+  PetscOption(std::string name, const std::string& value) : name_(std::move(name)) {
+    check(PetscOptionsSetValue(nullptr, name_.c_str(), value.c_str()));
+  }
+  ~PetscOption() { (void)PetscOptionsClearValue(nullptr, name_.c_str()); }
+  PetscOption(const PetscOption&) = delete;
+  PetscOption& operator=(const PetscOption&) = delete;
+
+ private:
+  std::string name_;
+};
+
+/// Every accepted state of a static run on one process; bodies and beams are numbered as in the
+/// lattice.
+struct StaticSolution {
+  std::unique_ptr<Model<Spatial>> model;
+  std::vector<PlacedLoad> loads;
+  std::vector<State<Spatial>> states;  ///< the first at time 0, then one per load step
+  Wrenches<Spatial> wrenches;          ///< of the last state; minus the reactions where held
+  RunResult result;
+
+  const State<Spatial>& first() const { return states.front(); }
+  const State<Spatial>& last() const { return states.back(); }
+};
+
+/// \param pins  hold these instead of what hold_free_motions would choose
+inline StaticSolution solve_static(const Scene& scene, const Lattice& lattice,
+                                   const std::vector<Pin>* pins = nullptr) {
+  StaticSolution s;
+  s.loads = place_loads(scene, lattice);
+  s.model = std::make_unique<Model<Spatial>>(lattice, PETSC_COMM_SELF, scene.boundaries);
+  add_forces(scene, s.loads, *s.model);
+  if (pins != nullptr) {
+    s.model->pin(*pins);
+  } else {
+    hold_free_motions(scene, lattice, *s.model);
+  }
+  s.result =
+      run_quasistatic(*s.model, {scene.time.end, scene.time.dt}, [&](const Accepted<Spatial>& a) {
+        s.states.push_back(a.state);
+        s.wrenches = a.wrenches;
+      });
+  EXPECT_TRUE(s.result.done) << s.result.message;
+  return s;
+}
+
+/// The lattice that a scene's sheet becomes. The mesh is made by this process alone.
+inline Lattice mesh_of(const Scene& scene) {
+  MeshReport report;
+  return make_lattice(scene, PETSC_COMM_SELF, report);
+}
+
+/// Displacement of the point where load `k` acts [m]: of the body's centroid, and the turning of
+/// its arm.
+inline Vec3<double> displacement_of_load(const StaticSolution& s, const State<Spatial>& state,
+                                         std::size_t k = 0) {
+  const PlacedLoad& load = s.loads[k];
+  const auto b = static_cast<std::size_t>(load.bodies[0]);
+  const Vec3<double> arm{load.arm[0], load.arm[1], load.arm[2]};
+  return displacement(state, b) + (rotate(rotation(state, b), arm) - arm);
+}
+
+inline std::string name_of(Shear shear) {
+  constexpr const char* names[] = {"one_point", "exact", "none"};
+  return names[static_cast<int>(shear)];
+}
+
+inline std::string name_of(Kinematics kinematics) {
+  return kinematics == Kinematics::linear ? "linear" : "co-rotational";
+}
+
+inline constexpr Shear all_shears[] = {Shear::exact, Shear::one_point, Shear::none};
+
+}  // namespace floe::test
