@@ -25,7 +25,8 @@ inline bool full_form() {
 struct Checked {
   std::string section, quantity;
   double value = 0;
-  std::optional<double> reference, tolerance;  ///< without a tolerance the number is reported only
+  std::optional<double> reference = {};
+  std::optional<double> tolerance = {};  ///< without one the number is reported only
   std::string unit = {}, note = {};
 };
 
