@@ -171,7 +171,10 @@ std::span<const double> flat(const std::vector<Point3>& v) { return {v.empty() ?
 }  // namespace
 
 const std::vector<std::int32_t>& Lattice::set(const std::string& name, const std::string& key) const {
-  if (const auto found = sets.find(name); found != sets.end()) return found->second;
+  if (const auto found = sets.find(name); found != sets.end()) {
+    if (found->second.empty()) throw InputError(key + ": the set '" + name + "' has no bodies");
+    return found->second;
+  }
   std::string known;
   for (const auto& [other, bodies_of_set] : sets) known += (known.empty() ? "" : ", ") + other;
   throw InputError(key + ": there is no set '" + name + "'; the scene has " + known);

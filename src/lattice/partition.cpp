@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "lattice/permute.h"
 
@@ -36,6 +37,7 @@ std::vector<std::int32_t> Part::localise(const std::vector<std::int32_t>& global
 }
 
 Part partition(const Lattice& lattice, MPI_Comm comm) {
+  const Timed timed(Event::partition);
   const int me = rank(comm), ranks = size(comm);
   const std::int32_t n = lattice.bodies.size();
   if (ranks > n)

@@ -53,7 +53,7 @@ struct Lattice {
   std::map<std::string, std::vector<std::int32_t>> sets;  ///< sorted body indices; "all" is implied
   Shapes shapes;  ///< empty, or one convex polyhedron per body in its principal axes
 
-  /// Indices of a named set. \throws InputError naming `key` and the known sets if there is no such set.
+  /// Indices of a named set. \throws InputError naming `key` if the set is empty, or, with the known sets, missing.
   const std::vector<std::int32_t>& set(const std::string& name, const std::string& key) const;
 };
 
