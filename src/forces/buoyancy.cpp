@@ -81,7 +81,8 @@ class Buoyancy final : public Force<Spatial> {
   Submerged below_water(const State<Spatial>& state, std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
     const auto [w, x, y, z] = part_.bodies.orientation[b];
-    const Triad<double> axes = triad(product(rotation(state, b), Quat<double>{w, x, y, z}));
+    // A linearised quaternion (1, theta/2) is longer than 1 and would swell the body.
+    const Triad<double> axes = triad(product(normalised(rotation(state, b)), Quat<double>{w, x, y, z}));
     const Shapes& shapes = part_.shapes;
     placed_.clear();
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {

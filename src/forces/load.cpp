@@ -7,9 +7,11 @@ namespace {
 
 /// Dead load F with the moment M: wrench (F, a x F + M) on each body, a = R r the turned arm. Potential
 /// -F.(u + a) of the force; a dead moment has none, which the exact tangent K shows as a skew part.
+/// With linear kinematics a = r in the wrench, which is constant then, and r + theta x r in the potential.
 class DeadLoad final : public Force<Spatial> {
  public:
-  DeadLoad(const Part& part, PlacedLoad placed) : load_(std::move(placed.load)), part_(part) {
+  DeadLoad(const Part& part, PlacedLoad placed, Kinematics kinematics)
+      : load_(std::move(placed.load)), part_(part), linear_(kinematics == Kinematics::linear) {
     share_ = 1.0 / static_cast<double>(placed.bodies.size());
     for (const std::int32_t body : placed.bodies) {
       const std::int32_t local = part.local_index(body);
@@ -24,7 +26,7 @@ class DeadLoad final : public Force<Spatial> {
     const Vec3<double> f = force(state.time), m = moment(state.time);
     for (const std::int32_t body : bodies_) {
       const auto b = static_cast<std::size_t>(body);
-      const Vec3<double> total = m + cross(turned_arm(state, b), f);
+      const Vec3<double> total = m + cross(linear_ ? arm_ : turned_arm(state, b), f);
       double* w = wrenches.of(b);
       w[0] += f.x, w[1] += f.y, w[2] += f.z;
       w[3] += total.x, w[4] += total.y, w[5] += total.z;
@@ -33,6 +35,7 @@ class DeadLoad final : public Force<Spatial> {
 
   /// Second variation of -F.a along a spin t: (F.a)|t|^2 - (F.t)(a.t).
   bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    if (linear_) return false;
     const Vec3<double> f = force(state.time);
     for (const std::int32_t body : bodies_) {
       const Vec3<double> a = turned_arm(state, static_cast<std::size_t>(body));
@@ -77,13 +80,16 @@ class DeadLoad final : public Force<Spatial> {
     return {s * load_.moment[0], s * load_.moment[1], s * load_.moment[2]};
   }
   Vec3<double> turned_arm(const State<Spatial>& state, std::size_t body) const {
-    return rotate(rotation(state, body), arm_);
+    const Quat<double> q = rotation(state, body);
+    if (linear_) return arm_ + 2.0 * cross(Vec3<double>{q.x, q.y, q.z}, arm_);
+    return rotate(q, arm_);
   }
 
   Load load_;
   const Part& part_;
   std::vector<std::int32_t> bodies_;
   double share_ = 1;
+  bool linear_;
   Vec3<double> arm_{};
 };
 
@@ -109,8 +115,8 @@ PlacedLoad place(const Load& load, const Lattice& lattice) {
 }
 
 template <>
-std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part& part, PlacedLoad load) {
-  return std::make_unique<DeadLoad>(part, std::move(load));
+std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part& part, PlacedLoad load, Kinematics kinematics) {
+  return std::make_unique<DeadLoad>(part, std::move(load), kinematics);
 }
 
 }  // namespace floe

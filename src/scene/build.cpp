@@ -88,7 +88,8 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
   if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
   if (scene.forces.buoyancy)
     model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
-  for (const PlacedLoad& load : loads) model.add_force(make_load<Spatial>(part, load));
+  for (const PlacedLoad& load : loads)
+    model.add_force(make_load<Spatial>(part, load, scene.beam.kinematics));
 }
 
 void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {

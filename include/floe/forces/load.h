@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/force.h"
 
@@ -23,6 +24,7 @@ PlacedLoad place(const Load& load, const Lattice& lattice);
 
 /// \param part  must outlive the force
 template <class Space>
-std::unique_ptr<Force<Space>> make_load(const Part& part, PlacedLoad load);
+std::unique_ptr<Force<Space>> make_load(const Part& part, PlacedLoad load,
+                                        Kinematics kinematics = Kinematics::corotational);
 
 }  // namespace floe
