@@ -35,6 +35,21 @@ double typical_stiffness(const Model<Spatial>& model) {
   return all > 0 ? all : 1.0;
 }
 
+/// Diagonal of the box around all bodies, and at least a body's own size [m].
+double extent(const Part& part) {
+  std::array<double, 7> mine, all;  // high, minus low, radius of gyration
+  mine.fill(-std::numeric_limits<double>::infinity());
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      mine[k] = std::max(mine[k], part.bodies.position[b][k]);
+      mine[3 + k] = std::max(mine[3 + k], -part.bodies.position[b][k]);
+    }
+    mine[6] = std::max(mine[6], std::sqrt(part.bodies.inertia[b][2] / part.bodies.mass[b]));
+  }
+  MPI_Allreduce(mine.data(), all.data(), 7, MPI_DOUBLE, MPI_MAX, part.comm);
+  return all[6] + std::hypot(all[0] + all[3], all[1] + all[4], all[2] + all[5]);
+}
+
 }  // namespace
 
 Equilibrium::Equilibrium(Model<Spatial>& model)
@@ -51,6 +66,7 @@ Equilibrium::Equilibrium(Model<Spatial>& model)
     for (const auto& force : model.forces()) sum += force->stiffness_bound(b);
     stiffness_.push_back(sum);
   }
+  extent_ = extent(part_);
   check(MatCreateVecs(tangent_.matrix(), x_.put(), f_.put()));
   check(VecDuplicate(x_, step_.put()));
   attach_rigid_modes();
@@ -220,7 +236,7 @@ PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept
 }
 
 /// Relative to the forces that balance (external ones and reactions), never below the rounding of the beams' own.
-double Equilibrium::tolerance(double rtol, double atol) {
+Equilibrium::Scale Equilibrium::scale_of_forces() const {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   double noise2 = 0;
   const double l = model_.length_scale();
@@ -233,7 +249,19 @@ double Equilibrium::tolerance(double rtol, double atol) {
   const std::array<double, 2> mine{external2_, noise2};
   std::array<double, 2> all{};
   MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, part_.comm);
-  return std::max({rtol * std::sqrt(all[0]), rounding * std::sqrt(all[1]), atol});
+  return {std::sqrt(all[0]), rounding * std::sqrt(all[1])};
+}
+
+/// So far from rest that rounding hides any load: an overloaded sheet that sinks for ever is no equilibrium.
+bool Equilibrium::is_lost() const {
+  constexpr double far = 100;  // times the lattice's extent
+  double mine = 0, all = 0;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
+    const Vec3<double> u = displacement(state_, b);
+    mine = std::max(mine, dot(u, u));
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+  return std::sqrt(all) > far * (extent_ + prescribed_);
 }
 
 PetscErrorCode Equilibrium::converged(SNES snes, PetscInt it, PetscReal, PetscReal, PetscReal norm,
@@ -246,9 +274,10 @@ PetscErrorCode Equilibrium::converged(SNES snes, PetscInt it, PetscReal, PetscRe
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm)) {
     *reason = SNES_DIVERGED_FNORM_NAN;
-  } else if (norm <= me.tolerance(rtol, atol)) {
-    *reason = SNES_CONVERGED_FNORM_RELATIVE;
+    return 0;
   }
+  if (norm > me.scale_of_forces().tolerance(rtol, atol)) return 0;
+  *reason = me.is_lost() ? SNES_DIVERGED_DTOL : SNES_CONVERGED_FNORM_RELATIVE;
   return 0;
 }
 
@@ -261,16 +290,20 @@ bool Equilibrium::predict(double time) {
   // Ghosts' unknowns are wanted too: their present values come with their owners' increments.
   PetscScalar* x = nullptr;
   check(VecGetArray(x_, &x));
-  int moves = 0;
+  double moves = 0, size = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
     if ((model_.prescribed()[k / n] >> (k % n) & 1U) == 0) continue;
     increments[k] = target[k] * (k % n < 3 ? 1.0 : l) - x[k];
     if (increments[k] != 0) moves = 1;
+    if (k % n < 3) size = std::max(size, std::abs(target[k]));
   }
   check(VecRestoreArray(x_, &x));
   part_.ghosts.update(increments, n);
-  int anyone_moves = 0;
-  MPI_Allreduce(&moves, &anyone_moves, 1, MPI_INT, MPI_MAX, part_.comm);
+  const std::array<double, 2> mine{moves, size};
+  std::array<double, 2> all{};
+  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part_.comm);
+  const bool anyone_moves = all[0] > 0;
+  prescribed_ = all[1];
 
   state_.time = time;
   take(x_);
@@ -280,7 +313,7 @@ bool Equilibrium::predict(double time) {
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, nullptr, nullptr));
   small_turns_ = false;
-  if (anyone_moves == 0 && norm <= tolerance(rtol, atol)) return true;
+  if (!anyone_moves && norm <= scale_of_forces().tolerance(rtol, atol)) return true;
 
   rebase(x_);
   assemble(increments);
@@ -368,11 +401,10 @@ double Equilibrium::pin_reaction() const {
     const bool pinned = ((model_.held()[k / n] & ~model_.prescribed()[k / n]) >> (k % n) & 1U) != 0;
     if (pinned) largest = std::max(largest, std::abs(wrenches_.values[k]) * (k % n < 3 ? 1.0 : scale));
   }
-  const double mine_size = external2_;
-  double reaction = 0, size2 = 0;
-  MPI_Allreduce(&largest, &reaction, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
-  MPI_Allreduce(&mine_size, &size2, 1, MPI_DOUBLE, MPI_SUM, part_.comm);
-  return size2 > 0 ? reaction / std::sqrt(size2) : 0.0;
+  double all = 0;
+  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+  const Scale size = scale_of_forces();
+  return all > size.rounding ? all / size.forces : 0.0;  // without any load all reactions are rounding
 }
 
 }  // namespace floe

@@ -7,6 +7,7 @@
 /// The residual is minus the wrenches (moments divided by the length scale), zero where unknowns are prescribed.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "floe/base/petsc.h"
@@ -41,6 +42,13 @@ class Equilibrium {
     std::vector<PetscScalar> x;
   };
 
+  /// Sizes (2-norms over all ranks) at the present state [N]. What the residual must fall below.
+  struct Scale {
+    double forces;    ///< of external forces and reactions
+    double rounding;  ///< of the beams' forces
+    double tolerance(double rtol, double atol) const { return std::max({rtol * forces, rounding, atol}); }
+  };
+
   static PetscErrorCode residual(SNES, Vec x, Vec f, void* self) noexcept;
   static PetscErrorCode jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept;
   static PetscErrorCode converged(SNES, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal f,
@@ -54,7 +62,8 @@ class Equilibrium {
   void assemble(std::span<const double> increments = {});
   bool predict(double time);
   bool keeps_factorisation() const;
-  double tolerance(double rtol, double atol);
+  Scale scale_of_forces() const;
+  bool is_lost() const;
   Saved save() const;
   void restore(const Saved& saved);
 
@@ -68,6 +77,7 @@ class Equilibrium {
   bool small_turns_ = false;       ///< the prediction of this step turned no body by much
   double last_norm_ = 0, contraction_ = 1;  ///< of the residual, over the last iteration
   double external2_ = 0;           ///< squared norm of each external force's wrenches, summed, this rank
+  double extent_ = 0, prescribed_ = 0;  ///< of the lattice; largest displacement that is prescribed [m]
   Tangent<Spatial> tangent_;
   Handle<Vec> x_, f_, step_;
   Handle<SNES> snes_;

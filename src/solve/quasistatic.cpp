@@ -30,10 +30,19 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Obs
     observer({equilibrium.state(), equilibrium.wrenches(), step});
   };
 
+  const auto balanced = [&](double at) {
+    const double reaction = equilibrium.pin_reaction();
+    if (reaction > pin_tolerance)
+      result.message = "no equilibrium at time " + text(at) + ": a motion that nothing holds is loaded (by " +
+                       text(reaction) + " of the forces)";
+    return reaction <= pin_tolerance;
+  };
+
   if (!equilibrium.solve(0.0)) {
     result.message = "no equilibrium at time 0: " + equilibrium.why();
     return result;
   }
+  if (!balanced(0.0)) return result;
   accept(0);
   Progress progress("load steps", time.end);
   double now = 0, dt = given;
@@ -52,15 +61,11 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Obs
       }
       continue;
     }
+    if (!balanced(next)) return result;
     now = next;
     ++result.steps;
     result.dt = step;
     accept(result.steps);
-    if (const double reaction = equilibrium.pin_reaction(); reaction > pin_tolerance) {
-      result.message = "no equilibrium at time " + text(now) +
-                       ": a motion that nothing holds is loaded (by " + text(reaction) + " of the forces)";
-      return result;
-    }
     progress.update(now, "step " + std::to_string(result.steps) + ", " +
                              std::to_string(equilibrium.newton_iterations()) + " iterations");
     dt = std::min(given, 2 * dt);
