@@ -53,7 +53,8 @@ struct Output::Impl {
   std::optional<Fields> fields;        ///< rank 0
   std::ofstream history;               ///< rank 0
   Sample first, last;
-  std::optional<State<Spatial>> pending;  ///< accepted, but not on file
+  std::optional<State<Spatial>> pending;  ///< accepted, but not in fields.h5
+  bool row_pending = false;               ///< nor is `last` in history.csv
   double next_history = 0, next_fields = 0;
 
   Impl(const OutputOptions& o, const Model<Spatial>& m)
@@ -147,8 +148,11 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
     for (const std::int32_t body : load.bodies) {
       if (body >= part.owned) continue;
       const auto b = static_cast<std::size_t>(body);
-      const Vec3<double> u = displacement(accepted.state, b) +
-                             (rotate(normalised(rotation(accepted.state, b)), load.arm) - load.arm);
+      const Quat<double> q = rotation(accepted.state, b);
+      const bool linear = model.kinematics() == Kinematics::linear;
+      const Vec3<double> turn =
+          linear ? 2.0 * cross(Vec3<double>{q.x, q.y, q.z}, load.arm) : rotate(q, load.arm) - load.arm;
+      const Vec3<double> u = displacement(accepted.state, b) + turn;
       mine = {mine[0] + share * u.x, mine[1] + share * u.y, mine[2] + share * u.z};
     }
     s.loads[load.name] = sum_over_ranks(mine, part.comm);
@@ -221,7 +225,8 @@ void Output::accept(const Accepted<Spatial>& accepted) {
   constexpr double early = 1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
   me.last = me.sample(accepted);
   if (accepted.step == 0) me.first = me.last;
-  if (me.options.history <= 0 || time >= me.next_history - early * me.options.history) {
+  me.row_pending = me.options.history > 0 && time < me.next_history - early * me.options.history;
+  if (!me.row_pending) {
     me.write_row(me.last);
     if (me.options.history > 0)
       me.next_history = me.options.history * (std::floor(time / me.options.history + early) + 1);
@@ -239,6 +244,8 @@ void Output::accept(const Accepted<Spatial>& accepted) {
 
 void Output::finish() {
   const Timed timed(Event::output);
+  if (impl_->row_pending) impl_->write_row(impl_->last);
+  impl_->row_pending = false;
   if (impl_->pending) impl_->write_frame(*impl_->pending);
   impl_->pending.reset();
 }

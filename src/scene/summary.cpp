@@ -117,7 +117,7 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
                  mesh.largest_move, mesh.iterations);
   if (result.done && scene.report.tension) add_tension(scene, last, json, text);
   if (result.done && scene.report.bending) add_bending(scene, first, last, json, text);
-  Json energy;
+  Json energy = Json::object();
   for (const auto& [name, value] : last.forces) {
     if (name.rfind("energy_", 0) == 0) energy[name.substr(7)] = value;
   }
