@@ -1,0 +1,172 @@
+// Nothing depends on the number of ranks: mesh, forces (bit for bit), tension modulus, output
+// order.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "floe/base/petsc.h"
+#include "floe/forces/buoyancy.h"
+#include "floe/forces/gravity.h"
+#include "floe/forces/load.h"
+#include "floe/solve/integrator.h"
+#include "floe/solve/model.h"
+#include "output/gather.h"
+#include "support/lattices.h"
+#include "support/states.h"
+
+namespace floe {
+namespace {
+
+Lattice floating_sheet() {
+  Lattice s = test::sheet(12, 9, 1, true);
+  reorder(s);
+  return s;
+}
+
+/// A model with every force there is, on all ranks or on this one alone.
+struct Everything {
+  Model<Spatial> model;
+  Everything(const Lattice& lattice, MPI_Comm comm) : model(lattice, comm, {}) {
+    const Part& part = model.part();
+    model.set_beams(make_beam_force<Spatial>(part, {Shear::exact, Kinematics::corotational}),
+                    Kinematics::corotational);
+    model.add_force(make_gravity<Spatial>(part, 9.81));
+    model.add_force(make_buoyancy<Spatial>(part, 1010 * 9.81));
+    Load on_set, at_point;
+    on_set.name = "edge", on_set.set = "left", on_set.force = {1e5, 2e5, 3e5};
+    at_point.name = "point", at_point.point = Point2{1.3, 0.2}, at_point.force = {0, 0, -1e4};
+    for (const Load& load : {on_set, at_point})
+      model.add_force(make_load<Spatial>(part, place(load, lattice)));
+  }
+};
+
+TEST(Ranks, LatticeIsTheSameBitForBit) {
+  SheetPlan plan;
+  plan.length = 12, plan.width = 9, plan.element_size = 1, plan.iterations = 20;
+  Lattice together = make_sheet(tessellate(plan, PETSC_COMM_WORLD), {}),
+          alone = make_sheet(tessellate(plan, MPI_COMM_SELF), {});
+  EXPECT_EQ(reorder(together), reorder(alone));
+  EXPECT_EQ(together.bodies.position, alone.bodies.position);
+  EXPECT_EQ(together.bodies.inertia, alone.bodies.inertia);
+  EXPECT_EQ(together.beams.bodies, alone.beams.bodies);
+  EXPECT_EQ(together.beams.width, alone.beams.width);
+  EXPECT_EQ(together.shapes.vertices, alone.shapes.vertices);
+}
+
+TEST(Ranks, EveryBodyIsOwnedOnceAndEveryBeamCountedOnce) {
+  const Lattice lattice = floating_sheet();
+  const Part part = partition(lattice, PETSC_COMM_WORLD);
+  std::vector<int> owners(lattice.bodies.mass.size(), 0), counts(lattice.beams.area.size(), 0);
+  for (std::int32_t b = 0; b < part.owned; ++b)
+    ++owners[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])];
+  for (std::size_t m = 0; m < part.counts_here.size(); ++m)
+    counts[static_cast<std::size_t>(part.global_beam[m])] += part.counts_here[m];
+  for (auto* list : {&owners, &counts}) {
+    MPI_Allreduce(MPI_IN_PLACE, list->data(), static_cast<int>(list->size()), MPI_INT, MPI_SUM,
+                  PETSC_COMM_WORLD);
+    EXPECT_EQ(*std::min_element(list->begin(), list->end()), 1);
+    EXPECT_EQ(*std::max_element(list->begin(), list->end()), 1);
+  }
+  EXPECT_TRUE(std::is_sorted(part.global_beam.begin(), part.global_beam.end()));
+  EXPECT_NEAR(part.owned, part.global_bodies / size(), 1);
+}
+
+TEST(Ranks, GhostsAreTheirOwnersRecords) {
+  const Part part = partition(floating_sheet(), PETSC_COMM_WORLD);
+  const State<Spatial> expected = test::deformed(part, 1, 3);
+  State<Spatial> state = expected;
+  const auto owned = static_cast<std::ptrdiff_t>(part.owned) * Spatial::record;
+  std::fill(state.records.begin() + owned, state.records.end(), -77.0);
+  part.ghosts.update(state.records, Spatial::record);
+  EXPECT_EQ(state.records, expected.records);
+  std::vector<double> number(static_cast<std::size_t>(part.local), -1);  // another width
+  std::copy_n(part.global.begin(), part.owned, number.begin());
+  part.ghosts.update(number, 1);
+  EXPECT_TRUE(std::equal(number.begin(), number.end(), part.global.begin()));
+}
+
+TEST(Ranks, ForcesAreTheSameBitForBit) {
+  const Lattice lattice = floating_sheet();
+  const Everything together(lattice, PETSC_COMM_WORLD), alone(lattice, PETSC_COMM_SELF);
+  const Part &part = together.model.part(), &whole = alone.model.part();
+  Wrenches<Spatial> here(static_cast<std::size_t>(part.local)),
+      all(static_cast<std::size_t>(whole.local));
+  for (const double turn : {1e-3, 1.0}) {
+    together.model.evaluate(test::deformed(part, 0.3, turn), here);
+    alone.model.evaluate(test::deformed(whole, 0.3, turn), all);
+    for (std::int32_t b = 0; b < part.owned; ++b) {
+      const std::int32_t g = whole.local_index(part.global[static_cast<std::size_t>(b)]);
+      EXPECT_EQ(std::memcmp(here.of(static_cast<std::size_t>(b)),
+                            all.of(static_cast<std::size_t>(g)), 6 * sizeof(double)),
+                0)
+          << "body " << part.global[static_cast<std::size_t>(b)];
+    }
+  }
+}
+
+TEST(Ranks, EnergiesAreTheSame) {
+  const Lattice lattice = floating_sheet();
+  const Everything together(lattice, PETSC_COMM_WORLD), alone(lattice, PETSC_COMM_SELF);
+  const auto a = together.model.report(test::deformed(together.model.part(), 0.3, 1));
+  const auto b = alone.model.report(test::deformed(alone.model.part(), 0.3, 1));
+  ASSERT_EQ(a.size(), 4U);
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].first, b[k].first);
+    EXPECT_NEAR(a[k].second / b[k].second, 1, 1e-12) << a[k].first;
+  }
+}
+
+TEST(Ranks, GatherGivesGlobalOrder) {
+  const Part part = partition(floating_sheet(), PETSC_COMM_WORLD);
+  const Gather gather(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)),
+                      part.global_bodies);
+  std::vector<double> rows;
+  for (std::int32_t b = 0; b < part.owned; ++b) {
+    const double g = part.global[static_cast<std::size_t>(b)];
+    rows.insert(rows.end(), {g, -g});
+  }
+  const std::vector<double> all = gather(rows, 2);
+  ASSERT_EQ(all.size(), rank() == 0 ? 2 * static_cast<std::size_t>(part.global_bodies) : 0U);
+  for (std::size_t k = 0; k < all.size(); ++k)
+    EXPECT_EQ(all[k], k % 2 == 0 ? k / 2.0 : -(k / 2.0) + 0.5);
+}
+
+/// Force on the left bodies of a stretched sheet [N].
+double tension(const Lattice& lattice, MPI_Comm comm) {
+  Boundary left, right;
+  left.name = left.set = "left", right.name = right.set = "right";
+  left.fixed[0] = right.fixed[0] = true;
+  right.displacement = Point3{0.012, 0, 0};
+  Model<Spatial> model(lattice, comm, {left, right});
+  model.set_beams(make_beam_force<Spatial>(model.part(), {}), Kinematics::corotational);
+  model.pin(free_motions(lattice, prescribed_components(lattice, {left, right}), {}).pins);
+  double force = 0;
+  const RunResult result = run_quasistatic(model, {}, [&](const Accepted<Spatial>& accepted) {
+    force = 0;
+    for (const std::int32_t b : model.part().localise(lattice.sets.at("left"))) {
+      if (b < model.part().owned) force += accepted.wrenches.of(static_cast<std::size_t>(b))[0];
+    }
+  });
+  EXPECT_TRUE(result.done) << result.message;
+  MPI_Allreduce(MPI_IN_PLACE, &force, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return force;
+}
+
+TEST(Ranks, TensionGivesTheSameModulus) {
+  Lattice lattice = test::sheet(12, 12, 1);
+  reorder(lattice);
+  const double together = tension(lattice, PETSC_COMM_WORLD),
+               alone = tension(lattice, PETSC_COMM_SELF);
+  EXPECT_GT(alone, 0);
+  EXPECT_NEAR(together / alone, 1, 1e-10);
+}
+
+TEST(Ranks, MoreRanksThanBodiesIsRefused) {
+  if (size() == 1) GTEST_SKIP();
+  EXPECT_THROW((void)partition(test::row(size() - 1), PETSC_COMM_WORLD), InputError);
+  EXPECT_NO_THROW((void)partition(test::row(size()), PETSC_COMM_WORLD));
+}
+
+}  // namespace
+}  // namespace floe
