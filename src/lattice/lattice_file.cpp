@@ -143,6 +143,23 @@ void check_offsets(const Reader& in, const std::string& name, const std::vector<
     in.refuse(name, "must grow from 0 to " + std::to_string(end));
 }
 
+/// Faces that close around the body's centroid, seen counter-clockwise from outside.
+void check_solids(const Reader& in, const Shapes& s) {
+  for (std::int32_t b = 0; b < s.bodies(); ++b) {
+    const auto body = static_cast<std::size_t>(b);
+    const std::string name = "body " + std::to_string(b);
+    if (s.face_of[body + 1] - s.face_of[body] < 4) in.refuse("/shapes/face_of", name + " must have 4 faces or more");
+    for (auto f = static_cast<std::size_t>(s.face_of[body]); f < static_cast<std::size_t>(s.face_of[body + 1]); ++f) {
+      if (s.corner_of[f + 1] - s.corner_of[f] < 3) in.refuse("/shapes/corner_of", name + ": a face must have 3 corners or more");
+    }
+    const VolumeProperties p = volume_properties(s, b);
+    if (!(p.volume > 0)) in.refuse("/shapes/corners", name + ": faces must be counter-clockwise seen from outside");
+    constexpr double centred = 1e-6;  // of the body's size
+    if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
+      in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
+  }
+}
+
 Shapes read_shapes(const Reader& in, std::size_t bodies) {
   Shapes s;
   if (!in.file().has("/shapes")) return s;
@@ -163,6 +180,7 @@ Shapes read_shapes(const Reader& in, std::size_t bodies) {
         in.refuse("/shapes/corners", "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
     }
   }
+  check_solids(in, s);
   return s;
 }
 

@@ -310,6 +310,24 @@ TEST(LatticeFile, WrongIndicesAreRefused) {
                  spoil("/shapes/vertex_of", 1, [](auto& v) { std::swap(v[1], v[2]); }));
 }
 
+TEST(LatticeFile, ShapesThatAreNoSolidsAreRefused) {
+  expect_refused("/shapes/corners", "counter-clockwise", [](LatticeFile& f) {
+    const Shapes old = read_lattice(f.path()).shapes;
+    f.change_indices("/shapes/corners", 1, [&](auto& v) {
+      for (std::size_t face = 0; face + 1 < old.corner_of.size(); ++face)
+        std::reverse(v.begin() + old.corner_of[face], v.begin() + old.corner_of[face + 1]);
+    });
+  });
+  expect_refused("/shapes/vertices", "centroid", [](LatticeFile& f) {
+    f.change("/shapes/vertices", 3, [](auto& v) {
+      for (double& x : v) x += 0.1;
+    });
+  });
+  expect_refused("/shapes/corner_of", "3 corners", [](LatticeFile& f) {
+    f.change_indices("/shapes/corner_of", 1, [](auto& v) { v[1] = 1; });
+  });
+}
+
 TEST(LatticeFile, WrongShapesAndTypesAreRefused) {
   const auto shorter = [](std::vector<double>& v) { v.pop_back(); };
   for (const char* name : {"/bodies/mass", "/beams/area", "/beams/width", "/beams/length"})
