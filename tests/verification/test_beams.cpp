@@ -51,8 +51,7 @@ Vec3<double> tip_displacement(const Lattice& lattice, const State<Spatial>& stat
 
 double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
-// -- small deflections
-// -------------------------------------------------------------------------------------------
+// -- small deflections ----------------------------------------------------------------------------
 
 /// Flexibility of the tip of a cantilever of n beams, in its own axes: rows displacement and
 /// rotation (x y z rx ry rz) for a unit force and moment. With shear springs k_s and bending
@@ -143,8 +142,7 @@ TEST(Cantilever, TipFlexibilityOfEveryLoadInEveryDirection) {
   }
 }
 
-// -- large rotations in a plane
-// ----------------------------------------------------------------------------------
+// -- large rotations in a plane -------------------------------------------------------------------
 
 /// Under an end moment, n beams become part of a regular polygon: body i has turned by i phi, beam
 /// i stands at (i + 1/2) phi. With n phi = 2 pi it closes.
@@ -224,8 +222,7 @@ TEST(Elastica, TipUnderDeadLoad) {
   }
 }
 
-// -- large rotations in space
-// ------------------------------------------------------------------------------------
+// -- large rotations in space ---------------------------------------------------------------------
 
 /// 45-degree bend (Bathe & Bolourchi 1979): R = 100, section 1 x 1, E = 1e7, nu = 0, dead load in z
 /// at the tip.
@@ -291,8 +288,7 @@ TEST(Bend45, ConvergesToTheRodInSecondOrder) {
   }
 }
 
-// -- Newton
-// ------------------------------------------------------------------------------------------------------
+// -- Newton ---------------------------------------------------------------------------------------
 
 /// Residual norms of the last SNES solve in a file that -snes_monitor wrote.
 std::vector<double> last_residuals(const std::string& file) {

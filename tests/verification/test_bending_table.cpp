@@ -96,8 +96,7 @@ TEST(FloatingSheet, WymansProfileIsThePublishedFunction) {
   EXPECT_NEAR(Wyman::of_material(scene).centre, 0.65614e-3, 5e-9);
 }
 
-// -- the sheet as a rigid body
-// -----------------------------------------------------------------------------------
+// -- the sheet as a rigid body --------------------------------------------------------------------
 
 /// Puts the lattice elsewhere: turned by `turn` about y, then lifted.
 void place_elsewhere(Lattice& lattice, double turn, double lift) {
@@ -187,8 +186,7 @@ TEST(FloatingSheet, StiffnessAgainstTilting) {
   }
 }
 
-// -- the table
-// ---------------------------------------------------------------------------------------------------
+// -- the table ------------------------------------------------------------------------------------
 
 struct Row {
   double length, thickness;
@@ -248,8 +246,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, BendingTable, testing::ValuesIn(rows), [](const a
               given.param.times);
 });
 
-// -- the profile
-// -------------------------------------------------------------------------------------------------
+// -- the profile ----------------------------------------------------------------------------------
 
 /// Along X = 0, 0 <= Y <= L/2: bodies with their centroid within l/2 of it, each against Wyman at
 /// its own distance from the load. The lattice's bending stiffness is D*, not its material's D;
