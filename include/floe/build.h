@@ -20,8 +20,9 @@ struct MeshReport {
   std::int64_t degenerate = 0;
 };
 
-/// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective; the lattice is
-/// whole and the same on every rank. \throws InputError for what a file or a scene has wrong
+/// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective;
+/// the lattice is whole and the same on every rank. \throws InputError for what a file or a scene
+/// has wrong
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
 
 /// The scene's loads on the lattice's bodies. \throws InputError for an unknown set
@@ -42,7 +43,8 @@ void check_reports(const Scene& scene);
 struct Summary {
   std::string json, text;
 };
-Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh, const RunResult& result,
-                  const Sample& first, const Sample& last, double wall_seconds);
+Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
+                  const RunResult& result, const Sample& first, const Sample& last,
+                  double wall_seconds);
 
 }  // namespace floe

@@ -1,6 +1,6 @@
 /// \file
-/// A scene: everything a user says, as plain structs with defaults. Read once, in one place, from the table
-/// of options (src/scene/keys.cpp); nothing below this layer knows a key's name.
+/// A scene: everything a user says, as plain structs with defaults. Read once, in one place, from
+/// the table of options (src/scene/keys.cpp); nothing below this layer knows a key's name.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct Scene {
   } forces;
   bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
-  double thickness = 1;        ///< of the sheet [m]
+  double thickness = 1;  ///< of the sheet [m]
   Ice ice;
   double shear_factor = 5.0 / 6.0;
   Torsion torsion = Torsion::saint_venant;
@@ -44,8 +44,8 @@ struct Scene {
   std::vector<Region> regions;
   std::vector<Cut> cuts;
   BeamOptions beam;
-  double gravity = 9.81;           ///< [m/s^2]
-  double water_density = 1010;     ///< [kg/m^3]
+  double gravity = 9.81;        ///< [m/s^2]
+  double water_density = 1010;  ///< [kg/m^3]
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {
@@ -56,9 +56,9 @@ struct Scene {
     bool tension = false, bending = false;
   } report;
   struct {
-    std::string dir;      ///< default out/NAME
-    double history = 0;   ///< 0: every load step
-    double fields = 0;    ///< 0: first and last state only
+    std::string dir;     ///< default out/NAME
+    double history = 0;  ///< 0: every load step
+    double fields = 0;   ///< 0: first and last state only
   } output;
   bool check_only = false;
   std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds

@@ -6,7 +6,9 @@ namespace floe {
 
 Ghosts::Ghosts(MPI_Comm comm, std::int32_t owned, std::span<const std::int32_t> owner,
                std::span<const std::int32_t> remote)
-    : owned_(owned), ghosts_(static_cast<std::int32_t>(owner.size())), alone_(floe::size(comm) == 1) {
+    : owned_(owned),
+      ghosts_(static_cast<std::int32_t>(owner.size())),
+      alone_(floe::size(comm) == 1) {
   check(PetscSFCreate(comm, sf_.put()));
   std::vector<PetscInt> leaves(owner.size());
   std::vector<PetscSFNode> roots(owner.size());
@@ -15,8 +17,8 @@ Ghosts::Ghosts(MPI_Comm comm, std::int32_t owned, std::span<const std::int32_t> 
     roots[k].rank = owner[k];
     roots[k].index = remote[k];
   }
-  check(PetscSFSetGraph(sf_, owned, static_cast<PetscInt>(owner.size()), leaves.data(), PETSC_COPY_VALUES,
-                        roots.data(), PETSC_COPY_VALUES));
+  check(PetscSFSetGraph(sf_, owned, static_cast<PetscInt>(owner.size()), leaves.data(),
+                        PETSC_COPY_VALUES, roots.data(), PETSC_COPY_VALUES));
   check(PetscSFSetUp(sf_));
 }
 

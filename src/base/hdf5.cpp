@@ -62,7 +62,9 @@ Hdf5File Hdf5File::open(const std::string& path) {
 }
 
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
-    : id_(std::exchange(other.id_, -1)), path_(std::move(other.path_)), final_path_(std::move(other.final_path_)) {}
+    : id_(std::exchange(other.id_, -1)),
+      path_(std::move(other.path_)),
+      final_path_(std::move(other.final_path_)) {}
 
 Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
   std::swap(id_, other.id_);
@@ -85,34 +87,42 @@ void Hdf5File::close() {
 
 void Hdf5File::flush() { require(H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0, "flush", path_); }
 
-void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count, int columns,
-                         std::int64_t type) {
-  const std::array<hsize_t, 2> extent{static_cast<hsize_t>(count / columns), static_cast<hsize_t>(columns)};
+void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count,
+                         int columns, std::int64_t type) {
+  const std::array<hsize_t, 2> extent{static_cast<hsize_t>(count / columns),
+                                      static_cast<hsize_t>(columns)};
   const Id space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
   const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  const Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
+                H5Dclose);
   require(data >= 0, "write " + name + " to", path_);
   if (count > 0)
-    require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, "write " + name + " to", path_);
+    require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0,
+            "write " + name + " to", path_);
 }
 
 void Hdf5File::write(const std::string& name, std::span<const double> values, int columns) {
-  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns, H5T_NATIVE_DOUBLE);
+  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
+            H5T_NATIVE_DOUBLE);
 }
 void Hdf5File::write(const std::string& name, std::span<const float> values, int columns) {
-  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns, H5T_NATIVE_FLOAT);
+  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
+            H5T_NATIVE_FLOAT);
 }
 void Hdf5File::write(const std::string& name, std::span<const std::int32_t> values, int columns) {
-  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns, H5T_NATIVE_INT32);
+  write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
+            H5T_NATIVE_INT32);
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
   const Id target(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
   const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Id attribute(H5Acreate2(target, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  require(attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0, "write attribute " + name + " to",
-          path_);
+  const Id attribute(
+      H5Acreate2(target, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT),
+      H5Aclose);
+  require(attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0,
+          "write attribute " + name + " to", path_);
 }
 
 bool Hdf5File::has(const std::string& name) const {
@@ -149,13 +159,15 @@ std::pair<std::int64_t, std::int64_t> Hdf5File::shape(const std::string& name) c
   const Id space(H5Dget_space(data), H5Sclose);
   const int dimensions = H5Sget_simple_extent_ndims(space);
   if (dimensions < 1 || dimensions > 2)
-    throw InputError(where + " has " + std::to_string(dimensions) + " dimensions, must have 1 or 2");
+    throw InputError(where + " has " + std::to_string(dimensions) +
+                     " dimensions, must have 1 or 2");
   std::array<hsize_t, 2> extent{0, 1};
   H5Sget_simple_extent_dims(space, extent.data(), nullptr);
   return {static_cast<std::int64_t>(extent[0]), static_cast<std::int64_t>(extent[1])};
 }
 
-void Hdf5File::read_any(const std::string& name, int columns, std::int64_t type, void* values) const {
+void Hdf5File::read_any(const std::string& name, int columns, std::int64_t type,
+                        void* values) const {
   const std::string where = "lattice_file: '" + path_ + "': " + name;
   const auto [rows, actual] = shape(name);
   if (actual != columns)

@@ -77,8 +77,9 @@ void Progress::update(double done, std::string_view note) {
     const int full = static_cast<int>(share * bar_width);
     const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                             std::string(static_cast<std::size_t>(bar_width - full), '.');
-    std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%  %.0f s left  %.*s", static_cast<int>(what_.size()),
-                 what_.data(), bar.c_str(), 100 * share, left, static_cast<int>(note.size()), note.data());
+    std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%  %.0f s left  %.*s",
+                 static_cast<int>(what_.size()), what_.data(), bar.c_str(), 100 * share, left,
+                 static_cast<int>(note.size()), note.data());
   } else {
     std::fprintf(stderr, "%.*s: %.0f %%, %.0f s left  %.*s\n", static_cast<int>(what_.size()),
                  what_.data(), 100 * share, left, static_cast<int>(note.size()), note.data());

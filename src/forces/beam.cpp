@@ -14,7 +14,8 @@ class Beam final : public BeamForce<typename Pointwise::Space> {
   using Space = typename Pointwise::Space;
   static constexpr int n = Space::unknowns;
 
-  Beam(const Part& part, const BeamOptions& options) : part_(part), stiffness_(static_cast<std::size_t>(part.local)) {
+  Beam(const Part& part, const BeamOptions& options)
+      : part_(part), stiffness_(static_cast<std::size_t>(part.local)) {
     constants_.reserve(static_cast<std::size_t>(part.beams.size()));
     for (std::int32_t m = 0; m < part.beams.size(); ++m) {
       constants_.push_back(Pointwise::make(part, m, options.shear));
@@ -55,7 +56,9 @@ class Beam final : public BeamForce<typename Pointwise::Space> {
     return true;
   }
 
-  double stiffness_bound(std::int32_t body) const override { return stiffness_[static_cast<std::size_t>(body)]; }
+  double stiffness_bound(std::int32_t body) const override {
+    return stiffness_[static_cast<std::size_t>(body)];
+  }
 
   void report(const State<Space>& state, Columns& columns) const override {
     double energy = 0;
@@ -88,7 +91,8 @@ class Beam final : public BeamForce<typename Pointwise::Space> {
 
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear) {
   const auto k = static_cast<std::size_t>(m);
-  const double e = beams.young[k], l = beams.length[k], iy = beams.inertia_y[k], iz = beams.inertia_z[k];
+  const double e = beams.young[k], l = beams.length[k], iy = beams.inertia_y[k],
+               iz = beams.inertia_z[k];
   const double one_point = beams.shear_factor[k] * beams.shear_modulus[k] * beams.area[k] / l;
   // 12 E I/(l^3 (1 + Phi)) with Phi = 12 E I/(kappa G A l^2): bending and shear in series.
   const auto transverse = [&](double inertia) {
@@ -97,8 +101,12 @@ BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear) {
     if (shear == Shear::none) return bending;
     return bending * one_point / (bending + one_point);
   };
-  return {e * beams.area[k] / l, transverse(iz), transverse(iy), beams.shear_modulus[k] * beams.torsion[k] / l,
-          e * iy / l, e * iz / l};
+  return {e * beams.area[k] / l,
+          transverse(iz),
+          transverse(iy),
+          beams.shear_modulus[k] * beams.torsion[k] / l,
+          e * iy / l,
+          e * iz / l};
 }
 
 template <class Space>
@@ -108,6 +116,7 @@ std::unique_ptr<BeamForce<Space>> make_beam_force(const Part& part, const BeamOp
   return std::make_unique<Beam<SpatialBeam<Kinematics::corotational>>>(part, options);
 }
 
-template std::unique_ptr<BeamForce<Spatial>> make_beam_force<Spatial>(const Part&, const BeamOptions&);
+template std::unique_ptr<BeamForce<Spatial>> make_beam_force<Spatial>(const Part&,
+                                                                      const BeamOptions&);
 
 }  // namespace floe

@@ -1,18 +1,19 @@
 /// \file
 /// One beam: strain energy and its exact gradient, on any scalar (physics.md section 2).
 ///
-/// Two rigid bodies i and j, displaced by u_i, u_j and rotated by q_i, q_j from the state at rest, are joined by a
-/// shear-flexible beam from centroid to centroid, whose triad at rest is T (e1 along the beam). All is computed in T:
-/// there the chord at rest is (l0, 0, 0) and small rotations are small numbers, so that strains keep their relative
-/// precision down to 1e-12 where components in the world would leave 1e-16 of l0.
+/// Two rigid bodies i and j, displaced by u_i, u_j and rotated by q_i, q_j from the state at rest,
+/// are joined by a shear-flexible beam from centroid to centroid, whose triad at rest is T (e1
+/// along the beam). All is computed in T: there the chord at rest is (l0, 0, 0) and small rotations
+/// are small numbers, so that strains keep their relative precision down to 1e-12 where components
+/// in the world would leave 1e-16 of l0.
 ///   d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
-///   a, b = q_i, q_j with vector parts taken to T     (T^* q T: the triads that the bodies carry, seen from T)
-///   r = a* b = (w, v)        with the sign that makes w >= 0
-///   psi = 2 atan2(|v|, w) v/|v|                       relative rotation [rad]
-///   m = (a + b)/|a + b|, E = R_m^T e                  the chord in the mean triad
-///   Delta = d.(2 (l0, 0, 0) + d)/(l + l0)             elongation [m], exact at any rotation and strain
-///   gamma_y = l0 E_2/l, gamma_z = l0 E_3/l            shear of the chord against the mean triad, as a length [m]
-///   U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2 + kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
+///   a, b = q_i, q_j with vector parts taken to T     (T^* q T: the triads that the bodies carry,
+///   seen from T) r = a* b = (w, v)        with the sign that makes w >= 0 psi = 2 atan2(|v|, w)
+///   v/|v|                       relative rotation [rad] m = (a + b)/|a + b|, E = R_m^T e the chord
+///   in the mean triad Delta = d.(2 (l0, 0, 0) + d)/(l + l0)             elongation [m], exact at
+///   any rotation and strain gamma_y = l0 E_2/l, gamma_z = l0 E_3/l            shear of the chord
+///   against the mean triad, as a length [m] U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2 +
+///   kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
 /// With g = asin|v|/|v| = (phi/2)/sin(phi/2), phi = |psi|:  psi = 2 g v.
 #pragma once
 
@@ -61,8 +62,9 @@ struct BeamGradient {
   Vec3<T> force, moment_i, moment_j;
 };
 
-/// h(s2) = (1 - asin(s)/s)/s2 with s2 = s^2 = |v|^2 and w = sqrt(1 - s2). Below |v| = 0.1 (a relative rotation of
-/// 11 degrees) the series, whose first term left out is 1e-17; above it the closed form.
+/// h(s2) = (1 - asin(s)/s)/s2 with s2 = s^2 = |v|^2 and w = sqrt(1 - s2). Below |v| = 0.1 (a
+/// relative rotation of 11 degrees) the series, whose first term left out is 1e-17; above it the
+/// closed form.
 template <class T>
 T asin_remainder(const T& s2, const T& w) {
   using std::atan2;
@@ -85,11 +87,12 @@ T asin_remainder(const T& s2, const T& w) {
 /// Co-rotational strains (Crisfield 1990, 1997: strains against a triad that goes with the beam).
 /// \param d  u_j - u_i [m]   \param qi, qj  rotations of the bodies from rest
 template <class T, class C>
-BeamStrains<T> corotational_strains(const BeamConstants<C>& beam, const Vec3<T>& d, const Quat<T>& qi,
-                                    const Quat<T>& qj) {
+BeamStrains<T> corotational_strains(const BeamConstants<C>& beam, const Vec3<T>& d,
+                                    const Quat<T>& qi, const Quat<T>& qj) {
   using std::sqrt;
   BeamStrains<T> s;
-  const Vec3<T> ai = beam.to_rest(Vec3<T>{qi.x, qi.y, qi.z}), bj = beam.to_rest(Vec3<T>{qj.x, qj.y, qj.z});
+  const Vec3<T> ai = beam.to_rest(Vec3<T>{qi.x, qi.y, qi.z}),
+                bj = beam.to_rest(Vec3<T>{qj.x, qj.y, qj.z});
   const Quat<T> a{qi.w, ai.x, ai.y, ai.z};
   Quat<T> b{qj.w, bj.x, bj.y, bj.z};
   const Quat<T> r = product(conjugate(a), b);
@@ -116,7 +119,8 @@ BeamStrains<T> corotational_strains(const BeamConstants<C>& beam, const Vec3<T>&
   return s;
 }
 
-/// Strains linear in displacements and in rotation vectors, 2 (x, y, z) of a linearised quaternion (1, x, y, z).
+/// Strains linear in displacements and in rotation vectors, 2 (x, y, z) of a linearised quaternion
+/// (1, x, y, z).
 template <class T, class C>
 BeamStrains<T> linear_strains(const BeamConstants<C>& beam, const Vec3<T>& d, const Quat<T>& qi,
                               const Quat<T>& qj) {
@@ -132,18 +136,21 @@ BeamStrains<T> linear_strains(const BeamConstants<C>& beam, const Vec3<T>& d, co
 
 template <class T, class C>
 T beam_energy(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
-  return T(0.5 * (beam.kn * s.delta * s.delta + beam.ksz * s.gamma_y * s.gamma_y + beam.ksy * s.gamma_z * s.gamma_z +
-                  beam.kt * s.psi.x * s.psi.x + beam.kby * s.psi.y * s.psi.y + beam.kbz * s.psi.z * s.psi.z));
+  return T(0.5 * (beam.kn * s.delta * s.delta + beam.ksz * s.gamma_y * s.gamma_y +
+                  beam.ksy * s.gamma_z * s.gamma_z + beam.kt * s.psi.x * s.psi.x +
+                  beam.kby * s.psi.y * s.psi.y + beam.kbz * s.psi.z * s.psi.z));
 }
 
-/// Exact gradient of beam_energy for co-rotational strains (formula: physics.md section 2, "Exact gradient").
+/// Exact gradient of beam_energy for co-rotational strains (formula: physics.md section 2, "Exact
+/// gradient").
 template <class T, class C>
 BeamGradient<T> corotational_gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
   const T inverse = T(1.0 / s.l);
   const T stretch = T(beam.l0 * inverse);
   const T qy = T(beam.ksz * s.gamma_y), qz = T(beam.ksy * s.gamma_z);
-  const T along = T(T(T(beam.kn * s.delta) -
-                      T(T(stretch * inverse) * T(T(qy * s.chord.y) + T(qz * s.chord.z)))) * inverse);
+  const T along = T(
+      T(T(beam.kn * s.delta) - T(T(stretch * inverse) * T(T(qy * s.chord.y) + T(qz * s.chord.z)))) *
+      inverse);
   const Vec3<T> n{T(along * s.chord.x), T(T(along * s.chord.y) + T(stretch * qy)),
                   T(T(along * s.chord.z) + T(stretch * qz))};
   const Vec3<T> p = cross(n, s.chord);
@@ -161,14 +168,16 @@ BeamGradient<T> linear_gradient(const BeamConstants<C>& beam, const BeamStrains<
   const T qy = T(beam.ksz * s.gamma_y), qz = T(beam.ksy * s.gamma_z);
   const Vec3<T> half{T(0.0 * qy), T((0.5 * beam.l0) * qz), T((-0.5 * beam.l0) * qy)};
   const Vec3<T> c{T(beam.kt * s.psi.x), T(beam.kby * s.psi.y), T(beam.kbz * s.psi.z)};
-  return {beam.to_world(Vec3<T>{T(beam.kn * s.delta), qy, qz}), beam.to_world(half - c), beam.to_world(half + c)};
+  return {beam.to_world(Vec3<T>{T(beam.kn * s.delta), qy, qz}), beam.to_world(half - c),
+          beam.to_world(half + c)};
 }
 
 /// The kernel for one choice of kinematics, picked outside the loop over beams.
 template <Kinematics kinematics>
 struct BeamKernel {
   template <class T, class C>
-  static BeamStrains<T> strains(const BeamConstants<C>& beam, const Vec3<T>& d, const Quat<T>& qi, const Quat<T>& qj) {
+  static BeamStrains<T> strains(const BeamConstants<C>& beam, const Vec3<T>& d, const Quat<T>& qi,
+                                const Quat<T>& qj) {
     if constexpr (kinematics == Kinematics::linear) {
       return linear_strains(beam, d, qi, qj);
     } else {

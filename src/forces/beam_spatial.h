@@ -45,7 +45,8 @@ struct SpatialBeam {
   }
 
   /// Wrenches on i and j (minus the gradient), n each.
-  static void wrenches(const Constants& c, const double* i, const double* j, double* on_i, double* on_j) {
+  static void wrenches(const Constants& c, const double* i, const double* j, double* on_i,
+                       double* on_j) {
     const BeamGradient<double> g = Kernel::gradient(c, strains(c, i, j));
     on_i[0] = g.force.x, on_i[1] = g.force.y, on_i[2] = g.force.z;
     on_i[3] = -g.moment_i.x, on_i[4] = -g.moment_i.y, on_i[5] = -g.moment_i.z;
@@ -59,11 +60,13 @@ struct SpatialBeam {
 
   static BeamSection section(const Constants& c, const double* i, const double* j) {
     const BeamStrains<double> s = strains(c, i, j);
-    return {c.kn * s.delta, c.ksz * s.gamma_y, c.ksy * s.gamma_z, c.kt * s.psi.x, c.kby * s.psi.y, c.kbz * s.psi.z};
+    return {c.kn * s.delta, c.ksz * s.gamma_y, c.ksy * s.gamma_z,
+            c.kt * s.psi.x, c.kby * s.psi.y,   c.kbz * s.psi.z};
   }
 
-  /// 12 x 12 tangent on (u_i, theta_i, u_j, theta_j), by forward differentiation of the gradient in nine directions:
-  /// the relative displacement and the two spins. \param symmetric  H = K + skew(m)/2 instead of K
+  /// 12 x 12 tangent on (u_i, theta_i, u_j, theta_j), by forward differentiation of the gradient in
+  /// nine directions: the relative displacement and the two spins. \param symmetric  H = K +
+  /// skew(m)/2 instead of K
   static void tangent(const Constants& c, const double* i, const double* j, bool symmetric,
                       std::array<double, 4 * n * n>& k) {
     using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
@@ -77,7 +80,9 @@ struct SpatialBeam {
     const std::array<const Dual*, 3> mj{&g.moment_j.x, &g.moment_j.y, &g.moment_j.z};
     const auto put = [&](int row, const Dual& value, double sign) {
       for (int a = 0; a < 3; ++a) {
-        const auto at = [&](int column) -> double& { return k[static_cast<std::size_t>(row * 2 * n + column)]; };
+        const auto at = [&](int column) -> double& {
+          return k[static_cast<std::size_t>(row * 2 * n + column)];
+        };
         const auto& by = value.derivatives();
         at(a) = -sign * by[a];  // u_i enters through d = u_j - u_i only
         at(3 + a) = sign * by[3 + a];
@@ -99,12 +104,16 @@ struct SpatialBeam {
   }
 
  private:
-  static Vec3<double> relative(const double* i, const double* j) { return {j[0] - i[0], j[1] - i[1], j[2] - i[2]}; }
+  static Vec3<double> relative(const double* i, const double* j) {
+    return {j[0] - i[0], j[1] - i[1], j[2] - i[2]};
+  }
   static Quat<double> rotation_of(const double* r) {
-    return {r[Space::rotation], r[Space::rotation + 1], r[Space::rotation + 2], r[Space::rotation + 3]};
+    return {r[Space::rotation], r[Space::rotation + 1], r[Space::rotation + 2],
+            r[Space::rotation + 3]};
   }
 
-  /// A rotation with its derivatives to the three components of a spin: dq = (0, spin) q/2, or, linear, (0, spin)/2.
+  /// A rotation with its derivatives to the three components of a spin: dq = (0, spin) q/2, or,
+  /// linear, (0, spin)/2.
   template <class Dual>
   static Quat<Dual> spun(const Quat<double>& q, int first) {
     Quat<Dual> out{Dual(q.w), Dual(q.x), Dual(q.y), Dual(q.z)};

@@ -4,7 +4,9 @@
 
 namespace floe {
 
-double Ramp::value(double time) const { return time >= seconds ? 1.0 : std::max(0.0, time) / seconds; }
+double Ramp::value(double time) const {
+  return time >= seconds ? 1.0 : std::max(0.0, time) / seconds;
+}
 
 double Ramp::integral(double time) const {
   if (time <= 0) return 0;

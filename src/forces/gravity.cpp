@@ -10,7 +10,8 @@ class Gravity final : public Force<Spatial> {
   std::string_view name() const override { return "gravity"; }
   void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) const override {
     for (std::int32_t b = 0; b < part_.owned; ++b)
-      wrenches.of(static_cast<std::size_t>(b))[2] -= part_.bodies.mass[static_cast<std::size_t>(b)] * g_;
+      wrenches.of(static_cast<std::size_t>(b))[2] -=
+          part_.bodies.mass[static_cast<std::size_t>(b)] * g_;
   }
   bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
   double stiffness_bound(std::int32_t) const override { return 0; }
@@ -18,7 +19,8 @@ class Gravity final : public Force<Spatial> {
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b)
-      energy += part_.bodies.mass[static_cast<std::size_t>(b)] * g_ * displacement(state, static_cast<std::size_t>(b)).z;
+      energy += part_.bodies.mass[static_cast<std::size_t>(b)] * g_ *
+                displacement(state, static_cast<std::size_t>(b)).z;
     columns.add("energy_gravity", energy);
   }
 

@@ -5,9 +5,10 @@
 namespace floe {
 namespace {
 
-/// Dead load F with the moment M: wrench (F, a x F + M) on each body, a = R r the turned arm. Potential
-/// -F.(u + a) of the force; a dead moment has none, which the exact tangent K shows as a skew part.
-/// With linear kinematics a = r in the wrench, which is constant then, and r + theta x r in the potential.
+/// Dead load F with the moment M: wrench (F, a x F + M) on each body, a = R r the turned arm.
+/// Potential -F.(u + a) of the force; a dead moment has none, which the exact tangent K shows as a
+/// skew part. With linear kinematics a = r in the wrench, which is constant then, and r + theta x r
+/// in the potential.
 class DeadLoad final : public Force<Spatial> {
  public:
   DeadLoad(const Part& part, PlacedLoad placed, Kinematics kinematics)
@@ -43,10 +44,12 @@ class DeadLoad final : public Force<Spatial> {
       Tangent<Spatial>::Block block{};
       for (std::size_t r = 0; r < 3; ++r) {
         for (std::size_t c = 0; c < 3; ++c)
-          block[(3 + r) * 6 + 3 + c] = (r == c ? dot(f, a) : 0.0) - 0.5 * (fs[r] * as[c] + as[r] * fs[c]);
+          block[(3 + r) * 6 + 3 + c] =
+              (r == c ? dot(f, a) : 0.0) - 0.5 * (fs[r] * as[c] + as[r] * fs[c]);
       }
       if (!tangent.symmetric()) {
-        // K = H - skew(g)/2 with g = -(a x F) the force's moment gradient (the applied moment itself is constant).
+        // K = H - skew(g)/2 with g = -(a x F) the force's moment gradient (the applied moment
+        // itself is constant).
         const Vec3<double> g = cross(f, a);
         block[3 * 6 + 4] += 0.5 * g.z, block[4 * 6 + 3] -= 0.5 * g.z;
         block[3 * 6 + 5] -= 0.5 * g.y, block[5 * 6 + 3] += 0.5 * g.y;
@@ -115,7 +118,8 @@ PlacedLoad place(const Load& load, const Lattice& lattice) {
 }
 
 template <>
-std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part& part, PlacedLoad load, Kinematics kinematics) {
+std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part& part, PlacedLoad load,
+                                                   Kinematics kinematics) {
   return std::make_unique<DeadLoad>(part, std::move(load), kinematics);
 }
 

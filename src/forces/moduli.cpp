@@ -4,8 +4,8 @@
 
 namespace floe {
 
-LatticeModuli lattice_moduli(double size, double thickness, const Ice& ice, double shear_factor, Shear shear,
-                             Torsion torsion) {
+LatticeModuli lattice_moduli(double size, double thickness, const Ice& ice, double shear_factor,
+                             Shear shear, Torsion torsion) {
   const double w = size / std::sqrt(3.0), h = thickness;
   const double shear_modulus = ice.young / (2.0 * (1.0 + ice.poisson));
   const double iy = w * h * h * h / 12.0, iz = h * w * w * w / 12.0;

@@ -5,7 +5,8 @@
 namespace floe {
 namespace {
 
-/// Exact number of blocks per owned row: in all on this rank's columns and others', and in the upper triangle.
+/// Exact number of blocks per owned row: in all on this rank's columns and others', and in the
+/// upper triangle.
 struct RowCounts {
   std::vector<PetscInt> here, elsewhere, here_upper, elsewhere_upper;
 };
@@ -13,13 +14,14 @@ struct RowCounts {
 RowCounts count_blocks(const Part& part) {
   const auto owned = static_cast<std::size_t>(part.owned);
   std::vector<std::vector<PetscInt>> neighbours(owned);
-  for (std::int32_t b = 0; b < part.owned; ++b) neighbours[static_cast<std::size_t>(b)].push_back(b);
+  for (std::int32_t b = 0; b < part.owned; ++b)
+    neighbours[static_cast<std::size_t>(b)].push_back(b);
   for (const auto& [i, j] : part.beams.bodies) {
     if (i < part.owned) neighbours[static_cast<std::size_t>(i)].push_back(j);
     if (j < part.owned) neighbours[static_cast<std::size_t>(j)].push_back(i);
   }
-  RowCounts counts{std::vector<PetscInt>(owned), std::vector<PetscInt>(owned), std::vector<PetscInt>(owned),
-                   std::vector<PetscInt>(owned)};
+  RowCounts counts{std::vector<PetscInt>(owned), std::vector<PetscInt>(owned),
+                   std::vector<PetscInt>(owned), std::vector<PetscInt>(owned)};
   for (std::size_t b = 0; b < owned; ++b) {
     auto& list = neighbours[b];
     std::sort(list.begin(), list.end());
@@ -48,13 +50,13 @@ Tangent<Space>::Tangent(const Part& part, std::span<const std::uint8_t> held, do
   check(MatSetBlockSize(matrix_, n));
   check(MatSetType(matrix_, options.type));
   check(MatSetFromOptions(matrix_));
-  check(MatXAIJSetPreallocation(matrix_, n, counts.here.data(), counts.elsewhere.data(), counts.here_upper.data(),
-                                counts.elsewhere_upper.data()));
+  check(MatXAIJSetPreallocation(matrix_, n, counts.here.data(), counts.elsewhere.data(),
+                                counts.here_upper.data(), counts.elsewhere_upper.data()));
   check(MatSetOption(matrix_, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   check(MatSetOption(matrix_, MAT_SYMMETRIC, options.symmetric ? PETSC_TRUE : PETSC_FALSE));
   PetscBool upper_only = PETSC_FALSE;
-  check(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix_.get()), &upper_only, MATSEQSBAIJ,
-                                  MATMPISBAIJ, ""));
+  check(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix_.get()), &upper_only,
+                                  MATSEQSBAIJ, MATMPISBAIJ, ""));
   if (upper_only) check(MatSetOption(matrix_, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
 }
 
@@ -87,7 +89,8 @@ void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
       entry *= scale_[static_cast<std::size_t>(c)];
       if (!held) continue;
       if (!increments_.empty())
-        lift_[index + static_cast<std::size_t>(k)] += entry * increments_[index + static_cast<std::size_t>(c)];
+        lift_[index + static_cast<std::size_t>(k)] +=
+            entry * increments_[index + static_cast<std::size_t>(c)];
       entry = 0;
     }
   }
@@ -116,7 +119,8 @@ void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& b
       entry = 0;
     }
   }
-  const std::array<PetscInt, 2> rows{part_.row[static_cast<std::size_t>(i)], part_.row[static_cast<std::size_t>(j)]};
+  const std::array<PetscInt, 2> rows{part_.row[static_cast<std::size_t>(i)],
+                                     part_.row[static_cast<std::size_t>(j)]};
   const bool own_i = i < part_.owned, own_j = j < part_.owned;
   if (own_i && own_j) {
     check(MatSetValuesBlocked(matrix_, 2, rows.data(), 2, rows.data(), a.data(), ADD_VALUES));

@@ -12,8 +12,8 @@ constexpr int bits = 20;  // per axis: 60-bit keys, cells of a millionth of the 
 
 /// Index along the three-dimensional Hilbert curve of a point with integer coordinates
 /// (Skilling 2004, "Programming the Hilbert curve", AIP Conf. Proc. 707, 381: axes to transpose).
-/// CGAL's hilbert_sort is not used: its median splits put points with equal coordinates (every flat sheet) in
-/// arbitrary order.
+/// CGAL's hilbert_sort is not used: its median splits put points with equal coordinates (every flat
+/// sheet) in arbitrary order.
 std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
   constexpr std::uint32_t top = 1U << (bits - 1);
   for (std::uint32_t q = top; q > 1; q >>= 1) {
@@ -57,7 +57,8 @@ std::vector<std::int32_t> hilbert_order(const std::vector<Point3>& points) {
   std::vector<std::uint64_t> keys(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::array<std::uint32_t, 3> x{};
-    for (std::size_t a = 0; a < 3; ++a) x[a] = static_cast<std::uint32_t>((points[k][a] - low[a]) * scale);
+    for (std::size_t a = 0; a < 3; ++a)
+      x[a] = static_cast<std::uint32_t>((points[k][a] - low[a]) * scale);
     keys[k] = hilbert_key(x);
   }
   std::vector<std::int32_t> order(points.size());

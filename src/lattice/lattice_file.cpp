@@ -20,7 +20,8 @@ class Reader {
   }
   const Hdf5File& file() const { return file_; }
 
-  std::vector<double> scalars(const std::string& name, std::size_t count, bool positive = true) const {
+  std::vector<double> scalars(const std::string& name, std::size_t count,
+                              bool positive = true) const {
     std::vector<double> values = file_.read(name);
     expect(name, values.size(), count);
     for (std::size_t k = 0; k < count; ++k) {
@@ -37,18 +38,20 @@ class Reader {
     expect(name, values.size() / columns, count);
     std::vector<std::array<double, columns>> out(count);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!std::isfinite(values[k])) refuse(name, "row " + std::to_string(k / columns) + " is not finite");
+      if (!std::isfinite(values[k]))
+        refuse(name, "row " + std::to_string(k / columns) + " is not finite");
       out[k / columns][k % columns] = values[k];
     }
     return out;
   }
 
-  std::vector<std::int32_t> indices(const std::string& name, std::size_t limit, int columns = 1) const {
+  std::vector<std::int32_t> indices(const std::string& name, std::size_t limit,
+                                    int columns = 1) const {
     std::vector<std::int32_t> values = file_.read_indices(name, columns);
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (values[k] < 0 || static_cast<std::size_t>(values[k]) >= limit)
-        refuse(name, "entry " + std::to_string(k) + " is " + std::to_string(values[k]) + ", must be between 0 and " +
-                         std::to_string(limit) + " (exclusive)");
+        refuse(name, "entry " + std::to_string(k) + " is " + std::to_string(values[k]) +
+                         ", must be between 0 and " + std::to_string(limit) + " (exclusive)");
     }
     return values;
   }
@@ -72,7 +75,8 @@ Bodies read_bodies(const Reader& in) {
     auto& [w, x, y, z] = b.orientation[k];
     const double norm = std::sqrt(w * w + x * x + y * y + z * z);
     if (std::abs(norm - 1) > 1e-6)
-      in.refuse("/bodies/orientation", "row " + std::to_string(k) + " is not a unit quaternion (w x y z)");
+      in.refuse("/bodies/orientation",
+                "row " + std::to_string(k) + " is not a unit quaternion (w x y z)");
     // What floe wrote is unit to rounding and must come back to the bit.
     if (std::abs(norm - 1) > 1e-15) b.orientation[k] = {w / norm, x / norm, y / norm, z / norm};
   }
@@ -84,7 +88,8 @@ Bodies read_bodies(const Reader& in) {
     }
   }
   if (in.file().has("/bodies/velocity")) b.velocity = in.rows<3>("/bodies/velocity", n);
-  if (in.file().has("/bodies/angular_velocity")) b.angular_velocity = in.rows<3>("/bodies/angular_velocity", n);
+  if (in.file().has("/bodies/angular_velocity"))
+    b.angular_velocity = in.rows<3>("/bodies/angular_velocity", n);
   return b;
 }
 
@@ -98,12 +103,15 @@ void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
     const Vec3<double> e{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double distance = std::sqrt(dot(e, e));
     if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
-      in.refuse("/beams/length", "row " + std::to_string(k) + " is " + std::to_string(beams.length[k]) +
-                                     ", but its bodies are " + std::to_string(distance) + " m apart");
+      in.refuse("/beams/length", "row " + std::to_string(k) + " is " +
+                                     std::to_string(beams.length[k]) + ", but its bodies are " +
+                                     std::to_string(distance) + " m apart");
     const Vec3<double> y{beams.axis_y[k][0], beams.axis_y[k][1], beams.axis_y[k][2]};
     const Vec3<double> normal = cross(e, y);
-    if (std::abs(std::sqrt(dot(y, y)) - 1) > 1e-6 || std::sqrt(dot(normal, normal)) < 1e-6 * distance)
-      in.refuse("/beams/axis_y", "row " + std::to_string(k) + " must be a unit vector that is not along the beam");
+    if (std::abs(std::sqrt(dot(y, y)) - 1) > 1e-6 ||
+        std::sqrt(dot(normal, normal)) < 1e-6 * distance)
+      in.refuse("/beams/axis_y",
+                "row " + std::to_string(k) + " must be a unit vector that is not along the beam");
   }
 }
 
@@ -115,8 +123,8 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
   const std::size_t m = pairs.size() / 2;
   for (std::size_t k = 0; k < m; ++k) {
     if (pairs[2 * k] == pairs[2 * k + 1])
-      in.refuse("/beams/bodies", "row " + std::to_string(k) + " joins body " + std::to_string(pairs[2 * k]) +
-                                     " to itself");
+      in.refuse("/beams/bodies", "row " + std::to_string(k) + " joins body " +
+                                     std::to_string(pairs[2 * k]) + " to itself");
     if (pairs[2 * k] > pairs[2 * k + 1])
       in.refuse("/beams/bodies", "row " + std::to_string(k) + " must have the smaller index first");
     beams.bodies.push_back({pairs[2 * k], pairs[2 * k + 1]});
@@ -135,9 +143,10 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
 }
 
 /// Offsets must start at 0, grow, and end at `end`.
-void check_offsets(const Reader& in, const std::string& name, const std::vector<std::int32_t>& offsets,
-                   std::size_t groups, std::size_t end) {
-  if (offsets.size() != groups + 1) in.refuse(name, "must have " + std::to_string(groups + 1) + " entries");
+void check_offsets(const Reader& in, const std::string& name,
+                   const std::vector<std::int32_t>& offsets, std::size_t groups, std::size_t end) {
+  if (offsets.size() != groups + 1)
+    in.refuse(name, "must have " + std::to_string(groups + 1) + " entries");
   if (offsets.front() != 0 || static_cast<std::size_t>(offsets.back()) != end ||
       !std::is_sorted(offsets.begin(), offsets.end()))
     in.refuse(name, "must grow from 0 to " + std::to_string(end));
@@ -148,12 +157,16 @@ void check_solids(const Reader& in, const Shapes& s) {
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
     const std::string name = "body " + std::to_string(b);
-    if (s.face_of[body + 1] - s.face_of[body] < 4) in.refuse("/shapes/face_of", name + " must have 4 faces or more");
-    for (auto f = static_cast<std::size_t>(s.face_of[body]); f < static_cast<std::size_t>(s.face_of[body + 1]); ++f) {
-      if (s.corner_of[f + 1] - s.corner_of[f] < 3) in.refuse("/shapes/corner_of", name + ": a face must have 3 corners or more");
+    if (s.face_of[body + 1] - s.face_of[body] < 4)
+      in.refuse("/shapes/face_of", name + " must have 4 faces or more");
+    for (auto f = static_cast<std::size_t>(s.face_of[body]);
+         f < static_cast<std::size_t>(s.face_of[body + 1]); ++f) {
+      if (s.corner_of[f + 1] - s.corner_of[f] < 3)
+        in.refuse("/shapes/corner_of", name + ": a face must have 3 corners or more");
     }
     const VolumeProperties p = volume_properties(s, b);
-    if (!(p.volume > 0)) in.refuse("/shapes/corners", name + ": faces must be counter-clockwise seen from outside");
+    if (!(p.volume > 0))
+      in.refuse("/shapes/corners", name + ": faces must be counter-clockwise seen from outside");
     constexpr double centred = 1e-6;  // of the body's size
     if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
       in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
@@ -163,7 +176,8 @@ void check_solids(const Reader& in, const Shapes& s) {
 Shapes read_shapes(const Reader& in, std::size_t bodies) {
   Shapes s;
   if (!in.file().has("/shapes")) return s;
-  s.vertices = in.rows<3>("/shapes/vertices", static_cast<std::size_t>(in.file().shape("/shapes/vertices").first));
+  s.vertices = in.rows<3>("/shapes/vertices",
+                          static_cast<std::size_t>(in.file().shape("/shapes/vertices").first));
   s.corners = in.indices("/shapes/corners", s.vertices.size());
   s.corner_of = in.indices("/shapes/corner_of", s.corners.size() + 1);
   s.face_of = in.indices("/shapes/face_of", s.corner_of.size());
@@ -177,18 +191,22 @@ Shapes read_shapes(const Reader& in, std::size_t bodies) {
          c < s.corner_of[static_cast<std::size_t>(s.face_of[b + 1])]; ++c) {
       const std::int32_t v = s.corners[static_cast<std::size_t>(c)];
       if (v < s.vertex_of[b] || v >= s.vertex_of[b + 1])
-        in.refuse("/shapes/corners", "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
+        in.refuse("/shapes/corners",
+                  "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
     }
   }
   check_solids(in, s);
   return s;
 }
 
-std::span<const double> flat(const std::vector<Point3>& v) { return {v.empty() ? nullptr : v[0].data(), 3 * v.size()}; }
+std::span<const double> flat(const std::vector<Point3>& v) {
+  return {v.empty() ? nullptr : v[0].data(), 3 * v.size()};
+}
 
 }  // namespace
 
-const std::vector<std::int32_t>& Lattice::set(const std::string& name, const std::string& key) const {
+const std::vector<std::int32_t>& Lattice::set(const std::string& name,
+                                              const std::string& key) const {
   if (const auto found = sets.find(name); found != sets.end()) {
     if (found->second.empty()) throw InputError(key + ": the set '" + name + "' has no bodies");
     return found->second;
@@ -222,15 +240,18 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
   Hdf5File file = Hdf5File::create(path);
   const Bodies& b = lattice.bodies;
   file.write("/bodies/position", flat(b.position), 3);
-  file.write("/bodies/orientation", std::span<const double>(b.orientation[0].data(), 4 * b.orientation.size()), 4);
+  file.write("/bodies/orientation",
+             std::span<const double>(b.orientation[0].data(), 4 * b.orientation.size()), 4);
   file.write("/bodies/mass", b.mass);
   file.write("/bodies/inertia", flat(b.inertia), 3);
   if (!b.velocity.empty()) file.write("/bodies/velocity", flat(b.velocity), 3);
-  if (!b.angular_velocity.empty()) file.write("/bodies/angular_velocity", flat(b.angular_velocity), 3);
+  if (!b.angular_velocity.empty())
+    file.write("/bodies/angular_velocity", flat(b.angular_velocity), 3);
 
   const Beams& m = lattice.beams;
   if (m.size() > 0) {
-    file.write("/beams/bodies", std::span<const std::int32_t>(m.bodies[0].data(), 2 * m.bodies.size()), 2);
+    file.write("/beams/bodies",
+               std::span<const std::int32_t>(m.bodies[0].data(), 2 * m.bodies.size()), 2);
     file.write("/beams/area", m.area);
     file.write("/beams/inertia_y", m.inertia_y);
     file.write("/beams/inertia_z", m.inertia_z);

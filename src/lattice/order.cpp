@@ -8,7 +8,8 @@
 namespace floe {
 namespace {
 
-/// Reverse Cuthill-McKee order of the bodies, neighbours being those joined by a beam (PETSc's, on one rank).
+/// Reverse Cuthill-McKee order of the bodies, neighbours being those joined by a beam (PETSc's, on
+/// one rank).
 std::vector<std::int32_t> reverse_cuthill_mckee(const Lattice& lattice) {
   const PetscInt n = lattice.bodies.size();
   std::vector<PetscInt> start(static_cast<std::size_t>(n) + 1, 0);
@@ -32,7 +33,8 @@ std::vector<std::int32_t> reverse_cuthill_mckee(const Lattice& lattice) {
     std::sort(columns.begin() + start[k], columns.begin() + start[k + 1]);
   std::vector<PetscScalar> values(columns.size(), 1.0);
   Handle<Mat> graph;
-  check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, start.data(), columns.data(), values.data(), graph.put()));
+  check(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n, start.data(), columns.data(),
+                                  values.data(), graph.put()));
   Handle<IS> rows, same;
   check(MatGetOrdering(graph, MATORDERINGRCM, rows.put(), same.put()));
   const PetscInt* order = nullptr;
@@ -56,8 +58,8 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
     std::sort(set.begin(), set.end());
   }
 
-  // A beam runs from the smaller to the larger body. Turning it round turns axis 1, and axis 2 with it,
-  // so that axis 3 = 1 x 2 (up, in a sheet) stays.
+  // A beam runs from the smaller to the larger body. Turning it round turns axis 1, and axis 2 with
+  // it, so that axis 3 = 1 x 2 (up, in a sheet) stays.
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
     auto& [i, j] = lattice.beams.bodies[m];
     i = renumbered[static_cast<std::size_t>(i)];
@@ -70,7 +72,8 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
   std::vector<std::int32_t> beams(lattice.beams.bodies.size());
   std::iota(beams.begin(), beams.end(), 0);
   std::stable_sort(beams.begin(), beams.end(), [&](std::int32_t a, std::int32_t b) {
-    return lattice.beams.bodies[static_cast<std::size_t>(a)] < lattice.beams.bodies[static_cast<std::size_t>(b)];
+    return lattice.beams.bodies[static_cast<std::size_t>(a)] <
+           lattice.beams.bodies[static_cast<std::size_t>(b)];
   });
   lattice.beams = pick(lattice.beams, beams);
   return order;

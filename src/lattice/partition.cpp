@@ -41,13 +41,14 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
   const int me = rank(comm), ranks = size(comm);
   const std::int32_t n = lattice.bodies.size();
   if (ranks > n)
-    throw InputError("mpiexec: " + std::to_string(ranks) + " ranks are more than the " + std::to_string(n) +
-                     " bodies of the scene");
+    throw InputError("mpiexec: " + std::to_string(ranks) + " ranks are more than the " +
+                     std::to_string(n) + " bodies of the scene");
   const std::vector<std::int32_t> owner = owners(lattice, ranks);
 
   // Rank after rank, each rank's bodies in global order: their index there, and PETSc's block row.
   std::vector<std::int32_t> count(static_cast<std::size_t>(ranks) + 1, 0), index(owner.size());
-  for (std::size_t b = 0; b < owner.size(); ++b) index[b] = count[static_cast<std::size_t>(owner[b]) + 1]++;
+  for (std::size_t b = 0; b < owner.size(); ++b)
+    index[b] = count[static_cast<std::size_t>(owner[b]) + 1]++;
   std::partial_sum(count.begin(), count.end(), count.begin());
 
   Part part;
@@ -63,7 +64,8 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
   std::vector<std::int32_t> beams, ghosts;
   for (std::int32_t m = 0; m < lattice.beams.size(); ++m) {
     const auto [i, j] = lattice.beams.bodies[static_cast<std::size_t>(m)];
-    const bool own_i = owner[static_cast<std::size_t>(i)] == me, own_j = owner[static_cast<std::size_t>(j)] == me;
+    const bool own_i = owner[static_cast<std::size_t>(i)] == me,
+               own_j = owner[static_cast<std::size_t>(j)] == me;
     if (!own_i && !own_j) continue;
     beams.push_back(m);
     part.counts_here.push_back(own_i);
@@ -71,7 +73,8 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
     if (!own_j) ghosts.push_back(j);
   }
   std::sort(ghosts.begin(), ghosts.end(), [&](std::int32_t a, std::int32_t b) {
-    return std::pair(owner[static_cast<std::size_t>(a)], a) < std::pair(owner[static_cast<std::size_t>(b)], b);
+    return std::pair(owner[static_cast<std::size_t>(a)], a) <
+           std::pair(owner[static_cast<std::size_t>(b)], b);
   });
   ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
   std::vector<std::int32_t> ghost_owner, ghost_index;
@@ -90,7 +93,8 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
 
   part.bodies = pick(lattice.bodies, part.global);
   part.beams = pick(lattice.beams, beams);
-  for (auto& pair : part.beams.bodies) pair = {part.local_index(pair[0]), part.local_index(pair[1])};
+  for (auto& pair : part.beams.bodies)
+    pair = {part.local_index(pair[0]), part.local_index(pair[1])};
   part.global_beam = std::move(beams);
   part.ghosts = Ghosts(comm, part.owned, ghost_owner, ghost_index);
   return part;

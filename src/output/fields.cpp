@@ -18,16 +18,23 @@ std::string group_name(std::size_t k) {
 
 constexpr int xdmf_polygon = 3;
 
-std::string item(const std::string& where, const std::string& dimensions, const char* type, int precision) {
-  return "<DataItem Format=\"HDF\" NumberType=\"" + std::string(type) + "\" Precision=\"" + std::to_string(precision) +
-         "\" Dimensions=\"" + dimensions + "\">fields.h5:" + where + "</DataItem>";
+std::string item(const std::string& where, const std::string& dimensions, const char* type,
+                 int precision) {
+  return "<DataItem Format=\"HDF\" NumberType=\"" + std::string(type) + "\" Precision=\"" +
+         std::to_string(precision) + "\" Dimensions=\"" + dimensions + "\">fields.h5:" + where +
+         "</DataItem>";
 }
 
-std::string attribute(const std::string& name, const std::string& group, std::size_t rows, int columns,
-                      const char* centre, int precision) {
-  const std::string dimensions = std::to_string(rows) + (columns > 1 ? " " + std::to_string(columns) : "");
-  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" + (columns == 3 ? "Vector" : columns == 1 ? "Scalar" : "Matrix") +
-         "\" Center=\"" + centre + "\">" + item(group + "/" + name, dimensions, "Float", precision) + "</Attribute>\n";
+std::string attribute(const std::string& name, const std::string& group, std::size_t rows,
+                      int columns, const char* centre, int precision) {
+  const std::string dimensions =
+      std::to_string(rows) + (columns > 1 ? " " + std::to_string(columns) : "");
+  return "        <Attribute Name=\"" + name + "\" AttributeType=\"" +
+         (columns == 3   ? "Vector"
+          : columns == 1 ? "Scalar"
+                         : "Matrix") +
+         "\" Center=\"" + centre + "\">" +
+         item(group + "/" + name, dimensions, "Float", precision) + "</Attribute>\n";
 }
 
 }  // namespace
@@ -46,7 +53,8 @@ void Fields::write_mesh() {
       const auto face = static_cast<std::size_t>(f);
       topology.push_back(xdmf_polygon);
       topology.push_back(s.corner_of[face + 1] - s.corner_of[face]);
-      topology.insert(topology.end(), s.corners.begin() + s.corner_of[face], s.corners.begin() + s.corner_of[face + 1]);
+      topology.insert(topology.end(), s.corners.begin() + s.corner_of[face],
+                      s.corners.begin() + s.corner_of[face + 1]);
       body_of_face_.push_back(b);
     }
   }
@@ -62,7 +70,9 @@ void Fields::write_mesh() {
   file_.write("/mesh/body", body_of_face_);
   if (lattice_.beams.size() > 0)
     file_.write("/mesh/beams",
-                std::span<const std::int32_t>(lattice_.beams.bodies[0].data(), 2 * lattice_.beams.bodies.size()), 2);
+                std::span<const std::int32_t>(lattice_.beams.bodies[0].data(),
+                                              2 * lattice_.beams.bodies.size()),
+                2);
 }
 
 void Fields::write(const Frame& frame) {
@@ -85,11 +95,13 @@ void Fields::write_bodies(const std::string& group, const Frame& frame) {
     if (lattice_.shapes.empty()) continue;
     const auto [w, x, y, z] = lattice_.bodies.orientation[b];
     const double* q = &frame.rotation[4 * b];
-    const Triad<double> axes = triad(product(normalised({q[0], q[1], q[2], q[3]}), Quat<double>{w, x, y, z}));
+    const Triad<double> axes =
+        triad(product(normalised({q[0], q[1], q[2], q[3]}), Quat<double>{w, x, y, z}));
     for (std::int32_t v = lattice_.shapes.vertex_of[b]; v < lattice_.shapes.vertex_of[b + 1]; ++v) {
       const Point3& r = lattice_.shapes.vertices[static_cast<std::size_t>(v)];
       const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
-      points.insert(points.end(), {centres[3 * b] + p.x, centres[3 * b + 1] + p.y, centres[3 * b + 2] + p.z});
+      points.insert(points.end(),
+                    {centres[3 * b] + p.x, centres[3 * b + 1] + p.y, centres[3 * b + 2] + p.z});
     }
   }
   file_.write(group + "/centres", centres, 3);
@@ -101,16 +113,18 @@ void Fields::write_bodies(const std::string& group, const Frame& frame) {
   rotation.reserve(3 * body_of_face_.size());
   for (const std::int32_t body : body_of_face_) {
     for (std::size_t k = 0; k < 3; ++k) {
-      displacement.push_back(static_cast<float>(frame.displacement[3 * static_cast<std::size_t>(body) + k]));
-      rotation.push_back(static_cast<float>(frame.rotation_vector[3 * static_cast<std::size_t>(body) + k]));
+      displacement.push_back(
+          static_cast<float>(frame.displacement[3 * static_cast<std::size_t>(body) + k]));
+      rotation.push_back(
+          static_cast<float>(frame.rotation_vector[3 * static_cast<std::size_t>(body) + k]));
     }
   }
   file_.write(group + "/face_displacement", displacement, 3);
   file_.write(group + "/face_rotation", rotation, 3);
 }
 
-/// Stresses of the section (physics.md section 7): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z), and
-/// tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
+/// Stresses of the section (physics.md section 7): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
+/// and tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
 void Fields::write_beams(const std::string& group, const Frame& frame) {
   const Beams& beams = lattice_.beams;
   const auto m = static_cast<std::size_t>(beams.size());
@@ -122,7 +136,8 @@ void Fields::write_beams(const std::string& group, const Frame& frame) {
     double sigma = s[0] / beams.area[k], tau = std::hypot(s[1], s[2]) / beams.area[k];
     if (!beams.width.empty() && !beams.height.empty()) {
       const double w = beams.width[k], h = beams.height[k], a = std::max(w, h), b = std::min(w, h);
-      sigma += std::abs(s[4]) * h / (2 * beams.inertia_y[k]) + std::abs(s[5]) * w / (2 * beams.inertia_z[k]);
+      sigma += std::abs(s[4]) * h / (2 * beams.inertia_y[k]) +
+               std::abs(s[5]) * w / (2 * beams.inertia_z[k]);
       tau += std::abs(s[3]) * (3 + 1.8 * b / a) / (a * b * b);
     }
     stress[2 * k] = sigma;
@@ -149,21 +164,27 @@ std::string Fields::grid(std::size_t k) const {
   out << "    <Grid Name=\"sheet\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
       << "      <Time Value=\"" << times_[k] << "\"/>\n"
       << "      <Grid Name=\"bodies\">\n        <Topology TopologyType=\""
-      << (lattice_.shapes.empty() ? "Polyvertex\" NodesPerElement=\"1" : "Mixed") << "\" NumberOfElements=\"" << faces
-      << "\">" << item("/mesh/topology", std::to_string(topology_), "Int", 4) << "</Topology>\n"
-      << "        <Geometry GeometryType=\"XYZ\">" << item(group + "/points", std::to_string(points_) + " 3", "Float", 8)
+      << (lattice_.shapes.empty() ? "Polyvertex\" NodesPerElement=\"1" : "Mixed")
+      << "\" NumberOfElements=\"" << faces << "\">"
+      << item("/mesh/topology", std::to_string(topology_), "Int", 4) << "</Topology>\n"
+      << "        <Geometry GeometryType=\"XYZ\">"
+      << item(group + "/points", std::to_string(points_) + " 3", "Float", 8)
       << "</Geometry>\n        <Attribute Name=\"body\" AttributeType=\"Scalar\" Center=\"Cell\">"
       << item("/mesh/body", faces, "Int", 4) << "</Attribute>\n"
       << attribute("face_displacement", group, body_of_face_.size(), 3, "Cell", 4)
       << attribute("face_rotation", group, body_of_face_.size(), 3, "Cell", 4) << "      </Grid>\n";
   if (m > 0) {
-    out << "      <Grid Name=\"beams\">\n        <Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
-        << "NumberOfElements=\"" << m << "\">" << item("/mesh/beams", std::to_string(m) + " 2", "Int", 4)
+    out << "      <Grid Name=\"beams\">\n        <Topology TopologyType=\"Polyline\" "
+           "NodesPerElement=\"2\" "
+        << "NumberOfElements=\"" << m << "\">"
+        << item("/mesh/beams", std::to_string(m) + " 2", "Int", 4)
         << "</Topology>\n        <Geometry GeometryType=\"XYZ\">"
         << item(group + "/centres", std::to_string(n) + " 3", "Float", 8) << "</Geometry>\n"
         << attribute("bodies_displacement", group, n, 3, "Node", 8)
-        << attribute("bodies_rotation", group, n, 3, "Node", 8) << attribute("beams_force", group, m, 3, "Cell", 8)
-        << attribute("beams_moment", group, m, 3, "Cell", 8) << attribute("tensile_stress", group, m, 1, "Cell", 8)
+        << attribute("bodies_rotation", group, n, 3, "Node", 8)
+        << attribute("beams_force", group, m, 3, "Cell", 8)
+        << attribute("beams_moment", group, m, 3, "Cell", 8)
+        << attribute("tensile_stress", group, m, 1, "Cell", 8)
         << attribute("shear_stress", group, m, 1, "Cell", 8) << "      </Grid>\n";
   }
   out << "    </Grid>\n";

@@ -1,12 +1,13 @@
 /// \file
 /// fields.h5 and fields.xmf: bodies and beams over time, for ParaView and for plots.
 ///
-/// fields.h5: /mesh/topology (XDMF mixed: 3, number of corners, corners ... per face; one point per body if the
-/// lattice has no shapes), /mesh/body (body of each face), /mesh/beams (m x 2), and per time a group /t000000 with
-/// the attribute `time` and
+/// fields.h5: /mesh/topology (XDMF mixed: 3, number of corners, corners ... per face; one point per
+/// body if the lattice has no shapes), /mesh/body (body of each face), /mesh/beams (m x 2), and per
+/// time a group /t000000 with the attribute `time` and
 ///   points (vertices in the world), centres (n x 3, bodies' centroids),
-///   bodies_displacement, bodies_rotation (n x 3; rotation vectors), face_displacement, face_rotation (the same, per face),
-///   beams_force (N, Q2, Q3), beams_moment (T, M2, M3), beams_stress (largest tensile stress, shear stress).
+///   bodies_displacement, bodies_rotation (n x 3; rotation vectors), face_displacement,
+///   face_rotation (the same, per face), beams_force (N, Q2, Q3), beams_moment (T, M2, M3),
+///   beams_stress (largest tensile stress, shear stress).
 #pragma once
 
 #include <string>
@@ -20,10 +21,10 @@ namespace floe {
 /// One state in global order.
 struct Frame {
   double time = 0;
-  std::vector<double> displacement;  ///< n x 3
-  std::vector<double> rotation;      ///< n x 4, from rest
+  std::vector<double> displacement;     ///< n x 3
+  std::vector<double> rotation;         ///< n x 4, from rest
   std::vector<double> rotation_vector;  ///< n x 3
-  std::vector<double> sections;      ///< m x 6
+  std::vector<double> sections;         ///< m x 6
 };
 
 /// Lives on rank 0.

@@ -15,7 +15,8 @@ class Gather {
   /// \param global  global index of each of this rank's rows   \param total  rows over all ranks
   Gather(MPI_Comm comm, std::span<const std::int32_t> global, std::int64_t total);
 
-  /// total x width values on rank 0, empty elsewhere. Collective. \param rows  this rank's, row-major
+  /// total x width values on rank 0, empty elsewhere. Collective. \param rows  this rank's,
+  /// row-major
   std::vector<double> operator()(std::span<const double> rows, int width) const;
 
  private:

@@ -47,11 +47,12 @@ struct Output::Impl {
   const Model<Spatial>& model;
   const Part& part;
   std::vector<LoadPoint> loads;
-  std::vector<std::pair<std::size_t, Point3>> sets;  ///< per boundary: bodies in all, mean position at rest
+  std::vector<std::pair<std::size_t, Point3>>
+      sets;  ///< per boundary: bodies in all, mean position at rest
   Gather bodies, beams;
-  std::vector<std::int32_t> counted;   ///< local beams that this rank reports
-  std::optional<Fields> fields;        ///< rank 0
-  std::ofstream history;               ///< rank 0
+  std::vector<std::int32_t> counted;  ///< local beams that this rank reports
+  std::optional<Fields> fields;       ///< rank 0
+  std::ofstream history;              ///< rank 0
   Sample first, last;
   std::optional<State<Spatial>> pending;  ///< accepted, but not in fields.h5
   bool row_pending = false;               ///< nor is `last` in history.csv
@@ -61,7 +62,8 @@ struct Output::Impl {
       : options(o),
         model(m),
         part(m.part()),
-        bodies(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)), part.global_bodies),
+        bodies(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)),
+               part.global_bodies),
         beams(part.comm, counted_global(), part.global_beams) {
     for (std::size_t k = 0; k < part.counts_here.size(); ++k) {
       if (part.counts_here[k]) counted.push_back(static_cast<std::int32_t>(k));
@@ -87,14 +89,17 @@ Output::Output(const OutputOptions& options, const Lattice& lattice, const Model
   make_folder(options.dir, model.part().comm);
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
-    impl_->loads.push_back({placed.load.name, impl_->part.localise(placed.bodies), placed.bodies.size(),
+    impl_->loads.push_back({placed.load.name,
+                            impl_->part.localise(placed.bodies),
+                            placed.bodies.size(),
                             {placed.arm[0], placed.arm[1], placed.arm[2]}});
   for (const PlacedBoundary& placed : model.boundaries()) {
     const auto& set = lattice.set(placed.boundary.set, "boundary");
     Point3 mean{};
     for (const std::int32_t b : set) {
       for (std::size_t k = 0; k < 3; ++k)
-        mean[k] += lattice.bodies.position[static_cast<std::size_t>(b)][k] / static_cast<double>(set.size());
+        mean[k] += lattice.bodies.position[static_cast<std::size_t>(b)][k] /
+                   static_cast<double>(set.size());
     }
     impl_->sets.emplace_back(set.size(), mean);
   }
@@ -102,7 +107,8 @@ Output::Output(const OutputOptions& options, const Lattice& lattice, const Model
   write_lattice(lattice, options.dir + "/lattice.h5");
   write_whole(options.dir + "/options.yaml", options_yaml);
   // What an earlier run left would contradict this one until its own is written.
-  for (const char* old : {"/summary.json", "/fields.xmf"}) std::filesystem::remove(options.dir + old);
+  for (const char* old : {"/summary.json", "/fields.xmf"})
+    std::filesystem::remove(options.dir + old);
   impl_->fields.emplace(options.dir, lattice);
   impl_->history.open(options.dir + "/history.csv");
 }
@@ -132,14 +138,18 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
       if (placed.boundary.fixed[5]) moment.z = -w[5];
       const Vec3<double> u = displacement(accepted.state, b);
       const Point3& x = part.bodies.position[b];
-      moment = moment + cross(Vec3<double>{x[0] + u.x - mean[0], x[1] + u.y - mean[1], x[2] + u.z - mean[2]}, force);
+      moment = moment +
+               cross(Vec3<double>{x[0] + u.x - mean[0], x[1] + u.y - mean[1], x[2] + u.z - mean[2]},
+                     force);
       mine.force = {mine.force[0] + force.x, mine.force[1] + force.y, mine.force[2] + force.z};
-      mine.moment = {mine.moment[0] + moment.x, mine.moment[1] + moment.y, mine.moment[2] + moment.z};
+      mine.moment = {mine.moment[0] + moment.x, mine.moment[1] + moment.y,
+                     mine.moment[2] + moment.z};
       const double share = 1.0 / static_cast<double>(count);
       mine.displacement = {mine.displacement[0] + share * u.x, mine.displacement[1] + share * u.y,
                            mine.displacement[2] + share * u.z};
     }
-    s.boundaries[placed.boundary.name] = {sum_over_ranks(mine.force, part.comm), sum_over_ranks(mine.moment, part.comm),
+    s.boundaries[placed.boundary.name] = {sum_over_ranks(mine.force, part.comm),
+                                          sum_over_ranks(mine.moment, part.comm),
                                           sum_over_ranks(mine.displacement, part.comm)};
   }
   for (const LoadPoint& load : loads) {
@@ -150,8 +160,8 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
       const auto b = static_cast<std::size_t>(body);
       const Quat<double> q = rotation(accepted.state, b);
       const bool linear = model.kinematics() == Kinematics::linear;
-      const Vec3<double> turn =
-          linear ? 2.0 * cross(Vec3<double>{q.x, q.y, q.z}, load.arm) : rotate(q, load.arm) - load.arm;
+      const Vec3<double> turn = linear ? 2.0 * cross(Vec3<double>{q.x, q.y, q.z}, load.arm)
+                                       : rotate(q, load.arm) - load.arm;
       const Vec3<double> u = displacement(accepted.state, b) + turn;
       mine = {mine[0] + share * u.x, mine[1] + share * u.y, mine[2] + share * u.z};
     }
@@ -185,7 +195,8 @@ void Output::Impl::write_row(const Sample& s) {
   std::snprintf(text, sizeof text, "%.12g", s.time);
   history << text;
   for (const auto& [name, b] : s.boundaries) {
-    for (const Point3* p : {&b.force, &b.moment, &b.displacement}) std::for_each(p->begin(), p->end(), put);
+    for (const Point3* p : {&b.force, &b.moment, &b.displacement})
+      std::for_each(p->begin(), p->end(), put);
   }
   for (const auto& [name, u] : s.loads) std::for_each(u.begin(), u.end(), put);
   for (const auto& [name, value] : s.forces) put(value);
@@ -200,8 +211,9 @@ void Output::Impl::write_frame(const State<Spatial>& state) {
     u.insert(u.end(), r, r + 3);
     q.insert(q.end(), r + Spatial::rotation, r + Spatial::rotation + 4);
     const Quat<double> now = rotation(state, b);
-    const Vec3<double> t = model.kinematics() == Kinematics::linear ? Vec3<double>{2 * now.x, 2 * now.y, 2 * now.z}
-                                                                    : log_rotation(now);
+    const Vec3<double> t = model.kinematics() == Kinematics::linear
+                               ? Vec3<double>{2 * now.x, 2 * now.y, 2 * now.z}
+                               : log_rotation(now);
     vector.insert(vector.end(), {t.x, t.y, t.z});
   }
   Frame frame{state.time, bodies(u, 3), bodies(q, 4), bodies(vector, 3), {}};
@@ -222,7 +234,8 @@ void Output::accept(const Accepted<Spatial>& accepted) {
   const Timed timed(Event::output);
   Impl& me = *impl_;
   const double time = accepted.state.time;
-  constexpr double early = 1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
+  constexpr double early =
+      1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
   me.last = me.sample(accepted);
   if (accepted.step == 0) me.first = me.last;
   me.row_pending = me.options.history > 0 && time < me.next_history - early * me.options.history;
@@ -236,7 +249,8 @@ void Output::accept(const Accepted<Spatial>& accepted) {
   if (due) {
     me.write_frame(accepted.state);
     me.pending.reset();
-    if (me.options.fields > 0) me.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
+    if (me.options.fields > 0)
+      me.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
   } else {
     me.pending = accepted.state;
   }

@@ -17,12 +17,14 @@ double mid_plane(const Scene& scene) {
   if (!scene.forces.buoyancy) return 0;
   const double relative_density = scene.ice.density / scene.water_density;
   if (relative_density >= 1)
-    throw InputError("ice: density: " + std::to_string(scene.ice.density) + " must be < water: density, or the sheet sinks");
+    throw InputError("ice: density: " + std::to_string(scene.ice.density) +
+                     " must be < water: density, or the sheet sinks");
   return scene.thickness * (0.5 - relative_density);
 }
 
 Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
-  const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor, scene.torsion};
+  const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor,
+                             scene.torsion};
   Tessellation cells;
   {
     const Timed timed(Event::mesh);
@@ -60,11 +62,13 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
 }  // namespace
 
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
-  Lattice lattice = scene.has_sheet ? mesh_sheet(scene, comm, report) : read_lattice(scene.lattice_file);
+  Lattice lattice =
+      scene.has_sheet ? mesh_sheet(scene, comm, report) : read_lattice(scene.lattice_file);
   const Timed timed(Event::lattice);
   if (scene.forces.beam && lattice.beams.size() == 0)
-    throw InputError(scene.has_sheet ? "sheet: element_size: the sheet has a single cell and no beam"
-                                     : "forces: beam: '" + scene.lattice_file + "' has no beams");
+    throw InputError(scene.has_sheet
+                         ? "sheet: element_size: the sheet has a single cell and no beam"
+                         : "forces: beam: '" + scene.lattice_file + "' has no beams");
   for (const Cut& c : scene.cuts) cut(lattice, c.from, c.to);
   if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
   auto& all = lattice.sets["all"];

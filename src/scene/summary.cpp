@@ -21,8 +21,8 @@ const Boundary* boundary_on(const Scene& scene, const std::string& set) {
 
 /// The load that a bending test has: one, at a point.
 const Load* point_load(const Scene& scene) {
-  const auto found =
-      std::find_if(scene.loads.begin(), scene.loads.end(), [](const Load& l) { return l.point.has_value(); });
+  const auto found = std::find_if(scene.loads.begin(), scene.loads.end(),
+                                  [](const Load& l) { return l.point.has_value(); });
   return found == scene.loads.end() ? nullptr : &*found;
 }
 
@@ -32,7 +32,8 @@ std::string line(const char* format, auto... values) {
   return std::string(text) + "\n";
 }
 
-/// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width h (paper).
+/// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width
+/// h (paper).
 void add_tension(const Scene& scene, const Sample& last, Json& json, std::string& text) {
   const BoundarySample& left = last.boundaries.at(boundary_on(scene, "left")->name);
   const BoundarySample& right = last.boundaries.at(boundary_on(scene, "right")->name);
@@ -46,13 +47,16 @@ void add_tension(const Scene& scene, const Sample& last, Json& json, std::string
   json["E_star"] = reference;
   json["E_over_Estar"] = young / reference;
   text += line("E      = %.6g Pa (effective Young's modulus of the sheet)", young);
-  text += line("E/Eb   = %.6f (Eb = %.4g Pa, of the beams)", young / scene.ice.young, scene.ice.young);
-  text += line("E/E*   = %.6f (E* = %.6g Pa, of the infinite regular lattice)", young / reference, reference);
+  text +=
+      line("E/Eb   = %.6f (Eb = %.4g Pa, of the beams)", young / scene.ice.young, scene.ice.young);
+  text += line("E/E*   = %.6f (E* = %.6g Pa, of the infinite regular lattice)", young / reference,
+               reference);
 }
 
-/// Deflection of the load's point from the floating equilibrium at time 0, against the infinite plate's
-/// w0 = P/(8 k l_c^2), k = rho_w g, l_c = (D/k)^(1/4) (Wyman 1950).
-void add_bending(const Scene& scene, const Sample& first, const Sample& last, Json& json, std::string& text) {
+/// Deflection of the load's point from the floating equilibrium at time 0, against the infinite
+/// plate's w0 = P/(8 k l_c^2), k = rho_w g, l_c = (D/k)^(1/4) (Wyman 1950).
+void add_bending(const Scene& scene, const Sample& first, const Sample& last, Json& json,
+                 std::string& text) {
   const Load& load = *point_load(scene);
   const double k = scene.water_density * scene.gravity, h = scene.thickness, nu = scene.ice.poisson;
   const double plate = scene.ice.young * h * h * h / (12 * (1 - nu * nu));
@@ -64,17 +68,19 @@ void add_bending(const Scene& scene, const Sample& first, const Sample& last, Js
   json["deflection_over_wyman"] = deflection / wyman;
   json["characteristic_length"] = characteristic;
   text += line("deflection = %.6g m under the load", deflection);
-  text += line("w/w0       = %.6f (w0 = %.6g m, Wyman's infinite plate, l_c = %.5g m)", deflection / wyman, wyman,
-               characteristic);
+  text += line("w/w0       = %.6f (w0 = %.6g m, Wyman's infinite plate, l_c = %.5g m)",
+               deflection / wyman, wyman, characteristic);
 }
 
 }  // namespace
 
 void check_reports(const Scene& scene) {
   if (scene.report.tension) {
-    const bool pulled = boundary_on(scene, "left") != nullptr && boundary_on(scene, "right") != nullptr;
+    const bool pulled =
+        boundary_on(scene, "left") != nullptr && boundary_on(scene, "right") != nullptr;
     if (!scene.has_sheet || !pulled)
-      throw InputError("report: tension needs a sheet and boundaries that fix x of its sets 'left' and 'right'");
+      throw InputError(
+          "report: tension needs a sheet and boundaries that fix x of its sets 'left' and 'right'");
     const double end = scene.time.end;
     if (boundary_on(scene, "left")->value(end)[0] == boundary_on(scene, "right")->value(end)[0])
       throw InputError("report: tension needs boundaries that move 'right' against 'left' in x");
@@ -82,14 +88,16 @@ void check_reports(const Scene& scene) {
   if (scene.report.bending) {
     const Load* load = point_load(scene);
     if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)
-      throw InputError("report: bending needs a floating sheet (buoyancy) and a vertical load at a point");
+      throw InputError(
+          "report: bending needs a floating sheet (buoyancy) and a vertical load at a point");
     if (load->ramp.value(0) != 0)
-      throw InputError("load: " + load->name + ": ramp: 0 must be > 0 for report: bending: deflections count from time 0");
+      throw InputError("load: " + load->name +
+                       ": ramp: 0 must be > 0 for report: bending: deflections count from time 0");
   }
 }
 
-Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh, const RunResult& result,
-                  const Sample& first, const Sample& last, double wall) {
+Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
+                  const RunResult& result, const Sample& first, const Sample& last, double wall) {
   Json json;
   std::string text;
   json["status"] = result.done ? "done" : "failed";
@@ -109,12 +117,13 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
     json["cvt_iterations"] = mesh.iterations;
     json["degenerate_facets"] = mesh.degenerate;
   }
-  text += line("%d bodies, %lld beams, %lld load steps, %lld Newton iterations", model.part().global_bodies,
-               static_cast<long long>(model.part().global_beams), static_cast<long long>(result.steps),
-               static_cast<long long>(result.newton_iterations));
+  text +=
+      line("%d bodies, %lld beams, %lld load steps, %lld Newton iterations",
+           model.part().global_bodies, static_cast<long long>(model.part().global_beams),
+           static_cast<long long>(result.steps), static_cast<long long>(result.newton_iterations));
   if (scene.has_sheet)
-    text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations", mesh.energy_ratio,
-                 mesh.largest_move, mesh.iterations);
+    text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations",
+                 mesh.energy_ratio, mesh.largest_move, mesh.iterations);
   if (result.done && scene.report.tension) add_tension(scene, last, json, text);
   if (result.done && scene.report.bending) add_bending(scene, first, last, json, text);
   Json energy = Json::object();
@@ -135,9 +144,10 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   MPI_Allreduce(&mine, &memory, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
   json["peak_memory_mb"] = memory;
   json["version"] = FLOE_VERSION;
-  text += line("wall %.2f s (mesh %.2f, tangent %.2f, solve %.2f, output %.2f), %.0f MB on %d rank%s", wall,
-               wall_seconds(Event::mesh), wall_seconds(Event::tangent), wall_seconds(Event::solve),
-               wall_seconds(Event::output), memory, size(), size() == 1 ? "" : "s");
+  text += line(
+      "wall %.2f s (mesh %.2f, tangent %.2f, solve %.2f, output %.2f), %.0f MB on %d rank%s", wall,
+      wall_seconds(Event::mesh), wall_seconds(Event::tangent), wall_seconds(Event::solve),
+      wall_seconds(Event::output), memory, size(), size() == 1 ? "" : "s");
   return {json.dump(2) + "\n", text};
 }
 

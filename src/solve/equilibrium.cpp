@@ -12,8 +12,9 @@ namespace {
 
 constexpr std::size_t reference_size = 7;  // q_ref (w x y z) and the rotation sum there (x y z)
 
-/// The storage and form of the tangent that the chosen preconditioner wants: Cholesky takes blocked symmetric
-/// storage, LU the exact unsymmetric K, everything else (GAMG, hypre, ...) plain rows. -mat_type wins.
+/// The storage and form of the tangent that the chosen preconditioner wants: Cholesky takes blocked
+/// symmetric storage, LU the exact unsymmetric K, everything else (GAMG, hypre, ...) plain rows.
+/// -mat_type wins.
 TangentOptions tangent_options() {
   char pc[64] = "cholesky";
   PetscBool given = PETSC_FALSE;
@@ -24,7 +25,8 @@ TangentOptions tangent_options() {
   return options;
 }
 
-/// A typical diagonal of the free unknowns for the prescribed ones, so that the matrix stays well scaled [N/m].
+/// A typical diagonal of the free unknowns for the prescribed ones, so that the matrix stays well
+/// scaled [N/m].
 double typical_stiffness(const Model<Spatial>& model) {
   double mine = 0;
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
@@ -59,7 +61,8 @@ Equilibrium::Equilibrium(Model<Spatial>& model)
       wrenches_(static_cast<std::size_t>(part_.local)),
       share_(static_cast<std::size_t>(part_.local)),
       reference_(static_cast<std::size_t>(part_.owned) * reference_size, 0.0),
-      tangent_(part_, model.held(), model.length_scale(), typical_stiffness(model), tangent_options()) {
+      tangent_(part_, model.held(), model.length_scale(), typical_stiffness(model),
+               tangent_options()) {
   for (std::int32_t b = 0; b < part_.owned; ++b) {
     reference_[static_cast<std::size_t>(b) * reference_size] = 1;
     double sum = 0;
@@ -82,7 +85,8 @@ void Equilibrium::set_defaults() {
   check(SNESSetType(snes_, SNESNEWTONLS));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes_, &search));
-  check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
+  check(SNESLineSearchSetType(
+      search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
   check(SNESSetTolerances(snes_, PETSC_DEFAULT, 1e-10, 0.0, 30, PETSC_DEFAULT));
   KSP ksp = nullptr;
   PC pc = nullptr;
@@ -98,7 +102,8 @@ void Equilibrium::set_defaults() {
   adaptive_ = lag_given == PETSC_FALSE;
 }
 
-/// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic body.
+/// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic
+/// body.
 void Equilibrium::attach_rigid_modes() {
   std::array<Handle<Vec>, 6> modes;
   std::vector<Vec> list;
@@ -110,7 +115,8 @@ void Equilibrium::attach_rigid_modes() {
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const auto b = static_cast<std::size_t>(body);
       const Point3& p = part_.bodies.position[b];
-      const Vec3<double> axis{m % 3 == 0 ? 1.0 : 0.0, m % 3 == 1 ? 1.0 : 0.0, m % 3 == 2 ? 1.0 : 0.0};
+      const Vec3<double> axis{m % 3 == 0 ? 1.0 : 0.0, m % 3 == 1 ? 1.0 : 0.0,
+                              m % 3 == 2 ? 1.0 : 0.0};
       const Vec3<double> turn = m < 3 ? Vec3<double>{0, 0, 0} : axis;
       const Vec3<double> u = m < 3 ? axis : cross(axis, Vec3<double>{p[0], p[1], p[2]});
       const double l = model_.length_scale();
@@ -131,7 +137,8 @@ void Equilibrium::attach_rigid_modes() {
     list.push_back(mode);
   }
   Handle<MatNullSpace> space;
-  check(MatNullSpaceCreate(part_.comm, PETSC_FALSE, static_cast<PetscInt>(list.size()), list.data(), space.put()));
+  check(MatNullSpaceCreate(part_.comm, PETSC_FALSE, static_cast<PetscInt>(list.size()), list.data(),
+                           space.put()));
   check(MatSetNearNullSpace(tangent_.matrix(), space));
 }
 
@@ -151,7 +158,8 @@ void Equilibrium::take(Vec x) {
     }
     const double* r = &reference_[b * reference_size];
     const Vec3<double> spin{scale * v[3] - r[4], scale * v[4] - r[5], scale * v[5] - r[6]};
-    const Quat<double> now = normalised(product(exp_rotation(spin), Quat<double>{r[0], r[1], r[2], r[3]}));
+    const Quat<double> now =
+        normalised(product(exp_rotation(spin), Quat<double>{r[0], r[1], r[2], r[3]}));
     q[0] = now.w, q[1] = now.x, q[2] = now.y, q[3] = now.z;
   }
   check(VecRestoreArrayRead(x, &values));
@@ -171,7 +179,8 @@ void Equilibrium::rebase(Vec x) {
   check(VecRestoreArrayRead(x, &values));
 }
 
-/// Wrenches force by force: the size of what must balance is the external forces' and the reactions'.
+/// Wrenches force by force: the size of what must balance is the external forces' and the
+/// reactions'.
 void Equilibrium::fill_residual(Vec f) {
   const Timed timed(Event::forces);
   const double scale = 1.0 / model_.length_scale();
@@ -219,8 +228,8 @@ PetscErrorCode Equilibrium::residual(SNES snes, Vec x, Vec f, void* self) noexce
   return 0;
 }
 
-/// A factorisation costs a dozen solves. The one of the prediction serves on while each iteration takes a digit off
-/// the residual; after a prediction that turned bodies far it is not even tried.
+/// A factorisation costs a dozen solves. The one of the prediction serves on while each iteration
+/// takes a digit off the residual; after a prediction that turned bodies far it is not even tried.
 bool Equilibrium::keeps_factorisation() const {
   constexpr double a_digit = 0.1;
   return adaptive_ && small_turns_ && contraction_ <= a_digit;
@@ -235,7 +244,8 @@ PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept
   return 0;
 }
 
-/// Relative to the forces that balance (external ones and reactions), never below the rounding of the beams' own.
+/// Relative to the forces that balance (external ones and reactions), never below the rounding of
+/// the beams' own.
 Equilibrium::Scale Equilibrium::scale_of_forces() const {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   double noise2 = 0;
@@ -252,7 +262,8 @@ Equilibrium::Scale Equilibrium::scale_of_forces() const {
   return {std::sqrt(all[0]), rounding * std::sqrt(all[1])};
 }
 
-/// So far from rest that rounding hides any load: an overloaded sheet that sinks for ever is no equilibrium.
+/// So far from rest that rounding hides any load: an overloaded sheet that sinks for ever is no
+/// equilibrium.
 bool Equilibrium::is_lost() const {
   constexpr double far = 100;  // times the lattice's extent
   double mine = 0, all = 0;
@@ -281,10 +292,11 @@ PetscErrorCode Equilibrium::converged(SNES snes, PetscInt it, PetscReal, PetscRe
   return 0;
 }
 
-/// Brings prescribed unknowns to their values at the new time, and all others along: one linear solve with the
-/// tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
+/// Brings prescribed unknowns to their values at the new time, and all others along: one linear
+/// solve with the tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
 bool Equilibrium::predict(double time) {
-  std::vector<double> target(static_cast<std::size_t>(part_.local) * n), increments(target.size(), 0.0);
+  std::vector<double> target(static_cast<std::size_t>(part_.local) * n),
+      increments(target.size(), 0.0);
   model_.prescribe(time, target);
   const double l = model_.length_scale();
   // Ghosts' unknowns are wanted too: their present values come with their owners' increments.
@@ -383,8 +395,8 @@ bool Equilibrium::solve(double time) {
   check(SNESGetIterationNumber(snes_, &taken));
   iterations_ += taken;
   if (reason < 0) {
-    why_ = std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " + std::to_string(taken) +
-           " iterations)";
+    why_ = std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
+           std::to_string(taken) + " iterations)";
     restore(before);
     return false;
   }
@@ -399,12 +411,14 @@ double Equilibrium::pin_reaction() const {
   double largest = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
     const bool pinned = ((model_.held()[k / n] & ~model_.prescribed()[k / n]) >> (k % n) & 1U) != 0;
-    if (pinned) largest = std::max(largest, std::abs(wrenches_.values[k]) * (k % n < 3 ? 1.0 : scale));
+    if (pinned)
+      largest = std::max(largest, std::abs(wrenches_.values[k]) * (k % n < 3 ? 1.0 : scale));
   }
   double all = 0;
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
   const Scale size = scale_of_forces();
-  return all > size.rounding ? all / size.forces : 0.0;  // without any load all reactions are rounding
+  return all > size.rounding ? all / size.forces
+                             : 0.0;  // without any load all reactions are rounding
 }
 
 }  // namespace floe

@@ -1,10 +1,11 @@
 /// \file
 /// The nonlinear equations of static equilibrium as a SNES problem.
 ///
-/// Unknowns x (blocks of n per body, PETSc's rows): displacement u [m] and the running sum of rotation increments
-/// times the model's length scale. Rotations follow q = exp((x - x_ref)/length) q_ref; whenever a tangent is formed the
-/// reference moves to the present state, so that there increments are spins and the tangent is exact.
-/// The residual is minus the wrenches (moments divided by the length scale), zero where unknowns are prescribed.
+/// Unknowns x (blocks of n per body, PETSc's rows): displacement u [m] and the running sum of
+/// rotation increments times the model's length scale. Rotations follow q = exp((x - x_ref)/length)
+/// q_ref; whenever a tangent is formed the reference moves to the present state, so that there
+/// increments are spins and the tangent is exact. The residual is minus the wrenches (moments
+/// divided by the length scale), zero where unknowns are prescribed.
 #pragma once
 
 #include <algorithm>
@@ -23,16 +24,16 @@ class Equilibrium {
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
-  /// Solves for the state at `time`, starting from the present one. Returns false, with the state as before,
-  /// if Newton fails; why() then says so.
+  /// Solves for the state at `time`, starting from the present one. Returns false, with the state
+  /// as before, if Newton fails; why() then says so.
   bool solve(double time);
 
   const State<Spatial>& state() const { return state_; }
   const Wrenches<Spatial>& wrenches() const { return wrenches_; }
   std::int64_t newton_iterations() const { return iterations_; }
   const std::string& why() const { return why_; }
-  /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load pushes a
-  /// motion that nothing holds.
+  /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load
+  /// pushes a motion that nothing holds.
   double pin_reaction() const;
 
  private:
@@ -46,7 +47,9 @@ class Equilibrium {
   struct Scale {
     double forces;    ///< of external forces and reactions
     double rounding;  ///< of the beams' forces
-    double tolerance(double rtol, double atol) const { return std::max({rtol * forces, rounding, atol}); }
+    double tolerance(double rtol, double atol) const {
+      return std::max({rtol * forces, rounding, atol});
+    }
   };
 
   static PetscErrorCode residual(SNES, Vec x, Vec f, void* self) noexcept;
@@ -56,8 +59,8 @@ class Equilibrium {
 
   void set_defaults();
   void attach_rigid_modes();
-  void take(Vec x);        ///< state of the unknowns, ghosts included
-  void rebase(Vec x);      ///< moves the reference of the rotations to the present state
+  void take(Vec x);    ///< state of the unknowns, ghosts included
+  void rebase(Vec x);  ///< moves the reference of the rotations to the present state
   void fill_residual(Vec f);
   void assemble(std::span<const double> increments = {});
   bool predict(double time);
@@ -73,11 +76,13 @@ class Equilibrium {
   Wrenches<Spatial> wrenches_, share_;
   std::vector<double> reference_;  ///< owned bodies: q_ref (4) and the rotation sum at it (3)
   std::vector<double> stiffness_;  ///< per owned body, for the rounding level [N/m]
-  bool adaptive_ = true;           ///< whether to keep a factorisation that still converges (not if the user set a lag)
-  bool small_turns_ = false;       ///< the prediction of this step turned no body by much
+  bool adaptive_ =
+      true;  ///< whether to keep a factorisation that still converges (not if the user set a lag)
+  bool small_turns_ = false;                ///< the prediction of this step turned no body by much
   double last_norm_ = 0, contraction_ = 1;  ///< of the residual, over the last iteration
-  double external2_ = 0;           ///< squared norm of each external force's wrenches, summed, this rank
-  double extent_ = 0, prescribed_ = 0;  ///< of the lattice; largest displacement that is prescribed [m]
+  double external2_ = 0;  ///< squared norm of each external force's wrenches, summed, this rank
+  double extent_ = 0,
+         prescribed_ = 0;  ///< of the lattice; largest displacement that is prescribed [m]
   Tangent<Spatial> tangent_;
   Handle<Vec> x_, f_, step_;
   Handle<SNES> snes_;

@@ -48,7 +48,8 @@ class Piece {
       : lattice_(lattice), bodies_(std::move(bodies)) {
     for (const std::int32_t b : bodies_) centre_ += position(b);
     centre_ /= static_cast<double>(bodies_.size());
-    for (const std::int32_t b : bodies_) radius_ = std::max(radius_, (position(b) - centre_).norm());
+    for (const std::int32_t b : bodies_)
+      radius_ = std::max(radius_, (position(b) - centre_).norm());
     radius_ = std::max(radius_, gyration);
     gyration_ = gyration;
   }
@@ -85,7 +86,7 @@ class Piece {
 
 /// Orthonormal basis of the rigid motions that nothing holds.
 Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
-                           std::span<const std::uint8_t> floating) {
+                 std::span<const std::uint8_t> floating) {
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
   bool floats = false;
   for (const std::int32_t b : piece.bodies()) {
@@ -101,9 +102,11 @@ Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(gram);
   const double largest = solver.eigenvalues()[5];
-  constexpr double relative_zero = 1e-14;  // of squares: supports 1e-7 of the piece's size apart still hold it
+  constexpr double relative_zero =
+      1e-14;  // of squares: supports 1e-7 of the piece's size apart still hold it
   Basis basis;
-  for (; basis.count < 6 && solver.eigenvalues()[basis.count] <= relative_zero * largest; ++basis.count)
+  for (; basis.count < 6 && solver.eigenvalues()[basis.count] <= relative_zero * largest;
+       ++basis.count)
     basis.columns.col(basis.count) = solver.eigenvectors().col(basis.count);
   return basis;
 }
@@ -129,11 +132,12 @@ void choose_pins(const Piece& piece, Basis basis, std::span<const std::uint8_t> 
       }
     }
     pins.push_back(pin);
-    // Keep the motions that leave the pinned unknown at rest: a Householder reflection turns the one that moves it
-    // into the first column, which is dropped.
+    // Keep the motions that leave the pinned unknown at rest: a Householder reflection turns the
+    // one that moves it into the first column, which is dropped.
     Row v = piece.row(pin.body, pin.component) * basis.columns;
     v[0] += std::copysign(std::sqrt(v.dot(v)), v[0]);
-    const Eigen::Matrix<double, 6, 6> turned = basis.columns - (basis.columns * v.transpose()) * (2 / v.dot(v) * v);
+    const Eigen::Matrix<double, 6, 6> turned =
+        basis.columns - (basis.columns * v.transpose()) * (2 / v.dot(v) * v);
     basis.columns.setZero();
     for (int m = 1; m < basis.count; ++m) basis.columns.col(m - 1) = turned.col(m);
     --basis.count;
@@ -143,11 +147,13 @@ void choose_pins(const Piece& piece, Basis basis, std::span<const std::uint8_t> 
 }  // namespace
 
 FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> held,
-                         std::span<const std::uint8_t> floating, std::span<const std::uint8_t> avoid) {
+                         std::span<const std::uint8_t> floating,
+                         std::span<const std::uint8_t> avoid) {
   FreeMotions free;
   free.piece = connected_pieces(lattice);
   std::map<std::int32_t, std::vector<std::int32_t>> pieces;
-  for (std::size_t b = 0; b < free.piece.size(); ++b) pieces[free.piece[b]].push_back(static_cast<std::int32_t>(b));
+  for (std::size_t b = 0; b < free.piece.size(); ++b)
+    pieces[free.piece[b]].push_back(static_cast<std::int32_t>(b));
   for (auto& [first, bodies] : pieces) {
     const auto b = static_cast<std::size_t>(first);
     const double gyration = std::sqrt(lattice.bodies.inertia[b][0] / lattice.bodies.mass[b]);
@@ -155,7 +161,8 @@ FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> h
     const Basis basis = null_space(piece, held, floating);
     for (int m = 0; m < basis.count; ++m) {
       FreeMotion motion{first, piece.centre(), piece.radius(), {}};
-      for (int k = 0; k < 6; ++k) motion.coefficients[static_cast<std::size_t>(k)] = basis.columns(k, m);
+      for (int k = 0; k < 6; ++k)
+        motion.coefficients[static_cast<std::size_t>(k)] = basis.columns(k, m);
       free.motions.push_back(motion);
     }
     if (basis.count > 0) choose_pins(piece, basis, held, avoid, free.pins);
@@ -163,7 +170,8 @@ FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> h
   return free;
 }
 
-void require_balance(const Model<Spatial>& model, const Lattice& lattice, const FreeMotions& free, double time) {
+void require_balance(const Model<Spatial>& model, const Lattice& lattice, const FreeMotions& free,
+                     double time) {
   if (free.motions.empty()) return;
   const Part& part = model.part();
   State<Spatial> rest(static_cast<std::size_t>(part.local));
@@ -171,7 +179,8 @@ void require_balance(const Model<Spatial>& model, const Lattice& lattice, const 
   Wrenches<Spatial> wrenches(static_cast<std::size_t>(part.local));
   model.evaluate(rest, wrenches);
 
-  // Work of the loads on the six rigid motions of each piece, and of their absolute values, to compare with.
+  // Work of the loads on the six rigid motions of each piece, and of their absolute values, to
+  // compare with.
   std::map<std::int32_t, std::size_t> slot;
   for (const FreeMotion& m : free.motions) slot.emplace(m.piece, slot.size());
   std::vector<const FreeMotion*> first(slot.size(), nullptr);
@@ -184,17 +193,23 @@ void require_balance(const Model<Spatial>& model, const Lattice& lattice, const 
     const FreeMotion& motion = *first[found->second];
     const Point3& x = lattice.bodies.position[static_cast<std::size_t>(body)];
     const double* w = wrenches.of(static_cast<std::size_t>(local));
-    const Vec3<double> arm{x[0] - motion.centre[0], x[1] - motion.centre[1], x[2] - motion.centre[2]};
+    const Vec3<double> arm{x[0] - motion.centre[0], x[1] - motion.centre[1],
+                           x[2] - motion.centre[2]};
     const Vec3<double> moment = cross(arm, Vec3<double>{w[0], w[1], w[2]});
-    const std::array<double, 6> share{w[0], w[1], w[2], (w[3] + moment.x) / motion.radius,
-                                      (w[4] + moment.y) / motion.radius, (w[5] + moment.z) / motion.radius};
+    const std::array<double, 6> share{w[0],
+                                      w[1],
+                                      w[2],
+                                      (w[3] + moment.x) / motion.radius,
+                                      (w[4] + moment.y) / motion.radius,
+                                      (w[5] + moment.z) / motion.radius};
     for (std::size_t k = 0; k < 6; ++k) {
       work[12 * found->second + k] += share[k];
       work[12 * found->second + 6 + k] += std::abs(share[k]);
     }
   }
   std::vector<double> total(work.size());
-  MPI_Allreduce(work.data(), total.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM, part.comm);
+  MPI_Allreduce(work.data(), total.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM,
+                part.comm);
 
   for (const FreeMotion& m : free.motions) {
     const double* sums = &total[12 * slot.at(m.piece)];
@@ -205,12 +220,14 @@ void require_balance(const Model<Spatial>& model, const Lattice& lattice, const 
     }
     constexpr double rounding = 1e-9;
     if (std::abs(net) <= rounding * size) continue;
-    const auto largest = std::max_element(m.coefficients.begin(), m.coefficients.end(),
-                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
-    constexpr std::array<const char*, 6> names{"translation along x", "translation along y", "translation along z",
-                                               "rotation about x",    "rotation about y",    "rotation about z"};
-    throw InputError(std::string("boundary: nothing holds ") + names[static_cast<std::size_t>(
-                         largest - m.coefficients.begin())] +
+    const auto largest =
+        std::max_element(m.coefficients.begin(), m.coefficients.end(),
+                         [](double a, double b) { return std::abs(a) < std::abs(b); });
+    constexpr std::array<const char*, 6> names{"translation along x", "translation along y",
+                                               "translation along z", "rotation about x",
+                                               "rotation about y",    "rotation about z"};
+    throw InputError(std::string("boundary: nothing holds ") +
+                     names[static_cast<std::size_t>(largest - m.coefficients.begin())] +
                      " of the piece with body " + std::to_string(m.piece) +
                      ", but the loads push it; prescribe that motion with `fix`");
   }

@@ -8,16 +8,20 @@
 
 namespace floe {
 
-std::vector<std::uint8_t> prescribed_components(const Lattice& lattice, const std::vector<Boundary>& boundaries) {
+std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
+                                                const std::vector<Boundary>& boundaries) {
   std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.bodies.size()), 0);
   for (std::size_t b = 0; b < boundaries.size(); ++b) {
     const Boundary& boundary = boundaries[b];
     const auto& set = lattice.set(boundary.set, "boundary: " + boundary.name + ": set");
-    // Boundaries before this one that prescribe the same component of one of its bodies must agree with it.
+    // Boundaries before this one that prescribe the same component of one of its bodies must agree
+    // with it.
     for (std::size_t a = 0; a < b; ++a) {
-      const auto& other = lattice.set(boundaries[a].set, "boundary: " + boundaries[a].name + ": set");
+      const auto& other =
+          lattice.set(boundaries[a].set, "boundary: " + boundaries[a].name + ": set");
       std::vector<std::int32_t> common;
-      std::set_intersection(set.begin(), set.end(), other.begin(), other.end(), std::back_inserter(common));
+      std::set_intersection(set.begin(), set.end(), other.begin(), other.end(),
+                            std::back_inserter(common));
       if (common.empty()) continue;
       constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
       for (std::size_t k = 0; k < 6; ++k) {
@@ -26,14 +30,15 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice, const st
         for (const double time : {0.0, 0.5 * boundary.ramp.seconds, later, 2 * later}) {
           if (boundary.value(time)[k] != boundaries[a].value(time)[k])
             throw InputError("boundary: " + boundary.name + ": prescribes " + names[k] + " of " +
-                             std::to_string(common.size()) + " bodies that boundary: " + boundaries[a].name +
-                             " prescribes differently");
+                             std::to_string(common.size()) + " bodies that boundary: " +
+                             boundaries[a].name + " prescribes differently");
         }
       }
     }
     for (const std::int32_t body : set) {
       for (std::size_t k = 0; k < 6; ++k) {
-        if (boundary.fixed[k]) held[static_cast<std::size_t>(body)] |= static_cast<std::uint8_t>(1U << k);
+        if (boundary.fixed[k])
+          held[static_cast<std::size_t>(body)] |= static_cast<std::uint8_t>(1U << k);
       }
     }
   }
@@ -44,11 +49,14 @@ template <class Space>
 Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries)
     : part_(partition(lattice, comm)) {
   const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
-  for (const std::int32_t body : part_.global) prescribed_.push_back(all[static_cast<std::size_t>(body)]);
+  for (const std::int32_t body : part_.global)
+    prescribed_.push_back(all[static_cast<std::size_t>(body)]);
   held_ = prescribed_;
   for (const Boundary& boundary : boundaries)
-    boundaries_.push_back({boundary, part_.localise(lattice.set(boundary.set, "boundary: " + boundary.name))});
-  // Rotations are solved for as lengths (see Tangent): times the mean beam, or a body's radius of gyration.
+    boundaries_.push_back(
+        {boundary, part_.localise(lattice.set(boundary.set, "boundary: " + boundary.name))});
+  // Rotations are solved for as lengths (see Tangent): times the mean beam, or a body's radius of
+  // gyration.
   double sum = 0;
   for (const double length : lattice.beams.length) sum += length;
   if (lattice.beams.size() > 0) {
@@ -77,7 +85,8 @@ void Model<Space>::pin(const std::vector<Pin>& pins) {
   held_ = prescribed_;
   for (const Pin& p : pins) {
     const std::int32_t local = part_.local_index(p.body);
-    if (local >= 0) held_[static_cast<std::size_t>(local)] |= static_cast<std::uint8_t>(1U << p.component);
+    if (local >= 0)
+      held_[static_cast<std::size_t>(local)] |= static_cast<std::uint8_t>(1U << p.component);
   }
 }
 
@@ -101,7 +110,8 @@ std::vector<std::pair<std::string, double>> Model<Space>::report(const State<Spa
   // Forces of one kind (several loads) share a column.
   std::vector<std::pair<std::string, double>> sums;
   for (const auto& [name, value] : columns.values()) {
-    const auto found = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == name; });
+    const auto found =
+        std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == name; });
     if (found == sums.end()) {
       sums.emplace_back(name, value);
     } else {

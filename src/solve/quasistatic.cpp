@@ -9,7 +9,8 @@ namespace floe {
 namespace {
 
 constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, before a run is given up
-constexpr double pin_tolerance = 1e-6;  // of the forces in balance: more means a free motion is loaded
+constexpr double pin_tolerance =
+    1e-6;  // of the forces in balance: more means a free motion is loaded
 
 std::string text(double value) {
   std::ostringstream out;
@@ -21,7 +22,8 @@ std::string text(double value) {
 
 void check_solver_options(Model<Spatial>& model) { const Equilibrium equilibrium(model); }
 
-RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Observer<Spatial>& observer) {
+RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
+                          const Observer<Spatial>& observer) {
   Equilibrium equilibrium(model);
   RunResult result;
   const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
@@ -33,8 +35,9 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Obs
   const auto balanced = [&](double at) {
     const double reaction = equilibrium.pin_reaction();
     if (reaction > pin_tolerance)
-      result.message = "no equilibrium at time " + text(at) + ": a motion that nothing holds is loaded (by " +
-                       text(reaction) + " of the forces)";
+      result.message = "no equilibrium at time " + text(at) +
+                       ": a motion that nothing holds is loaded (by " + text(reaction) +
+                       " of the forces)";
     return reaction <= pin_tolerance;
   };
 
@@ -55,8 +58,8 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Obs
     if (!equilibrium.solve(next)) {
       dt = 0.5 * step;
       if (dt < smallest_fraction * given) {
-        result.message = "no equilibrium beyond time " + text(now) + " (load step cut to " + text(step) +
-                         "): " + equilibrium.why();
+        result.message = "no equilibrium beyond time " + text(now) + " (load step cut to " +
+                         text(step) + "): " + equilibrium.why();
         return result;
       }
       continue;

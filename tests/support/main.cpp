@@ -1,4 +1,5 @@
-// Runs GoogleTest inside an MPI and PETSc session; on several ranks only rank 0 prints passes, every rank its failures.
+// Runs GoogleTest inside an MPI and PETSc session; on several ranks only rank 0 prints passes,
+// every rank its failures.
 #include <gtest/gtest.h>
 
 #include "floe/base/petsc.h"
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
         void OnTestPartResult(const testing::TestPartResult& result) override {
           if (result.failed())
             std::fprintf(stderr, "rank %d: %s:%d: %s\n", floe::rank(),
-                         result.file_name() ? result.file_name() : "?", result.line_number(), result.message());
+                         result.file_name() ? result.file_name() : "?", result.line_number(),
+                         result.message());
         }
       };
       listeners.Append(new FailuresOnly);

@@ -16,8 +16,10 @@ namespace floe {
 class Ghosts {
  public:
   Ghosts() = default;
-  /// Collective. \param owner, remote  for each ghost: the rank that owns it and its local index there
-  Ghosts(MPI_Comm comm, std::int32_t owned, std::span<const std::int32_t> owner, std::span<const std::int32_t> remote);
+  /// Collective. \param owner, remote  for each ghost: the rank that owns it and its local index
+  /// there
+  Ghosts(MPI_Comm comm, std::int32_t owned, std::span<const std::int32_t> owner,
+         std::span<const std::int32_t> remote);
   Ghosts(Ghosts&&) noexcept;
   Ghosts& operator=(Ghosts&&) noexcept;
   ~Ghosts();

@@ -1,5 +1,6 @@
 /// \file
-/// HDF5 files as floe uses them: plain datasets, read and written by one process (no parallel driver).
+/// HDF5 files as floe uses them: plain datasets, read and written by one process (no parallel
+/// driver).
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,9 @@
 
 namespace floe {
 
-/// One open HDF5 file. Files written whole go to a temporary name that close() renames; a destructor without
-/// close() leaves nothing behind. Errors of the system end the run; a file the user gave that cannot be used
-/// raises InputError.
+/// One open HDF5 file. Files written whole go to a temporary name that close() renames; a
+/// destructor without close() leaves nothing behind. Errors of the system end the run; a file the
+/// user gave that cannot be used raises InputError.
 class Hdf5File {
  public:
   /// A new file that will be called `path` once close() has been called.
@@ -42,16 +43,19 @@ class Hdf5File {
   bool has(const std::string& name) const;
   /// Names of the members of a group, sorted.
   std::vector<std::string> members(const std::string& group) const;
-  /// Rows and columns (1 for a vector). \throws InputError naming the dataset if it is missing or has rank > 2.
+  /// Rows and columns (1 for a vector). \throws InputError naming the dataset if it is missing or
+  /// has rank > 2.
   std::pair<std::int64_t, std::int64_t> shape(const std::string& name) const;
-  /// All values of a dataset, row-major. \throws InputError if it is missing or has another number of columns.
+  /// All values of a dataset, row-major. \throws InputError if it is missing or has another number
+  /// of columns.
   std::vector<double> read(const std::string& name, int columns = 1) const;
   std::vector<std::int32_t> read_indices(const std::string& name, int columns = 1) const;
 
  private:
   Hdf5File(std::int64_t id, std::string path, std::string final_path)
       : id_(id), path_(std::move(path)), final_path_(std::move(final_path)) {}
-  void write_any(const std::string& name, const void* values, std::int64_t count, int columns, std::int64_t type);
+  void write_any(const std::string& name, const void* values, std::int64_t count, int columns,
+                 std::int64_t type);
   void read_any(const std::string& name, int columns, std::int64_t type, void* values) const;
 
   std::int64_t id_ = -1;

@@ -1,5 +1,6 @@
 /// \file
-/// Named stages of a run: PETSc log events (seen with -log_view), wall times (seen in summary.json).
+/// Named stages of a run: PETSc log events (seen with -log_view), wall times (seen in
+/// summary.json).
 #pragma once
 
 #include <array>
@@ -11,7 +12,8 @@ namespace floe {
 enum class Event { mesh, lattice, partition, forces, tangent, solve, output, count };
 
 inline constexpr std::array<std::string_view, static_cast<int>(Event::count)> event_names{
-    "FloeMesh", "FloeLattice", "FloePartition", "FloeForces", "FloeTangent", "FloeSolve", "FloeOutput"};
+    "FloeMesh",    "FloeLattice", "FloePartition", "FloeForces",
+    "FloeTangent", "FloeSolve",   "FloeOutput"};
 
 /// Times its own life as one event, in PETSc's log and in wall_seconds().
 class Timed {
@@ -32,15 +34,16 @@ double wall_seconds(Event event);
 /// Largest resident memory of this process so far [MB].
 double peak_memory_mb();
 
-/// Progress of long work on rank 0's standard error: a bar with the time left on a terminal, a plain
-/// line every few seconds otherwise, nothing for work that ends within a second.
+/// Progress of long work on rank 0's standard error: a bar with the time left on a terminal, a
+/// plain line every few seconds otherwise, nothing for work that ends within a second.
 class Progress {
  public:
   Progress(std::string_view what, double total);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// \param done  how much of `total` is done   \param note  a few words more, e.g. "step 3, 5 iterations"
+  /// \param done  how much of `total` is done   \param note  a few words more, e.g. "step 3, 5
+  /// iterations"
   void update(double done, std::string_view note = {});
 
  private:

@@ -19,13 +19,14 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws if a PETSc (or MPI) call failed: InputError if the user asked for what PETSc does not have,
-/// otherwise std::runtime_error, which nobody catches: the terminate handler prints it and aborts all
-/// ranks (unwinding on one rank would run collective destructors and hang).
+/// Throws if a PETSc (or MPI) call failed: InputError if the user asked for what PETSc does not
+/// have, otherwise std::runtime_error, which nobody catches: the terminate handler prints it and
+/// aborts all ranks (unwinding on one rank would run collective destructors and hang).
 [[noreturn]] void fail(int ierr, const std::source_location& where);
 
 inline void check(int ierr, const std::source_location& where = std::source_location::current()) {
-  if (ierr != 0) [[unlikely]] fail(ierr, where);
+  if (ierr != 0) [[unlikely]]
+    fail(ierr, where);
 }
 
 namespace detail {
@@ -40,7 +41,8 @@ inline PetscErrorCode destroy(MatNullSpace* n) { return MatNullSpaceDestroy(n); 
 inline PetscErrorCode destroy(PetscViewer* v) { return PetscViewerDestroy(v); }
 }  // namespace detail
 
-/// Owner of one PETSc object; move-only. Destruction is not checked (and is collective, as PETSc's is).
+/// Owner of one PETSc object; move-only. Destruction is not checked (and is collective, as PETSc's
+/// is).
 template <class T>
 class Handle {
  public:
@@ -80,8 +82,8 @@ class Mpi {
   Mpi& operator=(const Mpi&) = delete;
 };
 
-/// PETSc from construction to destruction, with the scene's options under those of the command line.
-/// \param scene  path of a scene that read_scene_text accepted, or empty.
+/// PETSc from construction to destruction, with the scene's options under those of the command
+/// line. \param scene  path of a scene that read_scene_text accepted, or empty.
 class Session {
  public:
   Session(int& argc, char**& argv, const std::string& scene);

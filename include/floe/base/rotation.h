@@ -1,8 +1,10 @@
 /// \file
-/// Vectors and unit quaternions on any scalar: double, a lane of doubles, or one that carries derivatives.
+/// Vectors and unit quaternions on any scalar: double, a lane of doubles, or one that carries
+/// derivatives.
 ///
-/// Notation: quaternions are (w, x, y, z); q rotates body to world, v_world = q v_body q*; products compose
-/// right to left; exp_rotation(t) is the rotation by |t| about t. Spins are spatial: q(t) = exp(t) q.
+/// Notation: quaternions are (w, x, y, z); q rotates body to world, v_world = q v_body q*; products
+/// compose right to left; exp_rotation(t) is the rotation by |t| about t. Spins are spatial: q(t) =
+/// exp(t) q.
 #pragma once
 
 #include <cmath>
@@ -66,14 +68,16 @@ struct Triad {
 };
 template <class T>
 Triad<T> triad(const Quat<T>& q) {
-  const T xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z,
-          wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
+  const T xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z,
+          yz = q.y * q.z, wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
   return {{T(1.0 - 2.0 * T(yy + zz)), T(2.0 * T(xy + wz)), T(2.0 * T(xz - wy))},
           {T(2.0 * T(xy - wz)), T(1.0 - 2.0 * T(xx + zz)), T(2.0 * T(yz + wx))},
           {T(2.0 * T(xz + wy)), T(2.0 * T(yz - wx)), T(1.0 - 2.0 * T(xx + yy))}};
 }
 
-inline Vec3<double> rotate(const Quat<double>& q, const Vec3<double>& v) { return triad(q).to_world(v); }
+inline Vec3<double> rotate(const Quat<double>& q, const Vec3<double>& v) {
+  return triad(q).to_world(v);
+}
 
 /// Unit quaternion of the rotation by |t| about t; exact to rounding for any t.
 inline Quat<double> exp_rotation(const Vec3<double>& t) {
@@ -97,7 +101,8 @@ inline Quat<double> normalised(const Quat<double>& q) {
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 
-/// Unit quaternion of a right-handed orthonormal triad (Shepperd's choice of the largest component).
+/// Unit quaternion of a right-handed orthonormal triad (Shepperd's choice of the largest
+/// component).
 inline Quat<double> quaternion(const Triad<double>& r) {
   const double xx = r.e1.x, yy = r.e2.y, zz = r.e3.z, trace = xx + yy + zz;
   if (trace >= xx && trace >= yy && trace >= zz) {

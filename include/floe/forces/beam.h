@@ -1,5 +1,6 @@
 /// \file
-/// The lattice's beams (physics.md section 2). The pointwise energy and gradient are in src/forces/beam_kernel.h.
+/// The lattice's beams (physics.md section 2). The pointwise energy and gradient are in
+/// src/forces/beam_kernel.h.
 #pragma once
 
 #include <array>
@@ -27,10 +28,11 @@ struct BeamOptions {
   Kinematics kinematics = Kinematics::corotational;
 };
 
-/// The six stiffnesses of a beam: axial, shear (from I_z, from I_y), torsion, bending about axes 2 and 3.
+/// The six stiffnesses of a beam: axial, shear (from I_z, from I_y), torsion, bending about axes 2
+/// and 3.
 struct BeamStiffness {
-  double kn, ksz, ksy;   ///< [N/m]
-  double kt, kby, kbz;   ///< [N m]
+  double kn, ksz, ksy;  ///< [N/m]
+  double kt, kby, kbz;  ///< [N m]
 };
 /// Stiffness of beam m of `beams` (physics.md section 2).
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear);

@@ -18,28 +18,28 @@ struct Ramp {
 };
 
 /// Prescribed components of the motion of a set of bodies: x y z rx ry rz.
-/// With `velocity`, displacements are its integral over the ramp; with `displacement`, they follow the ramp.
-/// Rotations are integrals of `angular_velocity` in the same way.
+/// With `velocity`, displacements are its integral over the ramp; with `displacement`, they follow
+/// the ramp. Rotations are integrals of `angular_velocity` in the same way.
 struct Boundary {
   std::string name, set;
   std::array<bool, 6> fixed{};
-  std::optional<Point3> displacement;   ///< [m]
-  std::optional<Point3> velocity;       ///< [m/s]
-  Point3 angular_velocity{};            ///< [rad/s]
+  std::optional<Point3> displacement;  ///< [m]
+  std::optional<Point3> velocity;      ///< [m/s]
+  Point3 angular_velocity{};           ///< [rad/s]
   Ramp ramp;
 
   /// Prescribed displacement and rotation [m, rad] at `time`; entries that are not fixed are 0.
   std::array<double, 6> value(double time) const;
 };
 
-/// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in plan
-/// (carried by the nearest body, statically equivalent: a force at a body-fixed point).
+/// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in
+/// plan (carried by the nearest body, statically equivalent: a force at a body-fixed point).
 struct Load {
   std::string name;
-  std::string set;                ///< empty: at a point
-  std::optional<Point2> point;    ///< [m]
-  Point3 force{};                 ///< [N]
-  Point3 moment{};                ///< [N m]
+  std::string set;              ///< empty: at a point
+  std::optional<Point2> point;  ///< [m]
+  Point3 force{};               ///< [N]
+  Point3 moment{};              ///< [N m]
   Ramp ramp;
 };
 

@@ -15,7 +15,8 @@
 
 namespace floe {
 
-/// Named numbers for history.csv and summary.json, in order; each rank gives its share, the sum is reported.
+/// Named numbers for history.csv and summary.json, in order; each rank gives its share, the sum is
+/// reported.
 class Columns {
  public:
   void add(std::string name, double value) { values_.emplace_back(std::move(name), value); }

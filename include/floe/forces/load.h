@@ -18,8 +18,8 @@ struct PlacedLoad {
   Point3 arm{};                      ///< from the centroid to where the force acts, at rest [m]
 };
 
-/// Finds the bodies of a load: those of its set, or the one whose centroid is nearest in plan to its point.
-/// \throws InputError for an unknown set
+/// Finds the bodies of a load: those of its set, or the one whose centroid is nearest in plan to
+/// its point. \throws InputError for an unknown set
 PlacedLoad place(const Load& load, const Lattice& lattice);
 
 /// \param part  must outlive the force

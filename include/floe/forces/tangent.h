@@ -1,11 +1,14 @@
 /// \file
-/// The tangent stiffness matrix: blocks of bodies and pairs of bodies, inserted into a PETSc matrix.
+/// The tangent stiffness matrix: blocks of bodies and pairs of bodies, inserted into a PETSc
+/// matrix.
 ///
-/// Unknowns are displacements [m] and rotations times the lattice's length scale [m], so that all entries are in
-/// N/m whatever the units: a block's rotation rows and columns are divided by that length.
+/// Unknowns are displacements [m] and rotations times the lattice's length scale [m], so that all
+/// entries are in N/m whatever the units: a block's rotation rows and columns are divided by that
+/// length.
 ///
-/// On rotations, differentiation of the gradient gives K = H - skew(m)/2 with H the Hessian and m the block's
-/// moment gradient; H = K + skew(m)/2 is assembled (physics.md section 2), unless the exact K was asked for.
+/// On rotations, differentiation of the gradient gives K = H - skew(m)/2 with H the Hessian and m
+/// the block's moment gradient; H = K + skew(m)/2 is assembled (physics.md section 2), unless the
+/// exact K was asked for.
 #pragma once
 
 #include <array>
@@ -29,22 +32,25 @@ template <class Space>
 class Tangent {
  public:
   static constexpr int n = Space::unknowns;
-  using Block = std::array<double, static_cast<std::size_t>(n* n)>;          ///< row-major
-  using PairBlock = std::array<double, static_cast<std::size_t>(4 * n * n)>;  ///< (i, j) x (i, j), row-major
+  using Block = std::array<double, static_cast<std::size_t>(n* n)>;  ///< row-major
+  using PairBlock =
+      std::array<double, static_cast<std::size_t>(4 * n * n)>;  ///< (i, j) x (i, j), row-major
 
   /// \param held          n bits per local body: unknowns that are prescribed
   /// \param length_scale  [m]
   /// \param held_diagonal what stands on the diagonal of a prescribed unknown [N/m]
-  Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale, double held_diagonal,
-          const TangentOptions& options);
+  Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
+          double held_diagonal, const TangentOptions& options);
 
   bool symmetric() const { return symmetric_; }
   Mat matrix() const { return matrix_; }
 
-  /// Empties the matrix. If `increments` (n per local body, in the unknowns' units) is not empty, the columns of
-  /// prescribed unknowns times their increments are collected in lift() while blocks come in.
+  /// Empties the matrix. If `increments` (n per local body, in the unknowns' units) is not empty,
+  /// the columns of prescribed unknowns times their increments are collected in lift() while blocks
+  /// come in.
   void begin(std::span<const double> increments = {});
-  /// Adds a body's own stiffness. \param block n x n [N/m, N, N m]; already H or K as symmetric() says
+  /// Adds a body's own stiffness. \param block n x n [N/m, N, N m]; already H or K as symmetric()
+  /// says
   void add_body(std::int32_t body, const Block& block);
   /// Adds a pair's stiffness; rows of bodies that other ranks own are left to them.
   void add_pair(std::int32_t i, std::int32_t j, const PairBlock& block);
@@ -56,7 +62,9 @@ class Tangent {
 
  private:
   void prepare_rows(std::int32_t body, std::span<double> rows, int columns);
-  bool is_held(std::int32_t body, int k) const { return (held_[static_cast<std::size_t>(body)] >> k & 1U) != 0; }
+  bool is_held(std::int32_t body, int k) const {
+    return (held_[static_cast<std::size_t>(body)] >> k & 1U) != 0;
+  }
 
   const Part& part_;
   std::span<const std::uint8_t> held_;

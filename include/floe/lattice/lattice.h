@@ -15,34 +15,35 @@
 
 namespace floe {
 
-/// Rigid bodies as a structure of arrays, at rest in the reference configuration. Orientations are unit
-/// quaternions (w, x, y, z), principal axes to world; velocities are in the world.
+/// Rigid bodies as a structure of arrays, at rest in the reference configuration. Orientations are
+/// unit quaternions (w, x, y, z), principal axes to world; velocities are in the world.
 struct Bodies {
-  std::vector<Point3> position;                  ///< centroids [m]
+  std::vector<Point3> position;  ///< centroids [m]
   std::vector<std::array<double, 4>> orientation;
-  std::vector<double> mass;                      ///< [kg]
-  std::vector<Point3> inertia;                   ///< principal moments [kg m^2]
-  std::vector<Point3> velocity;                  ///< [m/s]; empty: at rest
-  std::vector<Point3> angular_velocity;          ///< [rad/s]; empty: at rest
+  std::vector<double> mass;              ///< [kg]
+  std::vector<Point3> inertia;           ///< principal moments [kg m^2]
+  std::vector<Point3> velocity;          ///< [m/s]; empty: at rest
+  std::vector<Point3> angular_velocity;  ///< [rad/s]; empty: at rest
   std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
 };
 
-/// Beams as a structure of arrays; beam m joins the centroids of bodies[m][0] < bodies[m][1], sorted so.
-/// Local axes: 1 along the beam, 2 = axis_y (made orthogonal to 1), 3 = 1 x 2. In a sheet axis 2 lies in
-/// the plane, axis 3 is up: inertia_y resists out-of-plane bending, inertia_z in-plane bending.
+/// Beams as a structure of arrays; beam m joins the centroids of bodies[m][0] < bodies[m][1],
+/// sorted so. Local axes: 1 along the beam, 2 = axis_y (made orthogonal to 1), 3 = 1 x 2. In a
+/// sheet axis 2 lies in the plane, axis 3 is up: inertia_y resists out-of-plane bending, inertia_z
+/// in-plane bending.
 struct Beams {
   std::vector<std::array<std::int32_t, 2>> bodies;
-  std::vector<double> area;          ///< [m^2]
-  std::vector<double> inertia_y;     ///< second moment about axis 2 [m^4]
-  std::vector<double> inertia_z;     ///< second moment about axis 3 [m^4]
-  std::vector<double> torsion;       ///< torsion constant J [m^4]
-  std::vector<double> length;        ///< |X_j - X_i| [m]
-  std::vector<double> young;         ///< [Pa]
-  std::vector<double> shear_modulus; ///< [Pa]
-  std::vector<double> shear_factor;  ///< kappa
-  std::vector<Point3> axis_y;        ///< unit vector, world
-  std::vector<double> width;         ///< section's extent along axis 2 [m]; empty if the file has none
-  std::vector<double> height;        ///< section's extent along axis 3 [m]; empty if the file has none
+  std::vector<double> area;           ///< [m^2]
+  std::vector<double> inertia_y;      ///< second moment about axis 2 [m^4]
+  std::vector<double> inertia_z;      ///< second moment about axis 3 [m^4]
+  std::vector<double> torsion;        ///< torsion constant J [m^4]
+  std::vector<double> length;         ///< |X_j - X_i| [m]
+  std::vector<double> young;          ///< [Pa]
+  std::vector<double> shear_modulus;  ///< [Pa]
+  std::vector<double> shear_factor;   ///< kappa
+  std::vector<Point3> axis_y;         ///< unit vector, world
+  std::vector<double> width;   ///< section's extent along axis 2 [m]; empty if the file has none
+  std::vector<double> height;  ///< section's extent along axis 3 [m]; empty if the file has none
   std::int32_t size() const { return static_cast<std::int32_t>(bodies.size()); }
 };
 
@@ -53,24 +54,27 @@ struct Lattice {
   std::map<std::string, std::vector<std::int32_t>> sets;  ///< sorted body indices; "all" is implied
   Shapes shapes;  ///< empty, or one convex polyhedron per body in its principal axes
 
-  /// Indices of a named set. \throws InputError naming `key` if the set is empty, or, with the known sets, missing.
+  /// Indices of a named set. \throws InputError naming `key` if the set is empty, or, with the
+  /// known sets, missing.
   const std::vector<std::int32_t>& set(const std::string& name, const std::string& key) const;
 };
 
 /// How a sheet's cells become bodies and beams.
 struct SheetSection {
-  double thickness = 1;        ///< h [m]
-  double mid_plane = 0;        ///< z of the sheet's mid-plane [m]
+  double thickness = 1;  ///< h [m]
+  double mid_plane = 0;  ///< z of the sheet's mid-plane [m]
   Ice ice;
   double shear_factor = 5.0 / 6.0;
   Torsion torsion = Torsion::saint_venant;
 };
 
-/// Prisms over the cells (exact mass, centroid and inertia on principal axes), one beam per facet, edge sets.
+/// Prisms over the cells (exact mass, centroid and inertia on principal axes), one beam per facet,
+/// edge sets.
 Lattice make_sheet(const Tessellation& cells, const SheetSection& section);
 
-/// Renumbers bodies in reverse Cuthill-McKee order and sorts beams by (min, max) body. The order depends
-/// on the lattice only, so it is the same for any number of ranks. `order[new] = old` is returned.
+/// Renumbers bodies in reverse Cuthill-McKee order and sorts beams by (min, max) body. The order
+/// depends on the lattice only, so it is the same for any number of ranks. `order[new] = old` is
+/// returned.
 std::vector<std::int32_t> reorder(Lattice& lattice);
 
 /// Drops the beams that cross the segment from a to b in plan (a cut made with a saw).
@@ -81,8 +85,9 @@ void cut(Lattice& lattice, const Point2& a, const Point2& b);
 void add_region(Lattice& lattice, const std::string& name, const std::array<double, 6>& box,
                 const std::string& key);
 
-/// Reads or writes lattice.h5 (layout: docs/model.md). Writing is by one rank, to a temporary name, then renamed.
-/// \throws InputError naming the file and the dataset if it is missing, has a wrong shape, or a value out of range.
+/// Reads or writes lattice.h5 (layout: docs/model.md). Writing is by one rank, to a temporary name,
+/// then renamed. \throws InputError naming the file and the dataset if it is missing, has a wrong
+/// shape, or a value out of range.
 Lattice read_lattice(const std::string& file);
 void write_lattice(const Lattice& lattice, const std::string& file);
 

@@ -1,5 +1,6 @@
 /// \file
-/// Motion of the bodies, spatial or planar. Every loop over bodies or beams is a template on these traits.
+/// Motion of the bodies, spatial or planar. Every loop over bodies or beams is a template on these
+/// traits.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +11,11 @@
 
 namespace floe {
 
-/// Six unknowns per body. A record of 16 doubles: displacement u, rotation q from rest (w x y z), velocity v,
-/// angular velocity; the last three are padding, so that records never straddle more cache lines than they must.
-/// With linear kinematics q is the linearised quaternion (1, theta/2).
+/// Six unknowns per body. A record of 16 doubles: displacement u, rotation q from rest (w x y z),
+/// velocity v, angular velocity; the last three are padding, so that records never straddle more
+/// cache lines than they must. With linear kinematics q is the linearised quaternion (1, theta/2).
 struct Spatial {
-  static constexpr int unknowns = 6;      ///< ux uy uz, rotations about x y z
+  static constexpr int unknowns = 6;  ///< ux uy uz, rotations about x y z
   static constexpr int translations = 3;
   static constexpr int record = 16;
   static constexpr int displacement = 0, rotation = 3, velocity = 7, angular_velocity = 10;
@@ -22,7 +23,8 @@ struct Spatial {
   static void at_rest(double* record) { record[rotation] = 1; }
 };
 
-/// Three unknowns per body, for scenes where nothing moves out of plane: ux uy theta, vx vy omega, two of padding.
+/// Three unknowns per body, for scenes where nothing moves out of plane: ux uy theta, vx vy omega,
+/// two of padding.
 struct Planar {
   static constexpr int unknowns = 3;
   static constexpr int translations = 2;
@@ -55,7 +57,8 @@ inline Quat<double> rotation(const State<Spatial>& state, std::size_t body) {
   return {r[0], r[1], r[2], r[3]};
 }
 
-/// Force and moment on each local body, in the order of the unknowns [N, N m]; world axes, about the centroid.
+/// Force and moment on each local body, in the order of the unknowns [N, N m]; world axes, about
+/// the centroid.
 template <class Space>
 struct Wrenches {
   std::vector<double> values;

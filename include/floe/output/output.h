@@ -1,5 +1,6 @@
 /// \file
-/// The output folder of a run: lattice.h5, options.yaml, history.csv, fields.h5 + fields.xmf, summary.json.
+/// The output folder of a run: lattice.h5, options.yaml, history.csv, fields.h5 + fields.xmf,
+/// summary.json.
 #pragma once
 
 #include <array>
@@ -31,7 +32,8 @@ struct Sample {
   double time = 0;
   std::map<std::string, BoundarySample> boundaries;
   std::map<std::string, Point3> loads;  ///< mean displacement of the points where loads act [m]
-  std::vector<std::pair<std::string, double>> forces;  ///< energies and counts, as the forces report them
+  std::vector<std::pair<std::string, double>>
+      forces;  ///< energies and counts, as the forces report them
 };
 
 /// Takes every accepted state; writes on rank 0. Collective throughout.

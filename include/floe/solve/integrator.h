@@ -1,5 +1,6 @@
 /// \file
-/// Integrators take a model from its first state to the scene's end and hand every accepted state to an observer.
+/// Integrators take a model from its first state to the scene's end and hand every accepted state
+/// to an observer.
 #pragma once
 
 #include <functional>
@@ -34,12 +35,15 @@ struct TimeSpan {
 template <class Space>
 using Observer = std::function<void(const Accepted<Space>&)>;
 
-/// Equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the exact tangent, the
-/// step halved when Newton fails. All of PETSc's -snes_*, -ksp_*, -pc_*, -mat_* options apply; the default is
-/// Newton with preonly + Cholesky by MUMPS on blocked symmetric storage. Collective.
-RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time, const Observer<Spatial>& observer);
+/// Equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the exact
+/// tangent, the step halved when Newton fails. All of PETSc's -snes_*, -ksp_*, -pc_*, -mat_*
+/// options apply; the default is Newton with preonly + Cholesky by MUMPS on blocked symmetric
+/// storage. Collective.
+RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
+                          const Observer<Spatial>& observer);
 
-/// Sets the static solver up and gives it up again: for -check. \throws InputError for a solver PETSc does not have
+/// Sets the static solver up and gives it up again: for -check. \throws InputError for a solver
+/// PETSc does not have
 void check_solver_options(Model<Spatial>& model);
 
 }  // namespace floe

@@ -21,7 +21,8 @@ struct PlacedBoundary {
   std::vector<std::int32_t> bodies;
 };
 
-/// An unknown held to take a free rigid motion out of a static solve; it carries no reaction at equilibrium.
+/// An unknown held to take a free rigid motion out of a static solve; it carries no reaction at
+/// equilibrium.
 struct Pin {
   std::int32_t body;  ///< global index
   int component;      ///< 0..5: x y z rx ry rz
@@ -31,7 +32,7 @@ struct Pin {
 struct FreeMotion {
   std::int32_t piece;
   Point3 centre;
-  double radius;       ///< of the piece about its centre [m]; r is in units of 1/radius
+  double radius;  ///< of the piece about its centre [m]; r is in units of 1/radius
   std::array<double, 6> coefficients;  ///< t and r, of unit norm together
 };
 
@@ -43,10 +44,12 @@ struct FreeMotions {
 };
 
 /// \param held      per body, a bit for each of x y z rx ry rz that a boundary prescribes
-/// \param floating  per body: cut by the water surface, which holds z, rx, ry of its piece; may be empty
-/// \param avoid     bodies that should not be pinned if others can be (tests: the answer must not depend on it)
+/// \param floating  per body: cut by the water surface, which holds z, rx, ry of its piece; may be
+/// empty \param avoid     bodies that should not be pinned if others can be (tests: the answer must
+/// not depend on it)
 FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> held,
-                         std::span<const std::uint8_t> floating, std::span<const std::uint8_t> avoid = {});
+                         std::span<const std::uint8_t> floating,
+                         std::span<const std::uint8_t> avoid = {});
 
 template <class Space>
 class Model {
@@ -54,7 +57,8 @@ class Model {
   static constexpr int n = Space::unknowns;
 
   /// \param lattice  whole, the same on every rank; needed during construction only
-  /// \throws InputError for an unknown set or for two boundaries that prescribe one unknown differently
+  /// \throws InputError for an unknown set or for two boundaries that prescribe one unknown
+  /// differently
   Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries);
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
@@ -94,12 +98,15 @@ class Model {
 };
 
 /// Bits of the prescribed components of every body of a lattice.
-/// \throws InputError for an unknown set or for two boundaries that prescribe one component differently
-std::vector<std::uint8_t> prescribed_components(const Lattice& lattice, const std::vector<Boundary>& boundaries);
+/// \throws InputError for an unknown set or for two boundaries that prescribe one component
+/// differently
+std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
+                                                const std::vector<Boundary>& boundaries);
 
 /// Checks that no load pushes a free motion, which would have no static equilibrium. Collective.
 /// \param time  at which the loads are taken
 /// \throws InputError naming the motion and the force on it
-void require_balance(const Model<Spatial>& model, const Lattice& lattice, const FreeMotions& free, double time);
+void require_balance(const Model<Spatial>& model, const Lattice& lattice, const FreeMotions& free,
+                     double time);
 
 }  // namespace floe
