@@ -49,6 +49,14 @@ def check_tension(test, run):
     test.assertAlmostEqual(output.summary["E_over_Estar"], 1.060, delta=0.019)
 
 
+def check_largest(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 29561)
+    test.assertEqual(output.summary["ranks"], 2)
+    test.assertAlmostEqual(output.summary["E_over_Eb"], 0.796, delta=0.002)
+    test.assertAlmostEqual(output.summary["E_over_Estar"], 1.001, delta=0.002)
+
+
 def check_bending(test, run):
     output = run()
     test.assertEqual(output.summary["bodies"], 3285)
@@ -114,6 +122,7 @@ def check_triangles_bulk(test, run):
 EXPECTED = {
     "tension.yaml": check_tension,
     "bending.yaml": check_bending,
+    "bench/largest.yaml": check_largest,
     "verify/bend45.yaml": check_bend45,
     "verify/bend45_softer.yaml": check_bend45_softer,
     "verify/rollup.yaml": check_rollup,
