@@ -395,8 +395,10 @@ bool Equilibrium::solve(double time) {
   check(SNESGetIterationNumber(snes_, &taken));
   iterations_ += taken;
   if (reason < 0) {
-    why_ = std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
-           std::to_string(taken) + " iterations)";
+    why_ = reason == SNES_DIVERGED_DTOL
+               ? "nothing holds the bodies within 100 times the lattice's extent (does it sink?)"
+               : std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
+                     std::to_string(taken) + " iterations)";
     restore(before);
     return false;
   }
