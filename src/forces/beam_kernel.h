@@ -1,19 +1,22 @@
 /// \file
-/// One beam: strain energy and its exact gradient, on any scalar (physics.md section 2).
+/// One beam: strain energy and its exact gradient, on any scalar (model.md section 2).
 ///
 /// Two rigid bodies i and j, displaced by u_i, u_j and rotated by q_i, q_j from the state at rest,
 /// are joined by a shear-flexible beam from centroid to centroid, whose triad at rest is T (e1
 /// along the beam). All is computed in T: there the chord at rest is (l0, 0, 0) and small rotations
 /// are small numbers, so that strains keep their relative precision down to 1e-12 where components
 /// in the world would leave 1e-16 of l0.
-///   d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
-///   a, b = q_i, q_j with vector parts taken to T     (T^* q T: the triads that the bodies carry,
-///   seen from T) r = a* b = (w, v)        with the sign that makes w >= 0 psi = 2 atan2(|v|, w)
-///   v/|v|                       relative rotation [rad] m = (a + b)/|a + b|, E = R_m^T e the chord
-///   in the mean triad Delta = d.(2 (l0, 0, 0) + d)/(l + l0)             elongation [m], exact at
-///   any rotation and strain gamma_y = l0 E_2/l, gamma_z = l0 E_3/l            shear of the chord
-///   against the mean triad, as a length [m] U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2 +
-///   kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
+///
+///     d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
+///     a, b = q_i, q_j with vector parts taken to T (the triads that the bodies carry, seen from T)
+///     r = a* b = (w, v) with the sign that makes w >= 0
+///     psi = 2 atan2(|v|, w) v/|v|                relative rotation [rad]
+///     m = (a + b)/|a + b|, E = R_m^T e           the chord in the mean triad
+///     Delta = d.(2 (l0, 0, 0) + d)/(l + l0)      elongation [m], exact at any rotation and strain
+///     gamma_y = l0 E_2/l, gamma_z = l0 E_3/l     the chord against the mean triad, as a length [m]
+///     U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2
+///              + kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
+///
 /// With g = asin|v|/|v| = (phi/2)/sin(phi/2), phi = |psi|:  psi = 2 g v.
 #pragma once
 
@@ -141,8 +144,7 @@ T beam_energy(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
                   beam.kby * s.psi.y * s.psi.y + beam.kbz * s.psi.z * s.psi.z));
 }
 
-/// Exact gradient of beam_energy for co-rotational strains (formula: physics.md section 2, "Exact
-/// gradient").
+/// Exact gradient of beam_energy for co-rotational strains (model.md section 2, "Gradient").
 template <class T, class C>
 BeamGradient<T> corotational_gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
   const T inverse = T(1.0 / s.l);

@@ -123,7 +123,7 @@ void Fields::write_bodies(const std::string& group, const Frame& frame) {
   file_.write(group + "/face_rotation", rotation, 3);
 }
 
-/// Stresses of the section (physics.md section 7): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
+/// Stresses of the section (model.md section 8): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
 /// and tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
 void Fields::write_beams(const std::string& group, const Frame& frame) {
   const Beams& beams = lattice_.beams;

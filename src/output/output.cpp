@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <stdexcept>
 
 #include "floe/base/log.h"
 #include "floe/base/options.h"
@@ -111,6 +112,7 @@ Output::Output(const OutputOptions& options, const Lattice& lattice, const Model
     std::filesystem::remove(options.dir + old);
   impl_->fields.emplace(options.dir, lattice);
   impl_->history.open(options.dir + "/history.csv");
+  if (!impl_->history) throw std::runtime_error("cannot write " + options.dir + "/history.csv");
 }
 
 Output::~Output() = default;

@@ -69,7 +69,13 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
     throw InputError(scene.has_sheet
                          ? "sheet: element_size: the sheet has a single cell and no beam"
                          : "forces: beam: '" + scene.lattice_file + "' has no beams");
-  for (const Cut& c : scene.cuts) cut(lattice, c.from, c.to);
+  if (!scene.forces.beam) lattice.beams = {};  // loose bodies
+  for (const Cut& c : scene.cuts) {
+    const std::int32_t before = lattice.beams.size();
+    cut(lattice, c.from, c.to);
+    if (lattice.beams.size() == before)
+      throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
+  }
   if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
   auto& all = lattice.sets["all"];
   all.resize(static_cast<std::size_t>(lattice.bodies.size()));
@@ -81,7 +87,13 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
 
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) {
   std::vector<PlacedLoad> placed;
-  for (const Load& load : scene.loads) placed.push_back(place(load, lattice));
+  for (const Load& load : scene.loads) {
+    const bool beside = scene.has_sheet && load.point &&
+                        (2 * std::abs((*load.point)[0]) > scene.sheet.length ||
+                         2 * std::abs((*load.point)[1]) > scene.sheet.width);
+    if (beside) throw InputError("load: " + load.name + ": point: lies outside the sheet");
+    placed.push_back(place(load, lattice));
+  }
   return placed;
 }
 

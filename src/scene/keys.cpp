@@ -73,7 +73,7 @@ constexpr std::array table{
     OptionSpec{"boundary: NAME: displacement", numbers, "(velocity)", "m", "",
                "of the fixed components, instead of velocity", 3},
     OptionSpec{"boundary: NAME: angular_velocity", numbers, "0 0 0", "rad/s", "",
-               "of the fixed components", 3},
+               "of the fixed components; each body turns about its own centroid", 3},
     OptionSpec{"boundary: NAME: ramp", number, "0", "s", ">= 0",
                "the motion rises linearly over this time"},
 

@@ -61,7 +61,8 @@ void add_bending(const Scene& scene, const Sample& first, const Sample& last, Js
   const double k = scene.water_density * scene.gravity, h = scene.thickness, nu = scene.ice.poisson;
   const double plate = scene.ice.young * h * h * h / (12 * (1 - nu * nu));
   const double characteristic = std::pow(plate / k, 0.25);
-  const double wyman = -load.force[2] / (8 * k * characteristic * characteristic);
+  const double force = load.ramp.value(last.time) * load.force[2];
+  const double wyman = -force / (8 * k * characteristic * characteristic);
   const double deflection = first.loads.at(load.name)[2] - last.loads.at(load.name)[2];
   json["deflection_max"] = deflection;
   json["wyman"] = wyman;
@@ -90,6 +91,9 @@ void check_reports(const Scene& scene) {
     if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)
       throw InputError(
           "report: bending needs a floating sheet (buoyancy) and a vertical load at a point");
+    if (scene.loads.size() > 1)
+      throw InputError("report: bending compares one load with theory; load: names: has " +
+                       std::to_string(scene.loads.size()));
     if (load->ramp.value(0) != 0)
       throw InputError("load: " + load->name +
                        ": ramp: 0 must be > 0 for report: bending: deflections count from time 0");

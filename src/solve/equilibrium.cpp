@@ -61,6 +61,7 @@ Equilibrium::Equilibrium(Model<Spatial>& model)
       wrenches_(static_cast<std::size_t>(part_.local)),
       share_(static_cast<std::size_t>(part_.local)),
       reference_(static_cast<std::size_t>(part_.owned) * reference_size, 0.0),
+      turned2_(static_cast<std::size_t>(part_.owned), 0.0),
       tangent_(part_, model.held(), model.length_scale(), typical_stiffness(model),
                tangent_options()) {
   for (std::int32_t b = 0; b < part_.owned; ++b) {
@@ -151,6 +152,7 @@ void Equilibrium::take(Vec x) {
     double* record = state_.record(b);
     for (std::size_t k = 0; k < 3; ++k) record[k] = v[k];
     double* q = record + Spatial::rotation;
+    turned2_[b] = scale * scale * (v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
     if (model_.kinematics() == Kinematics::linear) {
       q[0] = 1;
       for (std::size_t k = 0; k < 3; ++k) q[1 + k] = 0.5 * scale * v[3 + k];
@@ -252,9 +254,7 @@ Equilibrium::Scale Equilibrium::scale_of_forces() const {
   const double l = model_.length_scale();
   for (std::size_t b = 0; b < stiffness_.size(); ++b) {
     const Vec3<double> u = displacement(state_, b);
-    const Quat<double> q = rotation(state_, b);
-    const double turned2 = 4 * l * l * (q.x * q.x + q.y * q.y + q.z * q.z);
-    noise2 += stiffness_[b] * stiffness_[b] * (dot(u, u) + turned2);
+    noise2 += stiffness_[b] * stiffness_[b] * (dot(u, u) + l * l * turned2_[b]);
   }
   const std::array<double, 2> mine{external2_, noise2};
   std::array<double, 2> all{};
@@ -395,8 +395,10 @@ bool Equilibrium::solve(double time) {
   check(SNESGetIterationNumber(snes_, &taken));
   iterations_ += taken;
   if (reason < 0) {
-    why_ = std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
-           std::to_string(taken) + " iterations)";
+    why_ = reason == SNES_DIVERGED_DTOL
+               ? "nothing holds the bodies within 100 times the lattice's extent (does it sink?)"
+               : std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
+                     std::to_string(taken) + " iterations)";
     restore(before);
     return false;
   }

@@ -75,6 +75,9 @@ class Equilibrium {
   State<Spatial> state_;
   Wrenches<Spatial> wrenches_, share_;
   std::vector<double> reference_;  ///< owned bodies: q_ref (4) and the rotation sum at it (3)
+  /// Owned bodies: square of the rotation so far [rad^2]. A full turn counts as one, although its
+  /// quaternion is that of rest: what it took to get there has left rounding.
+  std::vector<double> turned2_;
   std::vector<double> stiffness_;  ///< per owned body, for the rounding level [N/m]
   bool adaptive_ =
       true;  ///< whether to keep a factorisation that still converges (not if the user set a lag)

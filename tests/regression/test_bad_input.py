@@ -99,6 +99,10 @@ SCENES = {
     "two numbers for a vector": (loaded("set: right, force: [1, 2]"), "load: p: force: 1,2"),
     "load on a set and at a point": (loaded("set: right, point: [0, 0], force: [1, 0, 0]"), "not both"),
     "load nowhere": (loaded("force: [1, 0, 0]"), "set or point"),
+    "load beside the sheet": (loaded("point: [6, 0], force: [0, 0, 1]"), "load: p: point"),
+    "report of bending under two loads":
+        (FLOATING + "load: {names: [p, q], p: {point: [0, 0], force: [0, 0, -1], ramp: 1},"
+         " q: {point: [1, 0], force: [0, 0, -1], ramp: 1}}\nreport: [bending]\n", "report: bending"),
     "unlisted load": (GOOD + "load: {p: {set: right, force: [1, 0, 0]}}\n", "load: names"),
     "listed load without a section": (GOOD + "load: {names: [p]}\n", "no such section"),
     "name given twice": (GOOD + "load: {names: [p, p], p: {set: right, force: [1, 0, 0]}}\n", "p,p"),
@@ -113,6 +117,7 @@ SCENES = {
          "  b: {set: left, fix: x, displacement: [1, 0, 0]}\n", "boundary: "),
     "region without bodies": (GOOD + "region: {names: [r], r: {box: 90 91 0 1 0 1}}\n", "region: r"),
     "region upside down": (GOOD + "region: {names: [r], r: {box: 1 0 0 1 0 1}}\n", "region: r: box"),
+    "cut beside the sheet": (GOOD + "cut: {names: [c], c: {from: [9, -9], to: [9, 9]}}\n", "cut: c"),
     "load step beyond the end": (GOOD + "time: {end: 1, dt: 2}\n", "time: dt"),
     "output below a regular file": (GOOD + "output: {dir: scene.yaml/out}\n", "output: dir"),
     "output in place of a regular file": (GOOD + "output: {dir: scene.yaml}\n", "output: dir"),

@@ -117,6 +117,11 @@ class Summary(OutputTest):
         self.assertGreater(s["deflection_over_wyman"], 1)
         self.assertLessEqual({"strain", "gravity", "water"}, set(s["energy"]))
 
+    def test_deflection_is_over_that_of_the_load_at_the_end(self):
+        whole, half = (self.summary(self.run_scene(BENDING, *options)) for options in ((), ("-time_end", "0.5")))
+        self.assertAlmostEqual(half["wyman"], whole["wyman"] / 2, 15)
+        self.assertAlmostEqual(half["deflection_over_wyman"], whole["deflection_over_wyman"], 3)
+
     def test_stages_are_timed(self):
         s = self.summary(self.run_scene(TENSION))
         for key in ("mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s", "output_s"):
@@ -286,6 +291,24 @@ class Failure(OutputTest):
 
 
 class Unloaded(OutputTest):
+    def test_without_the_force_of_beams_bodies_are_loose(self):
+        scene = "forces: [gravity, buoyancy]\nsheet: {length: 10, element_size: 2}\n"
+        for ranks in (1, 2):
+            out = self.run_scene(scene, ranks=ranks)
+            self.assertEqual(self.summary(out)["beams"], 0)
+            self.assertLess(np.abs(self.frames(out)[-1][1]["bodies_displacement"]).max(), 1e-9)
+
+    def test_full_turns_leave_no_forces(self):
+        scene = ("forces: [beam]\nsheet: {length: 10, element_size: 2}\nboundary: {names: [a], a: {set: middle, "
+                 "fix: x y z rx ry rz, angular_velocity: [0, 0, 1]}}\nregion: {names: [middle], middle: {box: BOX}}\n"
+                 "time: {end: 13, dt: 0.25}\n")
+        out = self.run_scene("forces: [beam]\nsheet: {length: 10, element_size: 2}\n")
+        with h5py.File(out / "lattice.h5") as file:
+            x, y, _ = file["bodies/position"][0]
+        box = f"{x - 0.01} {x + 0.01} {y - 0.01} {y + 0.01} -1 1"
+        row = self.history(self.run_scene(scene.replace("BOX", box)))[-1]
+        self.assertLess(row["energy_strain"], 1e-9)
+
     def test_rigid_displacement_leaves_no_forces(self):
         """Only x is held; the sheet follows rigidly, and reactions that are rounding errors are no load."""
         scene = TENSION.replace("report: [tension]\n", "").replace("left: {set: left, fix: x}", "left: {set: left, fix: x, "

@@ -1,5 +1,5 @@
 /// \file
-/// The tension test of a square sheet (physics.md section 4; paper, "Effective Young's Modulus").
+/// The tension test of a square sheet (model.md section 4; paper, "Effective Young's Modulus").
 #pragma once
 
 #include "floe/scene.h"

@@ -1,5 +1,5 @@
 /// \file
-/// A patch of the regular triangular lattice (physics.md section 3).
+/// A patch of the regular triangular lattice (model.md section 3).
 #pragma once
 
 #include <array>

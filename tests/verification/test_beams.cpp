@@ -1,5 +1,5 @@
 // Beams as frames: closed forms of small deflection, large rotations in the plane and in space,
-// Newton's convergence (physics.md section 9).
+// Newton's convergence (answers: input/verify).
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Floating sheets (physics.md section 5): draft, stiffness against tilting, rigid sinking, and the
+// Floating sheets (model.md section 5): draft, stiffness against tilting, rigid sinking, and the
 // deflection under a point load against an independent static solution and against Wyman's (1950)
 // infinite plate.
 #include <algorithm>

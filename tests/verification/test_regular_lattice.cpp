@@ -1,4 +1,4 @@
-// Moduli of the infinite regular lattice (physics.md section 3), measured in a patch of it whose
+// Moduli of the infinite regular lattice (model.md section 3), measured in a patch of it whose
 // outermost bodies are given the motion of a uniform strain or curvature. All others are free. That
 // motion is then the exact answer everywhere, so the beams round an inner body carry what they
 // carry in the infinite lattice: mean stresses and moments are sums of their section forces over

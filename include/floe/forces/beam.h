@@ -1,5 +1,5 @@
 /// \file
-/// The lattice's beams (physics.md section 2). The pointwise energy and gradient are in
+/// The lattice's beams (model.md section 2). The pointwise energy and gradient are in
 /// src/forces/beam_kernel.h.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace floe {
 
-/// Transverse stiffness of a beam (physics.md section 2): the same energy with a different k_s.
+/// Transverse stiffness of a beam (model.md section 2): the same energy with a different k_s.
 enum class Shear {
   one_point,  ///< kappa G A / l: linear Timoshenko element with one-point quadrature; the paper's
   exact,      ///< 12 E I / (l^3 (1 + Phi)): locking-free Timoshenko
@@ -34,7 +34,7 @@ struct BeamStiffness {
   double kn, ksz, ksy;  ///< [N/m]
   double kt, kby, kbz;  ///< [N m]
 };
-/// Stiffness of beam m of `beams` (physics.md section 2).
+/// Stiffness of beam m of `beams` (model.md section 2).
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear);
 
 /// What a beam carries at its middle: N, Q_2, Q_3 [N] and T, M_2, M_3 [N m], in its mean triad.

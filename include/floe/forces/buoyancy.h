@@ -1,6 +1,6 @@
 /// \file
 /// Buoyancy of convex bodies: rho_w g times the exact volume below z = 0, at that volume's centroid
-/// (physics.md 6).
+/// (model.md section 6).
 #pragma once
 
 #include <memory>

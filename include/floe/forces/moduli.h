@@ -1,5 +1,5 @@
 /// \file
-/// Effective moduli of the infinite regular (triangular) lattice (physics.md section 3).
+/// Effective moduli of the infinite regular (triangular) lattice (model.md section 3).
 #pragma once
 
 #include "floe/forces/beam.h"

@@ -7,7 +7,7 @@
 /// length.
 ///
 /// On rotations, differentiation of the gradient gives K = H - skew(m)/2 with H the Hessian and m
-/// the block's moment gradient; H = K + skew(m)/2 is assembled (physics.md section 2), unless the
+/// the block's moment gradient; H = K + skew(m)/2 is assembled (model.md section 2), unless the
 /// exact K was asked for.
 #pragma once
 

@@ -1,5 +1,5 @@
 /// \file
-/// Ice and the section properties of the beams made from it (physics.md sections 2 and 3).
+/// Ice and the section properties of the beams made from it (model.md sections 2 and 3).
 #pragma once
 
 namespace floe {

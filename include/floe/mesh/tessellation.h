@@ -1,5 +1,5 @@
 /// \file
-/// Centroidal Voronoi tessellation of a rectangular sheet (physics.md section 1; paper, "Mesh
+/// Centroidal Voronoi tessellation of a rectangular sheet (model.md section 1; paper, "Mesh
 /// Creation").
 #pragma once
 
@@ -31,7 +31,7 @@ struct SheetPlan {
   double tolerance = 0;  ///< stop when no generator moves by more than this times l (0: never)
 };
 
-/// N = ceil(2 Lx Ly / (sqrt(3) l^2)) [physics.md section 1].
+/// N = ceil(2 Lx Ly / (sqrt(3) l^2)) [model.md section 1].
 std::int64_t number_of_cells(const SheetPlan& plan);
 
 enum SheetSide : std::uint8_t { side_left = 1, side_right = 2, side_bottom = 4, side_top = 8 };

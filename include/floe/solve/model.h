@@ -44,9 +44,10 @@ struct FreeMotions {
 };
 
 /// \param held      per body, a bit for each of x y z rx ry rz that a boundary prescribes
-/// \param floating  per body: cut by the water surface, which holds z, rx, ry of its piece; may be
-/// empty \param avoid     bodies that should not be pinned if others can be (tests: the answer must
-/// not depend on it)
+/// \param floating  per body: cut by the water surface, which holds z, rx, ry of its piece;
+///                  may be empty
+/// \param avoid     bodies that should not be pinned if others can be (tests: the answer must
+///                  not depend on it)
 FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> held,
                          std::span<const std::uint8_t> floating,
                          std::span<const std::uint8_t> avoid = {});
