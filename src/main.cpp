@@ -80,6 +80,10 @@ int run(const std::string& path) {
   if (rank() == 0) write_whole(scene.output.dir + "/summary.json", summary.json);
   say(summary.text);
   if (!result.done) say("floe: " + result.message + "\n", stderr);
+  if (result.unstable_modes > 0)
+    say("floe: warning: the equilibrium is unstable (" + std::to_string(result.unstable_modes) +
+            " negative eigenvalues of its tangent): the least disturbance would end it\n",
+        stderr);
   warn_unused_options();
   return result.done ? done : failed;
 }

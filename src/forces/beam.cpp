@@ -71,6 +71,16 @@ class Beam final : public BeamForce<typename Pointwise::Space> {
     columns.add("energy_strain", energy);
   }
 
+  std::int64_t folded(const State<Space>& state) const override {
+    std::int64_t count = 0;
+    for (std::size_t m = 0; m < constants_.size(); ++m) {
+      const auto [i, j] = part_.beams.bodies[m];
+      count += Pointwise::is_folded(constants_[m], state.record(static_cast<std::size_t>(i)),
+                                    state.record(static_cast<std::size_t>(j)));
+    }
+    return count;
+  }
+
   std::vector<BeamSection> sections(const State<Space>& state) const override {
     std::vector<BeamSection> all(constants_.size());
     for (std::size_t m = 0; m < constants_.size(); ++m) {

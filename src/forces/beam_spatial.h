@@ -58,6 +58,13 @@ struct SpatialBeam {
     return beam_energy(c, strains(c, i, j));
   }
 
+  static bool is_folded(const Constants& c, const double* i, const double* j) {
+    if constexpr (kinematics == Kinematics::linear) return false;
+    constexpr double smallest_cosine = 0.2;
+    const BeamStrains<double> s = strains(c, i, j);
+    return !(s.chord.x > smallest_cosine * s.l);
+  }
+
   static BeamSection section(const Constants& c, const double* i, const double* j) {
     const BeamStrains<double> s = strains(c, i, j);
     return {c.kn * s.delta, c.ksz * s.gamma_y, c.ksy * s.gamma_z,

@@ -203,6 +203,7 @@ void Output::Impl::write_row(const Sample& s) {
   for (const auto& [name, u] : s.loads) std::for_each(u.begin(), u.end(), put);
   for (const auto& [name, value] : s.forces) put(value);
   history << '\n' << std::flush;
+  if (!history) throw std::runtime_error("cannot write " + options.dir + "/history.csv");
 }
 
 void Output::Impl::write_frame(const State<Spatial>& state) {

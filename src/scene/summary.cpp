@@ -114,6 +114,7 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   json["steps"] = result.steps;
   json["dt"] = result.dt;
   json["newton_iterations"] = result.newton_iterations;
+  if (result.unstable_modes >= 0) json["stable"] = result.unstable_modes == 0;
   if (scene.has_sheet) {
     json["seed"] = scene.sheet.seed;
     json["cvt_energy_ratio"] = mesh.energy_ratio;

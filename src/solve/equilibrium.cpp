@@ -101,6 +101,20 @@ void Equilibrium::set_defaults() {
   PetscBool lag_given = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, "-snes_lag_jacobian", &lag_given));
   adaptive_ = lag_given == PETSC_FALSE;
+  // On several ranks MUMPS counts negative pivots (unstable_modes) only if its root front is not
+  // shared out.
+  if (size(part_.comm) == 1) return;
+  PetscBool cholesky = PETSC_FALSE;
+  MatSolverType package = nullptr;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
+  check(PCFactorGetMatSolverType(pc, &package));
+  if (cholesky == PETSC_FALSE || package == nullptr || std::strcmp(package, MATSOLVERMUMPS) != 0)
+    return;
+  Mat factor = nullptr;
+  check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+  check(PCFactorSetUpMatSolverType(pc));
+  check(PCFactorGetMatrix(pc, &factor));
+  check(MatMumpsSetIcntl(factor, 13, 1));
 }
 
 /// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic
@@ -403,9 +417,46 @@ bool Equilibrium::solve(double time) {
     return false;
   }
   take(x_);
+  if (const std::int64_t folded = count_folded(); folded > 0) {
+    why_ = std::to_string(folded) + " beams folded over";
+    restore(before);
+    return false;
+  }
   fill_residual(f_);
   for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
   return true;
+}
+
+std::int64_t Equilibrium::count_folded() const {
+  if (model_.beams() == nullptr) return 0;
+  const std::int64_t mine = model_.beams()->folded(state_);
+  std::int64_t all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT64_T, MPI_SUM, part_.comm);
+  return all;
+}
+
+std::int64_t Equilibrium::unstable_modes() {
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  Mat factor = nullptr;
+  MatSolverType package = nullptr;
+  PetscBool cholesky = PETSC_FALSE;
+  check(SNESGetKSP(snes_, &ksp));
+  check(KSPGetPC(ksp, &pc));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
+  if (cholesky == PETSC_FALSE) return -1;
+  check(PCFactorGetMatSolverType(pc, &package));
+  if (package == nullptr || std::strcmp(package, MATSOLVERMUMPS) != 0) return -1;
+  rebase(x_);
+  assemble();
+  const Timed timed(Event::solve);
+  check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+  check(KSPSetUp(ksp));
+  check(PCFactorGetMatrix(pc, &factor));
+  PetscInt negative = 0;
+  constexpr PetscInt number_of_negative_pivots = 12;  // MUMPS users' guide, INFOG(12)
+  check(MatMumpsGetInfog(factor, number_of_negative_pivots, &negative));
+  return negative;
 }
 
 double Equilibrium::pin_reaction() const {

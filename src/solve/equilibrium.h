@@ -35,6 +35,10 @@ class Equilibrium {
   /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load
   /// pushes a motion that nothing holds.
   double pin_reaction() const;
+  /// Number of negative eigenvalues of the tangent at the present state: more than none is an
+  /// unstable equilibrium. Costs a factorisation; -1 if the solver is not Cholesky by MUMPS, which
+  /// tells.
+  std::int64_t unstable_modes();
 
  private:
   struct Saved {
@@ -67,6 +71,7 @@ class Equilibrium {
   bool keeps_factorisation() const;
   Scale scale_of_forces() const;
   bool is_lost() const;
+  std::int64_t count_folded() const;
   Saved save() const;
   void restore(const Saved& saved);
 

@@ -37,12 +37,13 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
     if (reaction > pin_tolerance)
       result.message = "no equilibrium at time " + text(at) +
                        ": a motion that nothing holds is loaded (by " + text(reaction) +
-                       " of the forces)";
+                       " of the forces), or has gone far; prescribe it with `fix`";
     return reaction <= pin_tolerance;
   };
 
   if (!equilibrium.solve(0.0)) {
-    result.message = "no equilibrium at time 0: " + equilibrium.why();
+    result.message = "no equilibrium at time 0: " + equilibrium.why() +
+                     "; a ramp on loads and motions would let them come in steps";
     return result;
   }
   if (!balanced(0.0)) return result;
@@ -74,6 +75,7 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
     dt = std::min(given, 2 * dt);
   }
   result.done = true;
+  result.unstable_modes = equilibrium.unstable_modes();
   return result;
 }
 

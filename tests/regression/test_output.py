@@ -290,6 +290,25 @@ class Failure(OutputTest):
         self.assertEqual((folder / "history.csv").read_text(), "")
 
 
+class Stability(OutputTest):
+    PRESSED = """forces: [beam]
+sheet: {length: 20, width: 4, thickness: 0.2, element_size: 2, iterations: 20}
+boundary:
+  names: [left, right]
+  left: {set: left, fix: x z}
+  right: {set: right, fix: x z, displacement: [-1, 0, 0], ramp: 1}
+"""  # pinned at both ends: it buckles at a displacement of about pi^2 h^2/(12 L) = 1.6 mm
+
+    def test_below_and_beyond_the_buckling_load(self):
+        for ranks in (1, 2):
+            for displacement, stable in (("-0.0005,0,0", True), ("-0.005,0,0", False)):
+                with self.subTest(ranks=ranks, displacement=displacement):
+                    run = self.start(self.PRESSED, "-boundary_right_displacement", displacement, ranks=ranks)
+                    self.assertEqual(run.returncode, 0, run.stderr)
+                    self.assertEqual(self.summary(self.folder / "out/scene")["stable"], stable)
+                    self.assertEqual("unstable" in run.stderr, not stable, run.stderr)
+
+
 class Unloaded(OutputTest):
     def test_without_the_force_of_beams_bodies_are_loose(self):
         scene = "forces: [gravity, buoyancy]\nsheet: {length: 10, element_size: 2}\n"
@@ -308,6 +327,16 @@ class Unloaded(OutputTest):
         box = f"{x - 0.01} {x + 0.01} {y - 0.01} {y + 0.01} -1 1"
         row = self.history(self.run_scene(scene.replace("BOX", box)))[-1]
         self.assertLess(row["energy_strain"], 1e-9)
+
+    def test_a_full_turn_in_one_step_does_not_fold_the_beams(self):
+        scene = ("forces: [beam]\nsheet: {length: 10, width: 4, element_size: 2, iterations: 20}\n"
+                 "boundary: {names: [a], a: {set: one, fix: x y z rx ry rz, angular_velocity: [0, 0, 6.283185307]}}\n"
+                 "region: {names: [one], one: {box: BOX}}\n")
+        out = self.run_scene("forces: [beam]\nsheet: {length: 10, width: 4, element_size: 2, iterations: 20}\n")
+        with h5py.File(out / "lattice.h5") as file:
+            x, y, _ = file["bodies/position"][0]
+        row = self.history(self.run_scene(scene.replace("BOX", f"{x - 0.01} {x + 0.01} {y - 0.01} {y + 0.01} -1 1")))[-1]
+        self.assertLess(row["energy_strain"], 1e-6)
 
     def test_rigid_displacement_leaves_no_forces(self):
         """Only x is held; the sheet follows rigidly, and reactions that are rounding errors are no load."""

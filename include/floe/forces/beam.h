@@ -46,6 +46,10 @@ class BeamForce : public Force<Space> {
  public:
   /// Per local beam of the part.
   virtual std::vector<BeamSection> sections(const State<Space>& state) const = 0;
+  /// Number of this rank's beams whose chord stands across their ends (more than 78 degrees from
+  /// the mean triad): there the energy has equilibria that no beam has, reached by steps that are
+  /// too large.
+  virtual std::int64_t folded(const State<Space>& state) const = 0;
 };
 
 /// \param part  must outlive the force

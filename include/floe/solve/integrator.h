@@ -24,7 +24,8 @@ struct RunResult {
   std::string message;
   std::int64_t steps = 0;
   std::int64_t newton_iterations = 0;
-  double dt = 0;  ///< last step taken
+  double dt = 0;                     ///< last step taken
+  std::int64_t unstable_modes = -1;  ///< of the last equilibrium; -1: not known
 };
 
 struct TimeSpan {
