@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "floe/base/log.h"
 #include "floe/base/options.h"
@@ -14,8 +15,8 @@
 
 namespace {
 
-// What a shell sees. 2 is floe::InputError.
-enum Exit { done = 0, failed = 1, bad_input = 2 };
+// What a shell sees. 2 is floe::InputError; 3: on request, a checkpoint has been written.
+enum Exit { done = 0, failed = 1, bad_input = 2, stopped = 3 };
 
 void say(const std::string& text, std::FILE* where = stdout) {
   if (floe::rank() == 0) {
@@ -23,6 +24,13 @@ void say(const std::string& text, std::FILE* where = stdout) {
     std::fflush(where);
   }
 }
+
+/// The initial state, kept until the output folder is there.
+struct First {
+  floe::State<floe::Spatial> state;
+  floe::Wrenches<floe::Spatial> wrenches;
+  std::vector<std::pair<std::string, double>> columns, forces;
+};
 
 int run(const std::string& path) {
   using namespace floe;
@@ -35,14 +43,15 @@ int run(const std::string& path) {
   // 2. Sheet -> lattice
   MeshReport mesh;
   Lattice lattice = make_lattice(scene, PETSC_COMM_WORLD, mesh);
+  set_initial(scene, lattice);
 
   // 3. The model: this rank's part of the lattice, boundaries, forces
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
   Model<Spatial> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
   add_forces(scene, loads, model);
-  hold_free_motions(scene, lattice, model);
+  if (scene.integrator == Integrator::quasistatic) hold_free_motions(scene, lattice, model);
   if (scene.check_only) {
-    check_solver_options(model);
+    if (scene.integrator == Integrator::quasistatic) check_solver_options(model);
     say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
         std::to_string(model.part().global_beams) + " beams\n");
     return done;
@@ -50,42 +59,58 @@ int run(const std::string& path) {
 
   // 4. Output, opened once a step has shown that every option was understood: bad input leaves no
   // folder behind
+  const std::string lattice_id = fingerprint(lattice);
   std::optional<Output> output;
-  std::optional<std::pair<State<Spatial>, Wrenches<Spatial>>> first;
+  std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
+  std::optional<First> first;
   const auto open = [&] {
     reject_unused_options();
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
-                   lattice, model, loads, scene.options_yaml);
+                   lattice, model, loads, scene.options_yaml, restart ? &*restart : nullptr);
     if (rank() != 0) lattice = {};  // only rank 0 writes geometry
-    if (first) output->accept({first->first, first->second, 0});
+    if (first)
+      output->accept({first->state, first->wrenches, 0, first->columns, false, first->forces});
     first.reset();
   };
 
   // 5. Run
-  const RunResult result = run_quasistatic(model, {scene.time.end, scene.time.dt},
-                                           [&](const Accepted<Spatial>& accepted) {
-                                             if (accepted.step == 0) {
-                                               first.emplace(accepted.state, accepted.wrenches);
-                                               return;
-                                             }
-                                             if (!output) open();
-                                             output->accept(accepted);
-                                           });
-  if (!output) open();  // a run that found not even a first state leaves a summary that says so
-  output->finish();
+  const auto prepare = [&] {
+    if (!output) open();
+  };
+  const auto observe = [&](const Accepted<Spatial>& accepted) {
+    if (accepted.step == 0) {
+      first = First{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
+      return;
+    }
+    prepare();
+    output->accept(accepted);
+  };
+  const auto remember = [&](Memory& checkpoint) {
+    if (checkpoint.loading()) {
+      restart.emplace().remember(checkpoint);
+    } else {
+      OutputMemory(output->memory()).remember(checkpoint);
+    }
+  };
+  const RunResult result = integrate(scene, model, lattice_id, observe, prepare, remember);
+  prepare();  // a run that found not even a first state leaves a summary that says so
+  if (!result.stopped) output->finish();  // a stopped run goes on where it was
 
   // 6. Results
   const Summary summary =
       summarise(scene, model, mesh, result, output->first(), output->last(), MPI_Wtime() - start);
   if (rank() == 0) write_whole(scene.output.dir + "/summary.json", summary.json);
   say(summary.text);
-  if (!result.done) say("floe: " + result.message + "\n", stderr);
+  const std::string how = result.stopped ? "; go on with: floe " + scene.path +
+                                               " -checkpoint_restart " + checkpoint_file(scene)
+                                         : "";
+  if (!result.done) say("floe: " + result.message + how + "\n", stderr);
   if (result.unstable_modes > 0)
     say("floe: warning: the equilibrium is unstable (" + std::to_string(result.unstable_modes) +
             " negative eigenvalues of its tangent): the least disturbance would end it\n",
         stderr);
   warn_unused_options();
-  return result.done ? done : failed;
+  return result.done ? done : result.stopped ? stopped : failed;
 }
 
 }  // namespace

@@ -292,6 +292,11 @@ def stack(count, size, gap=0.0, density=920.0):
     return lattice
 
 
+def block(size, height=0.0, density=920.0):
+    """One upright box with its centroid at (0, 0, height); size 3 [m], height [m]."""
+    return blocks([size], [[0, 0, height]], density)
+
+
 # -- the frames of the verification scenes ----------------------------------------------------------
 def bend45(elements, torsion=None):
     """The 45-degree bend of Bathe & Bolourchi (1979): R = 100, section 1 x 1, E = 1e7, nu = 0, kappa = 5/6.
@@ -335,6 +340,8 @@ def _arguments():
     kind("triangles", "sheet of regular triangles; the module's documentation says how its edges are treated",
          columns=(21, "n"), rows=(21, "n"), spacing=(1.0, "m"), thickness=(1.0, "m"), young=(4e9, "Pa"),
          poisson=(0.3, "-"), density=(920.0, "kg/m3"))
+    kind("block", "one upright box with its centroid above the origin", size=((4.0, 4.0, 1.0), "m"), height=(0.0, "m"),
+         density=(920.0, "kg/m3"))
     kind("stack", "loose boxes above each other, no beams", count=(5, "n"), size=((1.0, 1.0, 0.5), "m"),
          gap=(0.0, "m"), density=(920.0, "kg/m3"))
     return parser, parser.parse_args()
@@ -344,7 +351,7 @@ def main():
     parser, given = _arguments()
     options = vars(given)
     kind, file = options.pop("kind"), options.pop("file")
-    makers = {"bend45": bend45, "rollup": rollup, "elastica": elastica, "triangles": triangles, "stack": stack}
+    makers = {"bend45": bend45, "rollup": rollup, "elastica": elastica, "triangles": triangles, "block": block, "stack": stack}
     try:
         if kind == "cantilever":
             length, elements = options.pop("length"), options.pop("elements")

@@ -2,6 +2,7 @@
 /// From a scene to what runs: sheet -> lattice -> model -> forces, and back to a summary.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,19 @@ struct MeshReport {
 /// the lattice is whole and the same on every rank. \throws InputError for what a file or a scene
 /// has wrong
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
+
+/// Sets the velocities of the scene's `initial` sections. \throws InputError for an unknown set
+void set_initial(const Scene& scene, Lattice& lattice);
+
+/// Where an explicit run writes its checkpoints.
+std::string checkpoint_file(const Scene& scene);
+
+/// Runs the scene's integrator. Collective. \param lattice_id  its fingerprint, for checkpoints
+/// \param prepare  opens the output that a checkpoint goes with, if it is not open
+/// \param others  what checkpoints keep beside the integrator's state
+RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string& lattice_id,
+                    const Observer<Spatial>& observer, const std::function<void()>& prepare,
+                    const std::function<void(Memory&)>& others);
 
 /// The scene's loads on the lattice's bodies. \throws InputError for an unknown set
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);

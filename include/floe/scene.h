@@ -10,12 +10,13 @@
 
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
+#include "floe/forces/drag.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
 
 namespace floe {
 
-enum class Integrator { quasistatic };
+enum class Integrator { quasistatic, leapfrog };
 
 struct Region {
   std::string name;
@@ -27,12 +28,18 @@ struct Cut {
   Point2 from{}, to{};  ///< [m]
 };
 
+struct Initial {
+  std::string name, set;
+  Point3 velocity{};          ///< [m/s]
+  Point3 angular_velocity{};  ///< [rad/s]
+};
+
 struct Scene {
   std::string path;  ///< the scene file
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
   struct {
-    bool beam = false, gravity = false, buoyancy = false;
+    bool beam = false, gravity = false, buoyancy = false, drag = false;
   } forces;
   bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
@@ -46,20 +53,34 @@ struct Scene {
   BeamOptions beam;
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
+  DragOptions drag;
+  double added_mass = 0;  ///< of the water that a body displaces at rest
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {
     double end = 1;
-    double dt = 0;  ///< 0: one step
+    double dt = 0;  ///< 0: one step, or from the stable step
+    double safety = 0.9;
+    bool allow_unstable = false;
   } time;
+  struct {
+    double velocity = 1000;     ///< [m/s]
+    double energy_error = 0.1;  ///< of the energies that moved
+  } limit;
+  std::vector<Initial> initials;
   struct {
     bool tension = false, bending = false;
   } report;
   struct {
     std::string dir;     ///< default out/NAME
-    double history = 0;  ///< 0: every load step
+    double history = 0;  ///< 0: every load step; explicit: 200 rows
     double fields = 0;   ///< 0: first and last state only
   } output;
+  struct {
+    double every = 600;   ///< wall time between two [s]
+    bool at_end = false;  ///< the scene has the section: one at the end too
+    std::string restart;  ///< file to go on from; empty: from time 0
+  } checkpoint;
   bool check_only = false;
   std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
 };

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
@@ -29,8 +31,14 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
+constexpr const char* temporary_ending = ".part";
+
 void require(bool good, const std::string& what, const std::string& path) {
-  if (!good) throw std::runtime_error("HDF5: cannot " + what + " " + path);
+  if (good) return;
+  const int why = errno;  // HDF5 keeps what the system said
+  if (path.ends_with(temporary_ending)) std::remove(path.c_str());
+  throw FileError("cannot " + what + " " + path + (why != 0 ? ": " : "") +
+                  (why != 0 ? std::strerror(why) : ""));
 }
 
 void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
@@ -39,7 +47,7 @@ void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Hdf5File Hdf5File::create(const std::string& path) {
   quiet();
-  const std::string temporary = path + ".part";
+  const std::string temporary = path + temporary_ending;
   const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   require(id >= 0, "create", temporary);
   return {id, temporary, path};
@@ -52,40 +60,85 @@ Hdf5File Hdf5File::create_growing(const std::string& path) {
   return {id, path, path};
 }
 
-Hdf5File Hdf5File::open(const std::string& path) {
+Hdf5File Hdf5File::open_growing(const std::string& path) {
+  quiet();
+  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  require(id >= 0, "open", path);
+  return {id, path, path};
+}
+
+Hdf5File Hdf5File::open(const std::string& path, const std::string& key) {
   quiet();
   if (!std::filesystem::is_regular_file(path))
-    throw InputError("lattice_file: '" + path + "' does not exist or is not a regular file");
+    throw InputError(key + ": '" + path + "' does not exist or is not a regular file");
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (id < 0) throw InputError("lattice_file: '" + path + "' is not an HDF5 file");
-  return {id, path, path};
+  if (id < 0) throw InputError(key + ": '" + path + "' is not an HDF5 file");
+  return {id, path, path, key};
 }
 
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
     : id_(std::exchange(other.id_, -1)),
       path_(std::move(other.path_)),
-      final_path_(std::move(other.final_path_)) {}
+      final_path_(std::move(other.final_path_)),
+      key_(std::move(other.key_)),
+      staged_(std::exchange(other.staged_, -1)),
+      staged_name_(std::move(other.staged_name_)) {}
 
 Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
   std::swap(id_, other.id_);
   std::swap(path_, other.path_);
   std::swap(final_path_, other.final_path_);
+  std::swap(key_, other.key_);
+  std::swap(staged_, other.staged_);
+  std::swap(staged_name_, other.staged_name_);
   return *this;
 }
 
 Hdf5File::~Hdf5File() {
   if (id_ < 0) return;
+  if (staged_ >= 0) H5Gclose(staged_);
   H5Fclose(id_);
   if (path_ != final_path_) std::remove(path_.c_str());
 }
 
 void Hdf5File::close() {
   if (id_ < 0) return;
-  require(H5Fclose(std::exchange(id_, -1)) >= 0, "close", path_);
+  errno = 0;
+  require(H5Fclose(std::exchange(id_, -1)) >= 0, "write", path_);
   if (path_ != final_path_) std::filesystem::rename(path_, final_path_);
 }
 
-void Hdf5File::flush() { require(H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0, "flush", path_); }
+void Hdf5File::flush() {
+  errno = 0;
+  require(H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0, "write", path_);
+}
+
+void Hdf5File::stage(const std::string& group) {
+  errno = 0;
+  staged_ = H5Gcreate_anon(id_, H5P_DEFAULT, H5P_DEFAULT);
+  require(staged_ >= 0, "write " + group + " to", path_);
+  staged_name_ = group;
+}
+
+void Hdf5File::publish() {
+  flush();  // all of the group is on disk before the file knows of it
+  require(H5Olink(staged_, id_, staged_name_.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
+          "write " + staged_name_ + " to", path_);
+  H5Gclose(std::exchange(staged_, -1));
+  staged_name_.clear();
+  flush();
+}
+
+void Hdf5File::copy(const Hdf5File& from, const std::string& name) {
+  errno = 0;
+  require(H5Ocopy(from.id_, name.c_str(), id_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
+          "copy " + name + " to", path_);
+}
+
+std::pair<std::int64_t, std::string> Hdf5File::place(const std::string& name) const {
+  if (staged_ < 0 || name.rfind(staged_name_, 0) != 0) return {id_, name};
+  return {staged_, name == staged_name_ ? "." : name.substr(staged_name_.size() + 1)};
+}
 
 void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count,
                          int columns, std::int64_t type) {
@@ -94,7 +147,9 @@ void Hdf5File::write_any(const std::string& name, const void* values, std::int64
   const Id space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
   const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  const Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
+  const auto [where, relative] = place(name);
+  errno = 0;
+  const Id data(H5Dcreate2(where, relative.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
                 H5Dclose);
   require(data >= 0, "write " + name + " to", path_);
   if (count > 0)
@@ -116,13 +171,50 @@ void Hdf5File::write(const std::string& name, std::span<const std::int32_t> valu
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
-  const Id target(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  const auto [where, relative] = place(object);
+  errno = 0;
+  const Id target(H5Oopen(where, relative.c_str(), H5P_DEFAULT), H5Oclose);
   const Id space(H5Screate(H5S_SCALAR), H5Sclose);
   const Id attribute(
       H5Acreate2(target, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT),
       H5Aclose);
   require(attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0,
           "write attribute " + name + " to", path_);
+}
+
+void Hdf5File::write_text(const std::string& name, const std::string& text) {
+  errno = 0;
+  const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, text.size() + 1);
+  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
+                H5Dclose);
+  require(data >= 0 && H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0,
+          "write " + name + " to", path_);
+}
+
+std::string Hdf5File::read_text(const std::string& name) const {
+  const std::string where = key_ + ": '" + path_ + "': " + name;
+  if (!has(name)) throw InputError(where + " is missing");
+  const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Id stored(H5Dget_type(data), H5Tclose);
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0)
+    throw InputError(where + " is not a text");
+  std::string text(H5Tget_size(stored), '\0');
+  if (H5Dread(data, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
+    throw InputError(where + " cannot be read");
+  return text.substr(0, text.find('\0'));
+}
+
+double Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
+  const Id target(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                  H5Aclose);
+  double value = 0;
+  if (target < 0 || H5Aread(target, H5T_NATIVE_DOUBLE, &value) < 0)
+    throw InputError(key_ + ": '" + path_ + "': " + object + " has no attribute " + name);
+  return value;
 }
 
 bool Hdf5File::has(const std::string& name) const {
@@ -141,7 +233,7 @@ bool Hdf5File::has(const std::string& name) const {
 std::vector<std::string> Hdf5File::members(const std::string& group) const {
   std::vector<std::string> names;
   const Id id(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
-  if (id < 0) throw InputError("lattice_file: '" + path_ + "': " + group + " is not a group");
+  if (id < 0) throw InputError(key_ + ": '" + path_ + "': " + group + " is not a group");
   const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
     static_cast<std::vector<std::string>*>(list)->emplace_back(name);
     return 0;
@@ -152,7 +244,7 @@ std::vector<std::string> Hdf5File::members(const std::string& group) const {
 }
 
 std::pair<std::int64_t, std::int64_t> Hdf5File::shape(const std::string& name) const {
-  const std::string where = "lattice_file: '" + path_ + "': " + name;
+  const std::string where = key_ + ": '" + path_ + "': " + name;
   if (!has(name)) throw InputError(where + " is missing");
   const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
   if (data < 0) throw InputError(where + " is not a dataset");
@@ -168,7 +260,7 @@ std::pair<std::int64_t, std::int64_t> Hdf5File::shape(const std::string& name) c
 
 void Hdf5File::read_any(const std::string& name, int columns, std::int64_t type,
                         void* values) const {
-  const std::string where = "lattice_file: '" + path_ + "': " + name;
+  const std::string where = key_ + ": '" + path_ + "': " + name;
   const auto [rows, actual] = shape(name);
   if (actual != columns)
     throw InputError(where + " has shape " + std::to_string(rows) + " x " + std::to_string(actual) +

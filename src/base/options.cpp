@@ -239,11 +239,18 @@ bool Options::flag(std::string_view key, std::string_view name) {
   return *value;
 }
 
+constexpr std::string_view automatic =
+    "(auto)";  // default of numbers that the word auto stands for
+
 double Options::number(std::string_view key, std::string_view name,
                        std::optional<double> otherwise) {
   const Reading reading = read(key, name);
+  if (otherwise && reading.spec.fallback == automatic && reading.value == "auto") {
+    record(reading, "auto");
+    return *otherwise;
+  }
   if (!reading.value && otherwise) {
-    record(reading, shortest(*otherwise));
+    record(reading, reading.spec.fallback == automatic ? "auto" : shortest(*otherwise));
     return *otherwise;
   }
   const std::string text = reading.value.value_or("");

@@ -21,17 +21,22 @@ PetscErrorCode remember_error(MPI_Comm, int, const char*, const char*, PetscErro
 
 [[noreturn]] void report_and_abort() {
   const char* what = "unknown error";
+  const char* kind = "internal error: ";
   std::string text;
   if (const auto error = std::current_exception()) {
     try {
       std::rethrow_exception(error);
+    } catch (const FileError& e) {
+      text = e.what();
+      what = text.c_str();
+      kind = "";
     } catch (const std::exception& e) {
       text = e.what();
       what = text.c_str();
     } catch (...) {
     }
   }
-  std::fprintf(stderr, "floe: internal error: %s\n", what);
+  std::fprintf(stderr, "floe: %s%s\n", kind, what);
   std::fflush(stderr);
   int running = 0;
   MPI_Initialized(&running);

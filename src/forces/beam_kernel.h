@@ -23,6 +23,7 @@
 #include <cmath>
 
 #include "floe/base/rotation.h"
+#include "floe/base/simd.h"
 #include "floe/forces/beam.h"
 
 namespace floe {
@@ -69,22 +70,39 @@ struct BeamGradient {
 /// relative rotation of 11 degrees) the series, whose first term left out is 1e-17; above it the
 /// closed form.
 template <class T>
+T asin_remainder_series(const T& s2) {
+  // asin(s)/s = sum c_k s^2k, c_k = (2k)!/(4^k k!^2 (2k+1)) (Abramowitz & Stegun 4.4.40)
+  T sum = T(6435.0 / 557056.0) * s2 + T(143.0 / 10240.0);
+  sum = T(sum * s2) + 231.0 / 13312.0;
+  sum = T(sum * s2) + 63.0 / 2816.0;
+  sum = T(sum * s2) + 35.0 / 1152.0;
+  sum = T(sum * s2) + 5.0 / 112.0;
+  sum = T(sum * s2) + 3.0 / 40.0;
+  sum = T(sum * s2) + 1.0 / 6.0;
+  return T(-sum);
+}
+inline constexpr double series_limit = 0.01;
+template <class T>
 T asin_remainder(const T& s2, const T& w) {
   using std::atan2;
   using std::sqrt;
-  if (s2 < 0.01) {
-    // asin(s)/s = sum c_k s^2k, c_k = (2k)!/(4^k k!^2 (2k+1)) (Abramowitz & Stegun 4.4.40)
-    T sum = T(6435.0 / 557056.0) * s2 + T(143.0 / 10240.0);
-    sum = T(sum * s2) + 231.0 / 13312.0;
-    sum = T(sum * s2) + 63.0 / 2816.0;
-    sum = T(sum * s2) + 35.0 / 1152.0;
-    sum = T(sum * s2) + 5.0 / 112.0;
-    sum = T(sum * s2) + 3.0 / 40.0;
-    sum = T(sum * s2) + 1.0 / 6.0;
-    return T(-sum);
-  }
+  if (s2 < series_limit) return asin_remainder_series(s2);
   const T s = sqrt(s2);
   return T(T(1.0 - T(atan2(s, w) / s)) / s2);
+}
+/// Lanes that need the closed form are rare (a beam bent by 11 degrees) and are done one by one.
+[[gnu::noinline, gnu::cold]] inline void asin_remainder_one_by_one(const Lanes& s2, const Lanes& w,
+                                                                   Lanes& h) {
+  for (std::size_t k = 0; k < lanes; ++k) {
+    if (!(s2[k] < series_limit)) h[k] = asin_remainder(double(s2[k]), double(w[k]));
+  }
+}
+inline Lanes asin_remainder(const Lanes& s2, const Lanes& w) {
+  Lanes h = asin_remainder_series(s2);
+  if (all_of(s2 < series_limit)) [[likely]]
+    return h;
+  asin_remainder_one_by_one(s2, w, h);
+  return h;
 }
 
 /// Co-rotational strains (Crisfield 1990, 1997: strains against a triad that goes with the beam).
@@ -99,7 +117,7 @@ BeamStrains<T> corotational_strains(const BeamConstants<C>& beam, const Vec3<T>&
   const Quat<T> a{qi.w, ai.x, ai.y, ai.z};
   Quat<T> b{qj.w, bj.x, bj.y, bj.z};
   const Quat<T> r = product(conjugate(a), b);
-  const double sign = r.w < 0.0 ? -1.0 : 1.0;  // q and -q are the same rotation
+  const auto sign = sign_of(r.w);  // q and -q are the same rotation
   b = {T(sign * b.w), T(sign * b.x), T(sign * b.y), T(sign * b.z)};
   s.w = sign * r.w;
   s.v = {T(sign * r.x), T(sign * r.y), T(sign * r.z)};
@@ -144,19 +162,35 @@ T beam_energy(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
                   beam.kby * s.psi.y * s.psi.y + beam.kbz * s.psi.z * s.psi.z));
 }
 
-/// Exact gradient of beam_energy for co-rotational strains (model.md section 2, "Gradient").
+/// What works on the six strains: forces [N] on Delta, gamma_y, gamma_z, moments [N m] on psi.
+template <class T>
+struct BeamStress {
+  T n, qy, qz;
+  Vec3<T> c;
+};
+
 template <class T, class C>
-BeamGradient<T> corotational_gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
+BeamStress<T> elastic_stress(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
+  return {T(beam.kn * s.delta),
+          T(beam.ksz * s.gamma_y),
+          T(beam.ksy * s.gamma_z),
+          {T(beam.kt * s.psi.x), T(beam.kby * s.psi.y), T(beam.kbz * s.psi.z)}};
+}
+
+/// Exact gradient B^T stress of co-rotational strains (formula: model.md section 2, "Exact
+/// gradient").
+template <class T, class C>
+BeamGradient<T> corotational_gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s,
+                                      const BeamStress<T>& stress) {
   const T inverse = T(1.0 / s.l);
   const T stretch = T(beam.l0 * inverse);
-  const T qy = T(beam.ksz * s.gamma_y), qz = T(beam.ksy * s.gamma_z);
-  const T along = T(
-      T(T(beam.kn * s.delta) - T(T(stretch * inverse) * T(T(qy * s.chord.y) + T(qz * s.chord.z)))) *
-      inverse);
+  const T &qy = stress.qy, &qz = stress.qz;
+  const Vec3<T>& c = stress.c;
+  const T along =
+      T(T(stress.n - T(T(stretch * inverse) * T(T(qy * s.chord.y) + T(qz * s.chord.z)))) * inverse);
   const Vec3<T> n{T(along * s.chord.x), T(T(along * s.chord.y) + T(stretch * qy)),
                   T(T(along * s.chord.z) + T(stretch * qz))};
   const Vec3<T> p = cross(n, s.chord);
-  const Vec3<T> c{T(beam.kt * s.psi.x), T(beam.kby * s.psi.y), T(beam.kbz * s.psi.z)};
   const Vec3<T> q = s.g * c + T(s.h * dot(s.v, c)) * s.v;
   const Vec3<T> z = q + T(0.5 / T(1.0 + s.w)) * cross(s.v, p);
   const Vec3<T> half = 0.5 * p;
@@ -164,13 +198,42 @@ BeamGradient<T> corotational_gradient(const BeamConstants<C>& beam, const BeamSt
           beam.to_world(s.mean.to_world(half + z))};
 }
 
-/// Exact gradient of beam_energy for linear strains.
+/// Rates B v of the co-rotational strains, with the same B as the gradient.
+/// In the mean triad: v = v_j - v_i, mean spin w = (w_i + w_j)/2, relative spin d = w_j - w_i; the
+/// triad spins with w_m = w - tau x d/2, the chord changes by v - w_m x E, and psi by S^-1 d
+/// (model.md section 2).
 template <class T, class C>
-BeamGradient<T> linear_gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
-  const T qy = T(beam.ksz * s.gamma_y), qz = T(beam.ksy * s.gamma_z);
+BeamStress<T> corotational_rates(const BeamConstants<C>& beam, const BeamStrains<T>& s,
+                                 const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                                 const Vec3<T>& spin_j) {
+  const auto local = [&](const Vec3<T>& v) { return s.mean.to_local(beam.to_rest(v)); };
+  const Vec3<T> d = local(spin_j - spin_i), mean = local(0.5 * (spin_i + spin_j));
+  const Vec3<T> turn = mean - T(0.5 / T(1.0 + s.w)) * cross(s.v, d);
+  const Vec3<T> chord_rate = local(velocity) - cross(turn, s.chord);
+  const T inverse = T(1.0 / s.l);
+  const T stretch_rate = T(dot(s.chord, chord_rate) * inverse);
+  const T ratio = T(beam.l0 * inverse);
+  return {stretch_rate, T(ratio * T(chord_rate.y - T(T(s.chord.y * inverse) * stretch_rate))),
+          T(ratio * T(chord_rate.z - T(T(s.chord.z * inverse) * stretch_rate))),
+          s.g * d + T(s.h * dot(s.v, d)) * s.v};
+}
+
+/// Rates of the linear strains.
+template <class T, class C>
+BeamStress<T> linear_rates(const BeamConstants<C>& beam, const Vec3<T>& velocity,
+                           const Vec3<T>& spin_i, const Vec3<T>& spin_j) {
+  const Vec3<T> chord = beam.to_rest(velocity), mean = beam.to_rest(0.5 * (spin_i + spin_j));
+  return {chord.x, T(chord.y - T(beam.l0 * mean.z)), T(chord.z + T(beam.l0 * mean.y)),
+          beam.to_rest(spin_j - spin_i)};
+}
+
+/// Exact gradient B^T stress of linear strains.
+template <class T, class C>
+BeamGradient<T> linear_gradient(const BeamConstants<C>& beam, const BeamStress<T>& stress) {
+  const T &qy = stress.qy, &qz = stress.qz;
+  const Vec3<T>& c = stress.c;
   const Vec3<T> half{T(0.0 * qy), T((0.5 * beam.l0) * qz), T((-0.5 * beam.l0) * qy)};
-  const Vec3<T> c{T(beam.kt * s.psi.x), T(beam.kby * s.psi.y), T(beam.kbz * s.psi.z)};
-  return {beam.to_world(Vec3<T>{T(beam.kn * s.delta), qy, qz}), beam.to_world(half - c),
+  return {beam.to_world(Vec3<T>{stress.n, qy, qz}), beam.to_world(half - c),
           beam.to_world(half + c)};
 }
 
@@ -187,11 +250,26 @@ struct BeamKernel {
     }
   }
   template <class T, class C>
-  static BeamGradient<T> gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
+  static BeamGradient<T> gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s,
+                                  const BeamStress<T>& stress) {
     if constexpr (kinematics == Kinematics::linear) {
-      return linear_gradient(beam, s);
+      return linear_gradient(beam, stress);
     } else {
-      return corotational_gradient(beam, s);
+      return corotational_gradient(beam, s, stress);
+    }
+  }
+  template <class T, class C>
+  static BeamGradient<T> gradient(const BeamConstants<C>& beam, const BeamStrains<T>& s) {
+    return gradient(beam, s, elastic_stress(beam, s));
+  }
+  template <class T, class C>
+  static BeamStress<T> rates(const BeamConstants<C>& beam, const BeamStrains<T>& s,
+                             const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                             const Vec3<T>& spin_j) {
+    if constexpr (kinematics == Kinematics::linear) {
+      return linear_rates(beam, velocity, spin_i, spin_j);
+    } else {
+      return corotational_rates(beam, s, velocity, spin_i, spin_j);
     }
   }
 };

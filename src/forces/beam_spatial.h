@@ -13,6 +13,21 @@
 
 namespace floe {
 
+/// The triad of beam m of a part at rest.
+inline Triad<double> beam_triad(const Part& part, std::int32_t m) {
+  const auto k = static_cast<std::size_t>(m);
+  const auto [i, j] = part.beams.bodies[k];
+  const Point3& xi = part.bodies.position[static_cast<std::size_t>(i)];
+  const Point3& xj = part.bodies.position[static_cast<std::size_t>(j)];
+  const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
+  const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
+  const Point3& axis = part.beams.axis_y[k];
+  Vec3<double> e2{axis[0], axis[1], axis[2]};
+  e2 = e2 - dot(e2, e1) * e1;
+  e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
+  return {e1, e2, cross(e1, e2)};
+}
+
 template <Kinematics kinematics>
 struct SpatialBeam {
   using Space = Spatial;
@@ -22,19 +37,9 @@ struct SpatialBeam {
 
   /// Constants of beam m of a part.
   static Constants make(const Part& part, std::int32_t m, Shear shear) {
-    const auto k = static_cast<std::size_t>(m);
-    const auto [i, j] = part.beams.bodies[k];
-    const Point3& xi = part.bodies.position[static_cast<std::size_t>(i)];
-    const Point3& xj = part.bodies.position[static_cast<std::size_t>(j)];
     Constants c{};
-    const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
-    c.l0 = std::sqrt(dot(e0, e0));
-    const Vec3<double> e1 = (1.0 / c.l0) * e0;
-    const Point3& axis = part.beams.axis_y[k];
-    Vec3<double> e2{axis[0], axis[1], axis[2]};
-    e2 = e2 - dot(e2, e1) * e1;
-    e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
-    c.rest = {e1, e2, cross(e1, e2)};
+    c.rest = beam_triad(part, m);
+    c.l0 = part.beams.length[static_cast<std::size_t>(m)];
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
     return c;
@@ -42,16 +47,6 @@ struct SpatialBeam {
 
   static BeamStrains<double> strains(const Constants& c, const double* i, const double* j) {
     return Kernel::strains(c, relative(i, j), rotation_of(i), rotation_of(j));
-  }
-
-  /// Wrenches on i and j (minus the gradient), n each.
-  static void wrenches(const Constants& c, const double* i, const double* j, double* on_i,
-                       double* on_j) {
-    const BeamGradient<double> g = Kernel::gradient(c, strains(c, i, j));
-    on_i[0] = g.force.x, on_i[1] = g.force.y, on_i[2] = g.force.z;
-    on_i[3] = -g.moment_i.x, on_i[4] = -g.moment_i.y, on_i[5] = -g.moment_i.z;
-    on_j[0] = -g.force.x, on_j[1] = -g.force.y, on_j[2] = -g.force.z;
-    on_j[3] = -g.moment_j.x, on_j[4] = -g.moment_j.y, on_j[5] = -g.moment_j.z;
   }
 
   static double energy(const Constants& c, const double* i, const double* j) {

@@ -1,12 +1,18 @@
 #include "floe/forces/buoyancy.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "floe/base/petsc.h"
+#include "forces/immersion.h"
 
 namespace floe {
 namespace {
+
+const Part& with_shapes(const Part& part) {
+  if (part.shapes.empty() && part.owned > 0)
+    throw InputError("forces: buoyancy needs bodies with a shape; the lattice file has no /shapes");
+  return part;
+}
 
 /// With r from the body's centroid, V the submerged part and W its cut by the water (areas and
 /// moments of both are in Submerged): force rho g V, moment rho g (m_y, -m_x, 0), m = int_V r dV,
@@ -14,27 +20,35 @@ namespace {
 ///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA   for a spin t.
 class Buoyancy final : public Force<Spatial> {
  public:
-  Buoyancy(const Part& part, double weight_density) : part_(part), weight_(weight_density) {
-    if (part.shapes.empty() && part.owned > 0)
-      throw InputError(
-          "forces: buoyancy needs bodies with a shape; the lattice file has no /shapes");
-  }
+  Buoyancy(const Part& part, double weight_density)
+      : part_(part),
+        immersion_(with_shapes(part)),
+        owned_(static_cast<std::size_t>(part.owned)),
+        weight_(weight_density) {}
 
   std::string_view name() const override { return "buoyancy"; }
 
-  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
-    for (std::int32_t body = 0; body < part_.owned; ++body) {
-      const Submerged s = below_water(state, body);
-      double* w = wrenches.of(static_cast<std::size_t>(body));
-      w[2] += weight_ * s.volume;
-      w[3] += weight_ * s.moment[1];
-      w[4] -= weight_ * s.moment[0];
+  [[gnu::flatten]] void add(const State<Spatial>& state,
+                            Wrenches<Spatial>& wrenches) const override {
+    const Lanes zero(0.0);
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
+      const BlockMotion m = block_motion<false>(immersion_, state, block);
+      const Immersion::Lane below = immersion_.of_block(state, block, m.u.z, m.q);
+      const Lanes turn_y = -weight_ * below.moment.x;
+      std::array<detail::Four, lanes> rows;
+      scatter_four<Lanes>({zero, zero, weight_ * below.volume, weight_ * below.moment.y}, rows);
+      for (std::size_t b = block * lanes; b < std::min<std::size_t>((block + 1) * lanes, owned_);
+           ++b) {
+        double* w = wrenches.of(b);
+        add_four(w, rows[b % lanes]);
+        w[4] += turn_y[b % lanes];
+      }
     }
   }
 
   bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
     for (std::int32_t body = 0; body < part_.owned; ++body) {
-      const Submerged s = below_water(state, body);
+      const Submerged s = immersion_.of(state, body);
       Tangent<Spatial>::Block k{};
       const auto at = [&k](int row, int column) -> double& {
         return k[static_cast<std::size_t>(row * 6 + column)];
@@ -68,7 +82,7 @@ class Buoyancy final : public Force<Spatial> {
       low = std::min(low, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
       high = std::max(high, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
     }
-    return 3.0 * weight_ * volume_properties(part_.shapes, body).volume / (high - low);
+    return 3.0 * weight_ * immersion_.volume(body) / (high - low);
   }
 
   /// Potential of the displaced water: rho g times int_V (-z) dV, the work to push the body down
@@ -76,35 +90,17 @@ class Buoyancy final : public Force<Spatial> {
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for (std::int32_t body = 0; body < part_.owned; ++body) {
-      const Submerged s = below_water(state, body);
-      const auto b = static_cast<std::size_t>(body);
-      const double z = part_.bodies.position[b][2] + displacement(state, b).z;
-      energy -= weight_ * (s.moment[2] + z * s.volume);
+      const Submerged s = immersion_.of(state, body);
+      energy -= weight_ * (s.moment[2] + immersion_.height(state, body) * s.volume);
     }
     columns.add("energy_water", energy);
   }
 
  private:
-  Submerged below_water(const State<Spatial>& state, std::int32_t body) const {
-    const auto b = static_cast<std::size_t>(body);
-    const auto [w, x, y, z] = part_.bodies.orientation[b];
-    // A linearised quaternion (1, theta/2) is longer than 1 and would swell the body.
-    const Triad<double> axes =
-        triad(product(normalised(rotation(state, b)), Quat<double>{w, x, y, z}));
-    const Shapes& shapes = part_.shapes;
-    placed_.clear();
-    for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
-      const Point3& r = shapes.vertices[static_cast<std::size_t>(v)];
-      const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
-      placed_.push_back({p.x, p.y, p.z});
-    }
-    const double centre = part_.bodies.position[b][2] + displacement(state, b).z;
-    return submerged(shapes, body, placed_, -centre);
-  }
-
   const Part& part_;
+  Immersion immersion_;
+  std::size_t owned_;
   double weight_;
-  mutable std::vector<Point3> placed_;  ///< work space of below_water
 };
 
 }  // namespace
@@ -112,6 +108,15 @@ class Buoyancy final : public Force<Spatial> {
 template <>
 std::unique_ptr<Force<Spatial>> make_buoyancy<Spatial>(const Part& part, double weight_density) {
   return std::make_unique<Buoyancy>(part, weight_density);
+}
+
+std::vector<double> displaced_mass(const Part& part, double density) {
+  const Immersion immersion(with_shapes(part));
+  const State<Spatial> rest(static_cast<std::size_t>(part.local));
+  std::vector<double> mass;
+  for (std::int32_t body = 0; body < part.owned; ++body)
+    mass.push_back(density * immersion.of(rest, body).volume);
+  return mass;
 }
 
 }  // namespace floe

@@ -19,6 +19,9 @@ class DeadLoad final : public Force<Spatial> {
       if (local >= 0 && local < part.owned) bodies_.push_back(local);
     }
     arm_ = {placed.arm[0], placed.arm[1], placed.arm[2]};
+    places_.resize(bodies_.size());
+    last_force_ = force(0);
+    last_moment_ = moment(0);
   }
 
   std::string_view name() const override { return "load"; }
@@ -62,6 +65,39 @@ class DeadLoad final : public Force<Spatial> {
 
   double stiffness_bound(std::int32_t) const override { return 0; }
 
+  /// Work over the step by the trapezoidal rule; moments on the rotation of the step.
+  void commit(const State<Spatial>& state, double) override {
+    const Vec3<double> f = force(state.time), m = moment(state.time);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Place now = place_of(state, bodies_[k]);
+      const Vec3<double> turn = log_rotation(product(now.q, conjugate(places_[k].q)));
+      work_ += 0.5 * (dot(f + last_force_, now.at - places_[k].at) + dot(m + last_moment_, turn));
+      places_[k] = now;
+    }
+    last_force_ = f;
+    last_moment_ = m;
+  }
+
+  void remember(Memory& checkpoint) override {
+    checkpoint.share("work", work_);
+    std::vector<double> last{last_force_.x,  last_force_.y,  last_force_.z,
+                             last_moment_.x, last_moment_.y, last_moment_.z};
+    checkpoint.common("last", last);
+    last.resize(6);
+    last_force_ = {last[0], last[1], last[2]};
+    last_moment_ = {last[3], last[4], last[5]};
+    constexpr std::size_t width = 7;
+    std::vector<double> rows;
+    rows.reserve(width * places_.size());
+    for (const Place& p : places_)
+      rows.insert(rows.end(), {p.at.x, p.at.y, p.at.z, p.q.w, p.q.x, p.q.y, p.q.z});
+    checkpoint.rows("places", bodies_, rows, width);
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const double* r = &rows[width * k];
+      places_[k] = {{r[0], r[1], r[2]}, {r[3], r[4], r[5], r[6]}};
+    }
+  }
+
   /// Potential of the dead force; applied moments are left out, they have none.
   void report(const State<Spatial>& state, Columns& columns) const override {
     const Vec3<double> f = force(state.time);
@@ -71,6 +107,7 @@ class DeadLoad final : public Force<Spatial> {
       energy -= dot(f, displacement(state, b) + (turned_arm(state, b) - arm_));
     }
     columns.add("energy_load", energy);
+    columns.add("energy_external", work_);
   }
 
  private:
@@ -88,9 +125,22 @@ class DeadLoad final : public Force<Spatial> {
     return rotate(q, arm_);
   }
 
+  /// Displacement of the point where the force acts, and rotation, of one body.
+  struct Place {
+    Vec3<double> at{0, 0, 0};
+    Quat<double> q{1, 0, 0, 0};
+  };
+  Place place_of(const State<Spatial>& state, std::int32_t body) const {
+    const auto b = static_cast<std::size_t>(body);
+    return {displacement(state, b) + (turned_arm(state, b) - arm_), normalised(rotation(state, b))};
+  }
+
   Load load_;
   const Part& part_;
   std::vector<std::int32_t> bodies_;
+  std::vector<Place> places_;  ///< at the last commit
+  Vec3<double> last_force_{}, last_moment_{};
+  double work_ = 0;  ///< done on this rank's bodies so far [J]
   double share_ = 1;
   bool linear_;
   Vec3<double> arm_{};

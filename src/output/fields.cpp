@@ -11,7 +11,7 @@ namespace floe {
 namespace {
 
 std::string group_name(std::size_t k) {
-  char name[16];
+  char name[32];
   std::snprintf(name, sizeof name, "/t%06zu", k);
   return name;
 }
@@ -39,14 +39,21 @@ std::string attribute(const std::string& name, const std::string& group, std::si
 
 }  // namespace
 
-Fields::Fields(const std::string& dir, const Lattice& lattice)
-    : dir_(dir), lattice_(lattice), file_(Hdf5File::create_growing(dir + "/fields.h5")) {
-  write_mesh();
+Fields::Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep)
+    : dir_(dir), lattice_(lattice) {
+  set_topology();
+  if (keep >= 0) {
+    cut_back(static_cast<std::size_t>(keep));
+    write_xmf();
+  } else {
+    file_.emplace(Hdf5File::create_growing(dir + "/fields.h5"));
+    write_mesh();
+  }
 }
 
-void Fields::write_mesh() {
+void Fields::set_topology() {
   const Shapes& s = lattice_.shapes;
-  std::vector<std::int32_t> topology;
+  std::vector<std::int32_t>& topology = topology_of_faces_;
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
     for (std::int32_t f = s.face_of[body]; f < s.face_of[body + 1]; ++f) {
@@ -66,23 +73,52 @@ void Fields::write_mesh() {
   }
   points_ = s.empty() ? lattice_.bodies.position.size() : s.vertices.size();
   topology_ = topology.size();
-  file_.write("/mesh/topology", topology);
-  file_.write("/mesh/body", body_of_face_);
+}
+
+void Fields::write_mesh() {
+  file_->write("/mesh/topology", topology_of_faces_);
+  file_->write("/mesh/body", body_of_face_);
   if (lattice_.beams.size() > 0)
-    file_.write("/mesh/beams",
-                std::span<const std::int32_t>(lattice_.beams.bodies[0].data(),
-                                              2 * lattice_.beams.bodies.size()),
-                2);
+    file_->write("/mesh/beams",
+                 std::span<const std::int32_t>(lattice_.beams.bodies[0].data(),
+                                               2 * lattice_.beams.bodies.size()),
+                 2);
+  file_->flush();
+}
+
+/// Keeps the mesh and the first frames. Later ones are left behind in the old file, whose copy
+/// takes its place: HDF5 gives no room back, and a process killed here loses nothing.
+void Fields::cut_back(std::size_t keep) {
+  const std::string path = dir_ + "/fields.h5", key = "checkpoint: restart";
+  bool as_it_is = false;
+  {
+    const Hdf5File old = Hdf5File::open(path, key);
+    for (std::size_t k = 0; k < keep; ++k) {
+      if (!old.has(group_name(k)))
+        throw InputError(key + ": '" + path + "' has " + std::to_string(k) +
+                         " frames, the checkpoint knows of " + std::to_string(keep));
+      times_.push_back(old.read_attribute(group_name(k), "time"));
+    }
+    as_it_is = !old.has(group_name(keep));
+    if (!as_it_is) {
+      Hdf5File kept = Hdf5File::create(path);
+      kept.copy(old, "/mesh");
+      for (std::size_t k = 0; k < keep; ++k) kept.copy(old, group_name(k));
+      kept.close();
+    }
+  }
+  file_.emplace(Hdf5File::open_growing(path));
 }
 
 void Fields::write(const Frame& frame) {
   const std::string group = group_name(times_.size());
+  file_->stage(group);
   write_bodies(group, frame);
   if (lattice_.beams.size() > 0) write_beams(group, frame);
-  file_.attribute(group, "time", frame.time);
-  file_.flush();
+  file_->attribute(group, "time", frame.time);
+  file_->publish();
   times_.push_back(frame.time);
-  write_xmf();  // after the flush: it never names a frame that is not on disk
+  write_xmf();  // after it is on disk: it never names a frame that is not
 }
 
 void Fields::write_bodies(const std::string& group, const Frame& frame) {
@@ -104,10 +140,10 @@ void Fields::write_bodies(const std::string& group, const Frame& frame) {
                     {centres[3 * b] + p.x, centres[3 * b + 1] + p.y, centres[3 * b + 2] + p.z});
     }
   }
-  file_.write(group + "/centres", centres, 3);
-  file_.write(group + "/points", lattice_.shapes.empty() ? centres : points, 3);
-  file_.write(group + "/bodies_displacement", frame.displacement, 3);
-  file_.write(group + "/bodies_rotation", frame.rotation_vector, 3);
+  file_->write(group + "/centres", centres, 3);
+  file_->write(group + "/points", lattice_.shapes.empty() ? centres : points, 3);
+  file_->write(group + "/bodies_displacement", frame.displacement, 3);
+  file_->write(group + "/bodies_rotation", frame.rotation_vector, 3);
   std::vector<float> displacement, rotation;
   displacement.reserve(3 * body_of_face_.size());
   rotation.reserve(3 * body_of_face_.size());
@@ -119,11 +155,11 @@ void Fields::write_bodies(const std::string& group, const Frame& frame) {
           static_cast<float>(frame.rotation_vector[3 * static_cast<std::size_t>(body) + k]));
     }
   }
-  file_.write(group + "/face_displacement", displacement, 3);
-  file_.write(group + "/face_rotation", rotation, 3);
+  file_->write(group + "/face_displacement", displacement, 3);
+  file_->write(group + "/face_rotation", rotation, 3);
 }
 
-/// Stresses of the section (model.md section 8): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
+/// Stresses of the section (model.md section 9): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
 /// and tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
 void Fields::write_beams(const std::string& group, const Frame& frame) {
   const Beams& beams = lattice_.beams;
@@ -143,16 +179,16 @@ void Fields::write_beams(const std::string& group, const Frame& frame) {
     stress[2 * k] = sigma;
     stress[2 * k + 1] = tau;
   }
-  file_.write(group + "/beams_force", force, 3);
-  file_.write(group + "/beams_moment", moment, 3);
-  file_.write(group + "/beams_stress", stress, 2);
+  file_->write(group + "/beams_force", force, 3);
+  file_->write(group + "/beams_moment", moment, 3);
+  file_->write(group + "/beams_stress", stress, 2);
   std::vector<double> sigma(m), tau(m);
   for (std::size_t k = 0; k < m; ++k) {
     sigma[k] = stress[2 * k];
     tau[k] = stress[2 * k + 1];
   }
-  file_.write(group + "/tensile_stress", sigma);
-  file_.write(group + "/shear_stress", tau);
+  file_->write(group + "/tensile_stress", sigma);
+  file_->write(group + "/shear_stress", tau);
 }
 
 /// The two grids of one time: bodies as polygons, beams as lines.

@@ -10,6 +10,7 @@
 ///   beams_stress (largest tensile stress, shear stress).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,15 @@ struct Frame {
 /// Lives on rank 0.
 class Fields {
  public:
-  Fields(const std::string& dir, const Lattice& lattice);
+  /// \param keep  number of frames of an earlier fields.h5 to go on after; -1: a new file
+  /// \throws InputError if there are fewer, or the file is not readable
+  Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep = -1);
   void write(const Frame& frame);
 
  private:
+  void set_topology();
   void write_mesh();
+  void cut_back(std::size_t keep);
   void write_bodies(const std::string& group, const Frame& frame);
   void write_beams(const std::string& group, const Frame& frame);
   void write_xmf() const;
@@ -42,9 +47,9 @@ class Fields {
 
   std::string dir_;
   const Lattice& lattice_;
-  Hdf5File file_;
+  std::optional<Hdf5File> file_;
   std::vector<double> times_;
-  std::vector<std::int32_t> body_of_face_;
+  std::vector<std::int32_t> topology_of_faces_, body_of_face_;
   std::size_t points_ = 0, topology_ = 0;
 };
 

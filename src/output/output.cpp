@@ -1,8 +1,10 @@
 #include "floe/output/output.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -12,6 +14,7 @@
 #include "floe/base/options.h"
 #include "output/fields.h"
 #include "output/gather.h"
+#include "output/history.h"
 
 namespace floe {
 namespace {
@@ -53,11 +56,10 @@ struct Output::Impl {
   Gather bodies, beams;
   std::vector<std::int32_t> counted;  ///< local beams that this rank reports
   std::optional<Fields> fields;       ///< rank 0
-  std::ofstream history;              ///< rank 0
-  Sample first, last;
+  std::optional<History> history;     ///< rank 0
+  OutputMemory memory;
   std::optional<State<Spatial>> pending;  ///< accepted, but not in fields.h5
-  bool row_pending = false;               ///< nor is `last` in history.csv
-  double next_history = 0, next_fields = 0;
+  bool header_checked = true;
 
   Impl(const OutputOptions& o, const Model<Spatial>& m)
       : options(o),
@@ -79,13 +81,16 @@ struct Output::Impl {
     return global;
   }
 
+  void open_files(const Lattice& lattice, const std::string& options_yaml, bool restarted);
   Sample sample(const Accepted<Spatial>& accepted) const;
+  void check_header();
   void write_row(const Sample& sample);
   void write_frame(const State<Spatial>& state);
 };
 
 Output::Output(const OutputOptions& options, const Lattice& lattice, const Model<Spatial>& model,
-               const std::vector<PlacedLoad>& loads, const std::string& options_yaml) {
+               const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
+               const OutputMemory* restart) {
   const Timed timed(Event::output);
   make_folder(options.dir, model.part().comm);
   impl_ = std::make_unique<Impl>(options, model);
@@ -104,21 +109,41 @@ Output::Output(const OutputOptions& options, const Lattice& lattice, const Model
     }
     impl_->sets.emplace_back(set.size(), mean);
   }
-  if (rank(model.part().comm) != 0) return;
-  write_lattice(lattice, options.dir + "/lattice.h5");
-  write_whole(options.dir + "/options.yaml", options_yaml);
-  // What an earlier run left would contradict this one until its own is written.
-  for (const char* old : {"/summary.json", "/fields.xmf"})
-    std::filesystem::remove(options.dir + old);
-  impl_->fields.emplace(options.dir, lattice);
-  impl_->history.open(options.dir + "/history.csv");
-  if (!impl_->history) throw std::runtime_error("cannot write " + options.dir + "/history.csv");
+  if (restart != nullptr) {
+    impl_->memory = *restart;
+    impl_->header_checked = false;
+  }
+  std::string verdict;
+  if (rank(model.part().comm) == 0) {
+    try {
+      impl_->open_files(lattice, options_yaml, restart != nullptr);
+    } catch (const InputError& error) {
+      verdict = error.what();
+    }
+  }
+  throw_verdict(verdict, model.part().comm);
+}
+
+void Output::Impl::open_files(const Lattice& lattice, const std::string& options_yaml,
+                              bool restarted) {
+  const std::string& dir = options.dir;
+  if (!restarted) {
+    // What an earlier run left would contradict this one until its own is written.
+    for (const char* old : {"/summary.json", "/fields.xmf", "/checkpoint.h5"})
+      std::filesystem::remove(dir + old);
+    write_lattice(lattice, dir + "/lattice.h5");
+  }
+  history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
+  fields.emplace(dir, lattice, restarted ? memory.frames : -1);
+  if (restarted) std::filesystem::remove(dir + "/summary.json");
+  write_whole(dir + "/options.yaml", options_yaml);
 }
 
 Output::~Output() = default;
 
-const Sample& Output::first() const { return impl_->first; }
-const Sample& Output::last() const { return impl_->last; }
+const OutputMemory& Output::memory() const { return impl_->memory; }
+const Sample& Output::first() const { return impl_->memory.first; }
+const Sample& Output::last() const { return impl_->memory.last; }
 
 Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
   Sample s;
@@ -169,41 +194,57 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
     }
     s.loads[load.name] = sum_over_ranks(mine, part.comm);
   }
-  s.forces = model.report(accepted.state);
+  s.forces = accepted.forces.empty() ? model.report(accepted.state) : accepted.forces;
+  s.forces.insert(s.forces.end(), accepted.columns.begin(), accepted.columns.end());
   return s;
 }
 
-void Output::Impl::write_row(const Sample& s) {
-  if (!history.is_open()) return;
+/// The first line of history.csv: what the columns of a sample are.
+std::string header_of(const Sample& s) {
   constexpr const char* axes[] = {"x", "y", "z"};
-  if (history.tellp() == 0) {
-    history << "time";
-    for (const auto& [name, b] : s.boundaries) {
-      for (const char* what : {"force", "moment", "displacement"}) {
-        for (const char* axis : axes) history << ',' << name << '_' << what << '_' << axis;
-      }
+  std::string line = "time";
+  for (const auto& [name, b] : s.boundaries) {
+    for (const char* what : {"force", "moment", "displacement"}) {
+      for (const char* axis : axes) line += "," + name + "_" + what + "_" + axis;
     }
-    for (const auto& [name, u] : s.loads) {
-      for (const char* axis : axes) history << ',' << name << "_load_displacement_" << axis;
-    }
-    for (const auto& [name, value] : s.forces) history << ',' << name;
-    history << '\n';
   }
+  for (const auto& [name, u] : s.loads) {
+    for (const char* axis : axes) line += "," + name + "_load_displacement_" + axis;
+  }
+  for (const auto& [name, value] : s.forces) line += "," + name;
+  return line + "\n";
+}
+
+/// After a restart: the rows go on in the same columns. Collective.
+void Output::Impl::check_header() {
+  header_checked = true;
+  const bool differs =
+      history && !history->header().empty() && history->header() != header_of(memory.last);
+  throw_verdict(differs ? "checkpoint: restart: this scene's boundaries, loads or forces differ "
+                          "from those of the run that it goes on with"
+                        : "",
+                part.comm);
+}
+
+void Output::Impl::write_row(const Sample& s) {
+  ++memory.rows;
+  if (!history) return;
+  if (history->header().empty()) history->write_header(header_of(s));
   char text[32];
+  std::string line;
   const auto put = [&](double value) {
     std::snprintf(text, sizeof text, ",%.12g", value);
-    history << text;
+    line += text;
   };
   std::snprintf(text, sizeof text, "%.12g", s.time);
-  history << text;
+  line += text;
   for (const auto& [name, b] : s.boundaries) {
     for (const Point3* p : {&b.force, &b.moment, &b.displacement})
       std::for_each(p->begin(), p->end(), put);
   }
   for (const auto& [name, u] : s.loads) std::for_each(u.begin(), u.end(), put);
   for (const auto& [name, value] : s.forces) put(value);
-  history << '\n' << std::flush;
-  if (!history) throw std::runtime_error("cannot write " + options.dir + "/history.csv");
+  history->write(line + "\n");
 }
 
 void Output::Impl::write_frame(const State<Spatial>& state) {
@@ -230,6 +271,7 @@ void Output::Impl::write_frame(const State<Spatial>& state) {
     }
     frame.sections = beams(mine, 6);
   }
+  ++memory.frames;
   if (fields) fields->write(frame);
 }
 
@@ -239,21 +281,24 @@ void Output::accept(const Accepted<Spatial>& accepted) {
   const double time = accepted.state.time;
   constexpr double early =
       1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
-  me.last = me.sample(accepted);
-  if (accepted.step == 0) me.first = me.last;
-  me.row_pending = me.options.history > 0 && time < me.next_history - early * me.options.history;
-  if (!me.row_pending) {
-    me.write_row(me.last);
+  OutputMemory& m = me.memory;
+  m.last = me.sample(accepted);
+  if (accepted.step == 0) m.first = m.last;
+  if (!me.header_checked) me.check_header();
+  m.row_pending = !accepted.last && me.options.history > 0 &&
+                  time < m.next_history - early * me.options.history;
+  if (!m.row_pending) {
+    me.write_row(m.last);
     if (me.options.history > 0)
-      me.next_history = me.options.history * (std::floor(time / me.options.history + early) + 1);
+      m.next_history = me.options.history * (std::floor(time / me.options.history + early) + 1);
   }
-  const bool due = accepted.step == 0 ||
-                   (me.options.fields > 0 && time >= me.next_fields - early * me.options.fields);
+  const bool due = accepted.step == 0 || accepted.last ||
+                   (me.options.fields > 0 && time >= m.next_fields - early * me.options.fields);
   if (due) {
     me.write_frame(accepted.state);
     me.pending.reset();
     if (me.options.fields > 0)
-      me.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
+      m.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
   } else {
     me.pending = accepted.state;
   }
@@ -261,8 +306,8 @@ void Output::accept(const Accepted<Spatial>& accepted) {
 
 void Output::finish() {
   const Timed timed(Event::output);
-  if (impl_->row_pending) impl_->write_row(impl_->last);
-  impl_->row_pending = false;
+  if (impl_->memory.row_pending) impl_->write_row(impl_->memory.last);
+  impl_->memory.row_pending = false;
   if (impl_->pending) impl_->write_frame(*impl_->pending);
   impl_->pending.reset();
 }
@@ -272,7 +317,11 @@ void write_whole(const std::string& path, const std::string& text) {
   {
     std::ofstream file(temporary);
     file << text;
-    if (!file.flush()) throw std::runtime_error("cannot write " + temporary);
+    if (!file.flush()) {
+      const std::string why = std::strerror(errno);
+      std::filesystem::remove(temporary);
+      throw FileError("cannot write " + path + ": " + why);
+    }
   }
   std::filesystem::rename(temporary, path);
 }

@@ -7,6 +7,7 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/forces/buoyancy.h"
+#include "floe/forces/drag.h"
 #include "floe/forces/gravity.h"
 
 namespace floe {
@@ -85,6 +86,46 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   return lattice;
 }
 
+void set_initial(const Scene& scene, Lattice& lattice) {
+  Bodies& bodies = lattice.bodies;
+  for (const Initial& initial : scene.initials) {
+    bodies.velocity.resize(bodies.position.size(), Point3{});
+    bodies.angular_velocity.resize(bodies.position.size(), Point3{});
+    for (const std::int32_t body : lattice.set(initial.set, "initial: " + initial.name + ": set")) {
+      bodies.velocity[static_cast<std::size_t>(body)] = initial.velocity;
+      bodies.angular_velocity[static_cast<std::size_t>(body)] = initial.angular_velocity;
+    }
+  }
+}
+
+std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/checkpoint.h5"; }
+
+RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string& lattice_id,
+                    const Observer<Spatial>& observer, const std::function<void()>& prepare,
+                    const std::function<void(Memory&)>& others) {
+  if (scene.integrator == Integrator::quasistatic)
+    return run_quasistatic(model, {scene.time.end, scene.time.dt}, observer);
+  ExplicitOptions options;
+  options.end = scene.time.end;
+  options.dt = scene.time.dt;
+  options.safety = scene.time.safety;
+  options.allow_unstable = scene.time.allow_unstable;
+  options.velocity_limit = scene.limit.velocity;
+  options.energy_limit = scene.limit.energy_error;
+  options.history = scene.output.history;
+  options.fields = scene.output.fields;
+  options.checkpoint = {checkpoint_file(scene),
+                        scene.checkpoint.every,
+                        scene.checkpoint.at_end,
+                        scene.output.dir + "/STOP",
+                        scene.checkpoint.restart,
+                        lattice_id,
+                        scene.options_yaml,
+                        prepare,
+                        others};
+  return run_explicit(model, options, observer);
+}
+
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) {
   std::vector<PlacedLoad> placed;
   for (const Load& load : scene.loads) {
@@ -104,6 +145,9 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
   if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
   if (scene.forces.buoyancy)
     model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
+  if (scene.forces.drag) model.add_force(make_drag<Spatial>(part, scene.drag));
+  if (scene.added_mass > 0)
+    model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));
   for (const PlacedLoad& load : loads)
     model.add_force(make_load<Spatial>(part, load, scene.beam.kinematics));
 }

@@ -29,15 +29,44 @@ void read_forces(Options& options, Scene& scene) {
   const auto named = [&](std::string_view force) {
     return std::find(forces.begin(), forces.end(), force) != forces.end();
   };
-  scene.forces = {named("beam"), named("gravity"), named("buoyancy")};
+  scene.forces = {named("beam"), named("gravity"), named("buoyancy"), named("drag")};
   if (scene.forces.buoyancy && !scene.forces.gravity)
     throw InputError("forces: buoyancy needs gravity");
+  if (scene.forces.drag && scene.integrator == Integrator::quasistatic)
+    throw InputError(
+        "forces: drag would have no effect: 'integrator' is quasistatic, nothing moves");
   const auto without = [](std::string_view force) {
     return "would have no effect: '" + std::string(force) + "' is not in 'forces'";
   };
   if (!scene.forces.beam) options.refuse("beam", without("beam"));
   if (!scene.forces.gravity) options.refuse("gravity", without("gravity"));
-  if (!scene.forces.buoyancy) options.refuse("water", without("buoyancy"));
+  if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("water", without("buoyancy"));
+  if (!scene.forces.drag) {
+    for (const auto* key : {"water: drag_linear", "water: drag_coefficient", "water: current"})
+      options.refuse(key, without("drag"));
+  }
+}
+
+void read_water(Options& options, Scene& scene) {
+  const bool moves = scene.integrator != Integrator::quasistatic;
+  if (moves) {
+    scene.added_mass = options.number("water: added_mass");
+  } else {
+    options.refuse("water: added_mass", "would have no effect: 'integrator' is quasistatic");
+  }
+  if (scene.forces.drag) {
+    scene.drag.linear = options.number("water: drag_linear");
+    scene.drag.coefficient = options.number("water: drag_coefficient");
+    scene.drag.current = options.numbers<3>("water: current");
+    if (scene.drag.linear == 0 && scene.drag.coefficient == 0)
+      throw InputError("forces: drag needs 'water: drag_linear' or 'water: drag_coefficient' > 0");
+  }
+  if (scene.forces.buoyancy || scene.drag.coefficient > 0 || scene.added_mass > 0) {
+    scene.water_density = options.number("water: density");
+  } else {
+    options.refuse("water: density", "would have no effect on linear drag");
+  }
+  scene.drag.density = scene.water_density;
 }
 
 void read_sheet(Options& options, Scene& scene) {
@@ -173,11 +202,39 @@ Load read_load(Options& options, const std::string& name) {
 
 void read_time(Options& options, Scene& scene) {
   scene.time.end = options.number("time: end");
-  if (!options.given("time: dt")) return;
-  scene.time.dt = options.number("time: dt");
+  scene.time.dt = options.number("time: dt", {}, 0.0);
   if (scene.time.dt > scene.time.end)
     throw InputError("time: dt: " + text_of(scene.time.dt) + " must be <= time: end " +
                      text_of(scene.time.end) + " [s]");
+}
+
+/// What only time integration has a use for.
+void read_dynamics(Options& options, Scene& scene) {
+  if (scene.integrator == Integrator::quasistatic) {
+    constexpr auto why = "would have no effect: 'integrator' is quasistatic";
+    for (const auto* key : {"initial", "limit", "checkpoint", "time: safety",
+                            "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
+      options.refuse(key, why);
+    return;
+  }
+  scene.time.safety = options.number("time: safety");
+  scene.time.allow_unstable = options.flag("time: allow_unstable");
+  scene.checkpoint.every = options.number("checkpoint: every");
+  scene.checkpoint.at_end = options.given_section("checkpoint");
+  scene.limit.velocity = options.number("limit: velocity");
+  scene.limit.energy_error = options.number("limit: energy_error");
+  if (scene.forces.beam) {
+    scene.beam.damping_ratio = options.number("beam: damping_ratio");
+    scene.beam.damping_modes = options.choice<DampingModes>("beam: damping_modes");
+    if (scene.beam.damping_ratio == 0 && options.given("beam: damping_modes"))
+      throw InputError("beam: damping_modes: would have no effect: 'beam: damping_ratio' is 0");
+  }
+  for (const std::string& name : options.names("initial")) {
+    const Initial initial{name, options.text("initial: NAME: set", name),
+                          options.numbers<3>("initial: NAME: velocity", name),
+                          options.numbers<3>("initial: NAME: angular_velocity", name)};
+    scene.initials.push_back(initial);
+  }
 }
 
 void read_report(Options& options, Scene& scene) {
@@ -204,7 +261,7 @@ std::string output_problem(const std::string& dir) {
 
 void read_output(Options& options, Scene& scene) {
   scene.output.dir = options.text("output: dir", {}, "out/" + scene.name);
-  if (options.given("output: history")) scene.output.history = options.number("output: history");
+  scene.output.history = options.number("output: history", {}, 0.0);
   if (options.given("output: fields")) scene.output.fields = options.number("output: fields");
   throw_verdict(rank() == 0 ? output_problem(scene.output.dir) : "", PETSC_COMM_WORLD);
 }
@@ -232,18 +289,21 @@ Scene read_scene(const std::string& path) {
     scene.beam.kinematics = options.choice<Kinematics>("beam: kinematics");
   }
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
-  if (scene.forces.buoyancy) scene.water_density = options.number("water: density");
+  if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   check_floats(scene);
   for (const std::string& name : options.names("boundary"))
     scene.boundaries.push_back(read_boundary(options, name));
   for (const std::string& name : options.names("load"))
     scene.loads.push_back(read_load(options, name));
   read_time(options, scene);
+  read_dynamics(options, scene);
   read_report(options, scene);
   read_output(options, scene);
   scene.check_only = options.flag("check");
+  scene.options_yaml = options.yaml();  // without the restart: it repeats the whole run
+  if (options.given("checkpoint: restart"))
+    scene.checkpoint.restart = options.text("checkpoint: restart");
   options.reject_unread();
-  scene.options_yaml = options.yaml();
   return scene;
 }
 

@@ -104,17 +104,26 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
                   const RunResult& result, const Sample& first, const Sample& last, double wall) {
   Json json;
   std::string text;
-  json["status"] = result.done ? "done" : "failed";
+  json["status"] = result.done ? "done" : result.stopped ? "stopped" : "failed";
   json["message"] = result.message;
   json["bodies"] = model.part().global_bodies;
   json["beams"] = model.part().global_beams;
   json["ranks"] = size();
-  json["integrator"] = "quasistatic";
+  const bool stepped = scene.integrator == Integrator::leapfrog;
+  json["integrator"] = stepped ? "explicit" : "quasistatic";
   json["time"] = last.time;
   json["steps"] = result.steps;
   json["dt"] = result.dt;
-  json["newton_iterations"] = result.newton_iterations;
-  if (result.unstable_modes >= 0) json["stable"] = result.unstable_modes == 0;
+  if (stepped) {
+    json["stable_dt"] = result.stable_dt;
+    json["dt_limited_by"] = result.limited_by;
+    json["ns_per_beam_step"] = 1e9 * wall_seconds(Event::solve) /
+                               std::max(1.0, static_cast<double>(result.steps_now) *
+                                                 static_cast<double>(model.part().global_beams));
+  } else {
+    json["newton_iterations"] = result.newton_iterations;
+    if (result.unstable_modes >= 0) json["stable"] = result.unstable_modes == 0;
+  }
   if (scene.has_sheet) {
     json["seed"] = scene.sheet.seed;
     json["cvt_energy_ratio"] = mesh.energy_ratio;

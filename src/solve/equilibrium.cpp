@@ -211,15 +211,15 @@ void Equilibrium::fill_residual(Vec f) {
     std::fill(share_.values.begin(), share_.values.end(), 0.0);
     force->add(state_, share_);
     for (std::size_t k = 0; k < owned; ++k) {
-      const double value = share_.values[k] * (k % n < 3 ? 1.0 : scale);
+      const double value = share_.at(k) * (k % n < 3 ? 1.0 : scale);
       external2_ += value * value;
-      wrenches_.values[k] += share_.values[k];
+      wrenches_.at(k) += share_.at(k);
     }
   }
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(f, &values));
   for (std::size_t k = 0; k < owned; ++k) {
-    const double value = -wrenches_.values[k] * (k % n < 3 ? 1.0 : scale);
+    const double value = -wrenches_.at(k) * (k % n < 3 ? 1.0 : scale);
     const bool held = (model_.held()[k / n] >> (k % n) & 1U) != 0;
     if (held) external2_ += value * value;
     values[k] = held ? 0.0 : value;
@@ -464,8 +464,7 @@ double Equilibrium::pin_reaction() const {
   double largest = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
     const bool pinned = ((model_.held()[k / n] & ~model_.prescribed()[k / n]) >> (k % n) & 1U) != 0;
-    if (pinned)
-      largest = std::max(largest, std::abs(wrenches_.values[k]) * (k % n < 3 ? 1.0 : scale));
+    if (pinned) largest = std::max(largest, std::abs(wrenches_.at(k)) * (k % n < 3 ? 1.0 : scale));
   }
   double all = 0;
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);

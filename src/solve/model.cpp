@@ -47,7 +47,7 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
 
 template <class Space>
 Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries)
-    : part_(partition(lattice, comm)) {
+    : part_(partition(lattice, comm)), inertial_mass_(part_.bodies.mass) {
   const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
   for (const std::int32_t body : part_.global)
     prescribed_.push_back(all[static_cast<std::size_t>(body)]);
@@ -71,6 +71,11 @@ void Model<Space>::set_beams(std::unique_ptr<BeamForce<Space>> beams, Kinematics
   beams_ = beams.get();
   kinematics_ = kinematics;
   forces_.push_back(std::move(beams));
+}
+
+template <class Space>
+void Model<Space>::add_mass(std::span<const double> added) {
+  for (std::size_t b = 0; b < added.size(); ++b) inertial_mass_[b] += added[b];
 }
 
 template <class Space>

@@ -12,6 +12,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -34,6 +35,12 @@ def last_row(output):
     """Last row of history.csv as {column: number}."""
     with open(output.folder / "history.csv", newline="") as file:
         return {key: float(value) for key, value in list(csv.DictReader(file))[-1].items()}
+
+
+def column(output, name):
+    """One column of history.csv."""
+    with open(output.folder / "history.csv", newline="") as file:
+        return np.array([float(row[name]) for row in csv.DictReader(file)])
 
 
 def force(output, boundaries, component):
@@ -119,10 +126,132 @@ def check_triangles_bulk(test, run):
         test.assertAlmostEqual((x + y) / 4e-3, 0.5, delta=1e-6, msg=shear)
 
 
+def check_heave(test, run):
+    for added in (0, 0.5):
+        output = run("-water_added_mass", str(added))
+        z = np.array([output.field("bodies_displacement", time)[0, 2] for time in output.times])
+        k = np.flatnonzero((z[1:-1] < 0) != (z[2:] < 0)) + 1
+        passages = output.times[k] + (output.times[k + 1] - output.times[k]) * z[k] / (z[k] - z[k + 1])
+        omega = np.pi * (len(passages) - 1) / (passages[-1] - passages[0])
+        expected = 3.281718 / np.sqrt(1 + added)
+        test.assertAlmostEqual(omega / expected, 1, delta=1e-3)
+        test.assertAlmostEqual(np.abs(z).max() / (0.03 / expected), 1, delta=1e-3)
+        test.assertLess(abs(last_row(output)["energy_balance_error"]), 1e-3 * 6.624)
+
+
+def check_drag_decay(test, run):
+    quadratic = ("-water_drag_linear", "0", "-water_drag_coefficient", "1.2")
+    for options, way in (((), 1.630734), (quadratic, 1.959250)):
+        output = run(*options)
+        test.assertAlmostEqual(output.field("bodies_displacement", 4)[0, 0] / way, 1, delta=1e-3)
+        row = last_row(output)
+        test.assertAlmostEqual((row["energy_drag"] + row["energy_kinetic"]) / 7360, 1, delta=1e-5)
+
+
+def check_tension_explicit(test, run):
+    output = run()
+    test.assertAlmostEqual(output.summary["E_over_Eb"] / 0.8337, 1, delta=0.03)
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 1e-3 * energy["boundary"])
+
+
+def check_bending_explicit(test, run):
+    output = run()
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"] / 1.0561, 1, delta=0.01)
+
+
+def check_explicit_bench(test, run):
+    energy = run().summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 1e-6 * energy["boundary"])
+
+
+def check_free_top(test, run):
+    output = run()
+    upright = [np.cos(np.linalg.norm(v)) + (1 - np.cos(np.linalg.norm(v))) * (v[1] / np.linalg.norm(v))**2
+               for v in (output.field("bodies_rotation", t)[0] for t in output.times[1:])]  # R_22
+    test.assertGreater(max(upright), 0.9)
+    test.assertLess(min(upright), -0.9)
+    kinetic = column(output, "energy_kinetic")
+    test.assertLess(np.ptp(kinetic), 1e-6 * kinetic[0])
+
+
+def check_free_flight(test, run):
+    output = run()
+    with h5py.File(output.folder / "lattice.h5") as file:
+        mass = file["bodies/mass"][:]
+    for time in output.times[1:]:
+        centre = mass @ output.field("bodies_displacement", time) / mass.sum()
+        np.testing.assert_allclose(centre, [0, 20 * time * mass[-1] / mass.sum(), 0], atol=1e-9)
+    energy = column(output, "energy_kinetic") + column(output, "energy_strain")
+    test.assertLess(np.ptp(energy), 1e-3 * energy[0])
+
+
+def timoshenko_frequency(young, density, poisson, width, height, length, shear_factor=5 / 6):
+    """First natural frequency [Hz] of a clamped-free Timoshenko beam bending along `height`: the smallest root of the
+    determinant of its four end conditions (Timoshenko 1921; solutions cosh, sinh, cos, sin of the two wave numbers)."""
+    area, inertia = width * height, width * height**3 / 12
+    shear = shear_factor * young / (2 * (1 + poisson)) * area
+
+    def determinant(omega):
+        a, b, c = young * inertia, density * inertia * omega**2, density * area * omega**2
+        # w'''' (EI) + w'' (rho I omega^2 + EI rho A omega^2/kGA) + w (rho I omega^4 rho A/kGA - rho A omega^2) = 0
+        roots = np.roots([a, b + a * c / shear, b * c / shear - c]).astype(complex)
+        waves = [k for root in roots for k in (np.sqrt(root), -np.sqrt(root))]
+        rows = [[1] * 4, [], [], []]
+        for k in waves:
+            psi = k + c / (shear * k)  # rotation over deflection: kGA (w'' - psi') = -rho A omega^2 w
+            rows[1].append(psi)
+            rows[2].append(k * psi * np.exp(k * length))
+            rows[3].append((k - psi) * np.exp(k * length))
+        matrix = np.array(rows)
+        value = np.linalg.det(matrix)
+        return value / np.prod(np.linalg.norm(matrix, axis=0)) * 1j**0
+
+    euler = 3.5160153 / length**2 * np.sqrt(young * inertia / (density * area))
+    grid = np.linspace(0.8, 1.02, 2201) * euler
+    size = np.abs([determinant(omega) for omega in grid])
+    return grid[np.argmin(size)] / (2 * np.pi)
+
+
+def dominant_frequency(values, step):
+    """Frequency [Hz] of the largest peak of a sampled signal (Hann window, parabola through the peak's logarithms)."""
+    spectrum = np.abs(np.fft.rfft(values * np.hanning(len(values))))
+    k = int(np.argmax(spectrum[1:])) + 1
+    left, middle, right = np.log(spectrum[k - 1:k + 2])
+    return (k + 0.5 * (left - right) / (left - 2 * middle + right)) / (len(values) * step)
+
+
+def check_vibrating(test, run):
+    output = run()
+    body = output.sets["tip"][0]
+    tip_motion = np.array([output.field("bodies_displacement", t)[body] for t in output.times])
+    step = output.times[1] - output.times[0]
+    for axis, width, height in ((2, 0.6, 0.4), (1, 0.4, 0.6)):
+        expected = timoshenko_frequency(4e9, 920, 0.3, width, height, 10)
+        test.assertAlmostEqual(dominant_frequency(tip_motion[:, axis], step) / expected, 1, delta=0.005)
+
+
+def check_wave(test, run):
+    output = run()
+    time = output.times[-1]
+    x = output.position[:, 0] - output.position[:, 0].min()
+    u = output.field("bodies_displacement", time)[:, 0]
+    behind = (x > 10) & (x < 100)  # the ramp's foot is at c (t - 0.005), beyond 130 m
+    slope = np.polyfit(x[behind], u[behind], 1)[0]
+    test.assertAlmostEqual(-0.01 / slope / 1773.1, 1, delta=0.01)
+
+
 EXPECTED = {
     "tension.yaml": check_tension,
     "bending.yaml": check_bending,
+    "tension_explicit.yaml": check_tension_explicit,
+    "bending_explicit.yaml": check_bending_explicit,
+    "verify/free_top.yaml": check_free_top,
+    "verify/free_flight.yaml": check_free_flight,
+    "verify/vibrating.yaml": check_vibrating,
+    "verify/wave.yaml": check_wave,
     "bench/largest.yaml": check_largest,
+    "bench/explicit.yaml": check_explicit_bench,
     "verify/bend45.yaml": check_bend45,
     "verify/bend45_softer.yaml": check_bend45_softer,
     "verify/rollup.yaml": check_rollup,
@@ -130,6 +259,8 @@ EXPECTED = {
     "verify/triangles_tension.yaml": check_triangles_tension,
     "verify/triangles_shear.yaml": check_triangles_shear,
     "verify/triangles_bulk.yaml": check_triangles_bulk,
+    "verify/heave.yaml": check_heave,
+    "verify/drag_decay.yaml": check_drag_decay,
 }
 
 

@@ -12,10 +12,13 @@ namespace floe::test {
 
 using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// Six per body, without the padding.
 inline std::vector<double> wrenches_of(const Force<Spatial>& force, const State<Spatial>& state) {
   Wrenches<Spatial> w(state.records.size() / Spatial::record);
   force.add(state, w);
-  return w.values;
+  std::vector<double> values(state.records.size() / Spatial::record * Spatial::unknowns);
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = w.at(k);
+  return values;
 }
 
 /// Sum of the energies that a force reports [J].

@@ -73,8 +73,10 @@ Pair random_linear_pair(Random& random) {
 
 template <class Beam>
 Vector12 wrenches(const BeamConstants<double>& beam, const Pair& p) {
+  const BeamGradient<double> g = Beam::Kernel::gradient(beam, Beam::strains(beam, p.i(), p.j()));
   Vector12 w;
-  Beam::wrenches(beam, p.i(), p.j(), w.data(), w.data() + 6);
+  w << g.force.x, g.force.y, g.force.z, -g.moment_i.x, -g.moment_i.y, -g.moment_i.z, -g.force.x,
+      -g.force.y, -g.force.z, -g.moment_j.x, -g.moment_j.y, -g.moment_j.z;
   return w;
 }
 template <class Beam>

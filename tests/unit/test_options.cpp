@@ -255,6 +255,35 @@ TEST_F(SceneOptions, WhatWouldHaveNoEffectIsAnError) {
                        "beam: shear: would have no effect"));
 }
 
+TEST_F(SceneOptions, DragNeedsMotionAndALaw) {
+  const std::string drag =
+      "integrator: explicit\nforces: [gravity, buoyancy, drag]\nsheet: {length: 40}\n";
+  const Scene s = scene_of(drag +
+                           "water: {density: 1025, drag_linear: 2, drag_coefficient: 3, "
+                           "current: [4, 5, 6], added_mass: 0.7}\n");
+  EXPECT_TRUE(s.forces.drag);
+  EXPECT_EQ(s.drag.linear, 2);
+  EXPECT_EQ(s.drag.coefficient, 3);
+  EXPECT_EQ(s.drag.density, 1025);
+  EXPECT_EQ(s.drag.current, (Point3{4, 5, 6}));
+  EXPECT_EQ(s.added_mass, 0.7);
+  EXPECT_TRUE(contains(scene_error(drag), "water: drag_linear"));
+  EXPECT_TRUE(contains(scene_error("forces: [gravity, buoyancy, drag]\nsheet: {length: 40}\n"
+                                   "water: {drag_linear: 2}\n"),
+                       "quasistatic"));
+  EXPECT_TRUE(contains(error_with("water: {added_mass: 1}\n"), "quasistatic"));
+  const std::string afloat =
+      "integrator: explicit\nforces: [beam, gravity, buoyancy]\nsheet: {length: 40}\n";
+  EXPECT_EQ(scene_error(afloat + "water: {added_mass: 1}\n"), "");
+  for (const auto* key : {"drag_linear: 1", "drag_coefficient: 1", "current: [1, 0, 0]"})
+    EXPECT_TRUE(contains(scene_error(afloat + "water: {" + key + "}\n"), "'drag' is not in"))
+        << key;
+  const std::string alone = "integrator: explicit\nforces: [drag]\nsheet: {length: 40}\n";
+  EXPECT_EQ(scene_error(alone + "water: {drag_linear: 1}\n"), "");
+  EXPECT_EQ(scene_error(alone + "water: {drag_coefficient: 1, density: 1000}\n"), "");
+  EXPECT_NE(scene_error(alone + "water: {drag_linear: 1, density: 1000}\n"), "");
+}
+
 TEST_F(SceneOptions, SectionsOfNamesMustMatchTheirList) {
   EXPECT_TRUE(contains(error_with("region: {names: [r]}\n"), "no such section"));
   EXPECT_TRUE(contains(error_with("region: {names: [r], r: }\n"), "no such section"));

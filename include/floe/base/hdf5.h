@@ -20,8 +20,11 @@ class Hdf5File {
   static Hdf5File create(const std::string& path);
   /// A file that grows and is flushed sample by sample (fields.h5); starts empty.
   static Hdf5File create_growing(const std::string& path);
-  /// An existing file, for reading. \throws InputError if it is missing or is not HDF5.
-  static Hdf5File open(const std::string& path);
+  /// An existing file that goes on growing. \throws FileError if it cannot be opened
+  static Hdf5File open_growing(const std::string& path);
+  /// An existing file, for reading. \param key  the option that named it, for messages
+  /// \throws InputError if it is missing or is not HDF5.
+  static Hdf5File open(const std::string& path, const std::string& key = "lattice_file");
 
   Hdf5File(Hdf5File&& other) noexcept;
   Hdf5File& operator=(Hdf5File&& other) noexcept;
@@ -39,6 +42,14 @@ class Hdf5File {
   void write(const std::string& name, std::span<const float> values, int columns = 1);
   void write(const std::string& name, std::span<const std::int32_t> values, int columns = 1);
   void attribute(const std::string& object, const std::string& name, double value);
+  void write_text(const std::string& name, const std::string& text);
+
+  /// What is written below `group` from here on is not part of the file before publish(), which
+  /// adds it as a whole: a process killed in between leaves the file as it was.
+  void stage(const std::string& group);
+  void publish();
+  /// Copies an object and all below it from another file, under the same name.
+  void copy(const Hdf5File& from, const std::string& name);
 
   bool has(const std::string& name) const;
   /// Names of the members of a group, sorted.
@@ -50,16 +61,22 @@ class Hdf5File {
   /// of columns.
   std::vector<double> read(const std::string& name, int columns = 1) const;
   std::vector<std::int32_t> read_indices(const std::string& name, int columns = 1) const;
+  std::string read_text(const std::string& name) const;
+  double read_attribute(const std::string& object, const std::string& name) const;
 
  private:
-  Hdf5File(std::int64_t id, std::string path, std::string final_path)
-      : id_(id), path_(std::move(path)), final_path_(std::move(final_path)) {}
+  Hdf5File(std::int64_t id, std::string path, std::string final_path, std::string key = {})
+      : id_(id), path_(std::move(path)), final_path_(std::move(final_path)), key_(std::move(key)) {}
+  /// Where an object called `name` is made: in the staged group or in the file.
+  std::pair<std::int64_t, std::string> place(const std::string& name) const;
   void write_any(const std::string& name, const void* values, std::int64_t count, int columns,
                  std::int64_t type);
   void read_any(const std::string& name, int columns, std::int64_t type, void* values) const;
 
   std::int64_t id_ = -1;
-  std::string path_, final_path_;
+  std::string path_, final_path_, key_;
+  std::int64_t staged_ = -1;
+  std::string staged_name_;
 };
 
 }  // namespace floe

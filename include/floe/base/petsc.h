@@ -19,6 +19,13 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A file of the results cannot be written (a full disk, no permission): ends the run on all ranks
+/// with one line and exit code 1. May be raised on one rank alone.
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Throws if a PETSc (or MPI) call failed: InputError if the user asked for what PETSc does not
 /// have, otherwise std::runtime_error, which nobody catches: the terminate handler prints it and
 /// aborts all ranks (unwinding on one rank would run collective destructors and hang).

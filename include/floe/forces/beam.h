@@ -23,9 +23,16 @@ enum class Kinematics {
   linear,        ///< small displacements and rotations: strains are linear in the unknowns
 };
 
+enum class DampingModes {
+  all,    ///< dashpots on all six strains
+  axial,  ///< on the elongation only
+};
+
 struct BeamOptions {
   Shear shear = Shear::one_point;
   Kinematics kinematics = Kinematics::corotational;
+  double damping_ratio = 0;  ///< zeta of each dashpot, c = 2 zeta sqrt(m_s k_s)
+  DampingModes damping_modes = DampingModes::all;
 };
 
 /// The six stiffnesses of a beam: axial, shear (from I_z, from I_y), torsion, bending about axes 2
@@ -37,10 +44,19 @@ struct BeamStiffness {
 /// Stiffness of beam m of `beams` (model.md section 2).
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear);
 
+/// Dashpots of beam m on the six strains, c = 2 zeta sqrt(m_s k_s): m_s is the harmonic mean of the
+/// two bodies' masses for Delta and the shears, of their moments of inertia at rest about the
+/// beam's axis 1, 2, 3 for the rotations (model.md section 8; the harmonic mean keeps the stable
+/// step at large mass ratios).
+BeamStiffness beam_damping(const Part& part, std::int32_t m, const BeamStiffness& stiffness,
+                           const BeamOptions& options);
+
 /// What a beam carries at its middle: N, Q_2, Q_3 [N] and T, M_2, M_3 [N m], in its mean triad.
 using BeamSection = std::array<double, 6>;
 
 /// The beams as a force; knows what each beam carries.
+/// Beams with dashpots (damping_ratio > 0) read velocities too; the power they lost in the last
+/// evaluation is taken over by commit().
 template <class Space>
 class BeamForce : public Force<Space> {
  public:

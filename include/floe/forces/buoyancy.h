@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "floe/forces/force.h"
 
@@ -13,5 +14,9 @@ namespace floe {
 /// \throws InputError if the lattice has no shapes
 template <class Space>
 std::unique_ptr<Force<Space>> make_buoyancy(const Part& part, double weight_density);
+
+/// Mass of the water that each owned body displaces at rest [kg]. \param density  of the water
+/// [kg/m^3] \throws InputError if the lattice has no shapes
+std::vector<double> displaced_mass(const Part& part, double density);
 
 }  // namespace floe

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "floe/base/hdf5.h"
 #include "floe/forces/tangent.h"
+#include "floe/lattice/memory.h"
 #include "floe/lattice/partition.h"
 #include "floe/lattice/state.h"
 
@@ -48,8 +48,7 @@ class Force {
   /// Energies and counts of this rank's share.
   virtual void report(const State<Space>& state, Columns& columns) const = 0;
   /// History to and from a checkpoint; a force without history has nothing to keep.
-  virtual void save(Hdf5File& /*checkpoint*/) const {}
-  virtual void load(const Hdf5File& /*checkpoint*/) {}
+  virtual void remember(Memory& /*checkpoint*/) {}
 };
 
 }  // namespace floe

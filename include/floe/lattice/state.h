@@ -11,14 +11,16 @@
 
 namespace floe {
 
-/// Six unknowns per body. A record of 16 doubles: displacement u, rotation q from rest (w x y z),
-/// velocity v, angular velocity; the last three are padding, so that records never straddle more
-/// cache lines than they must. With linear kinematics q is the linearised quaternion (1, theta/2).
+/// Six unknowns per body. A record of 16 doubles, two cache lines: displacement u, rotation q from
+/// rest (w x y z), velocity v, angular velocity, angular momentum; the last two in world axes. With
+/// linear kinematics q is the linearised quaternion (1, theta/2).
 struct Spatial {
   static constexpr int unknowns = 6;  ///< ux uy uz, rotations about x y z
+  static constexpr int wrench = 8;    ///< doubles per wrench: the unknowns' number, padded
   static constexpr int translations = 3;
   static constexpr int record = 16;
-  static constexpr int displacement = 0, rotation = 3, velocity = 7, angular_velocity = 10;
+  static constexpr int displacement = 0, rotation = 3, velocity = 7, angular_velocity = 10,
+                       angular_momentum = 13;
   static constexpr int rotation_size = 4;
   static void at_rest(double* record) { record[rotation] = 1; }
 };
@@ -27,6 +29,7 @@ struct Spatial {
 /// two of padding.
 struct Planar {
   static constexpr int unknowns = 3;
+  static constexpr int wrench = 4;
   static constexpr int translations = 2;
   static constexpr int record = 8;
   static constexpr int displacement = 0, rotation = 2, velocity = 3, angular_velocity = 5;
@@ -58,14 +61,17 @@ inline Quat<double> rotation(const State<Spatial>& state, std::size_t body) {
 }
 
 /// Force and moment on each local body, in the order of the unknowns [N, N m]; world axes, about
-/// the centroid.
+/// the centroid. Those of ghosts are left unfinished: their owners have them.
 template <class Space>
 struct Wrenches {
   std::vector<double> values;
 
-  explicit Wrenches(std::size_t bodies = 0) : values(bodies * Space::unknowns, 0.0) {}
-  double* of(std::size_t body) { return values.data() + body * Space::unknowns; }
-  const double* of(std::size_t body) const { return values.data() + body * Space::unknowns; }
+  explicit Wrenches(std::size_t bodies = 0) : values(bodies * Space::wrench, 0.0) {}
+  double* of(std::size_t body) { return values.data() + body * Space::wrench; }
+  const double* of(std::size_t body) const { return values.data() + body * Space::wrench; }
+  /// Entry of unknown k, counted through all bodies.
+  double& at(std::size_t k) { return of(k / Space::unknowns)[k % Space::unknowns]; }
+  double at(std::size_t k) const { return of(k / Space::unknowns)[k % Space::unknowns]; }
 };
 
 }  // namespace floe

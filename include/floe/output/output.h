@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "floe/forces/load.h"
+#include "floe/lattice/memory.h"
 #include "floe/solve/integrator.h"
 
 namespace floe {
@@ -36,14 +37,28 @@ struct Sample {
       forces;  ///< energies and counts, as the forces report them
 };
 
+/// What the output of a run takes along over a restart.
+struct OutputMemory {
+  Sample first, last;
+  bool row_pending = false;  ///< `last` is not in history.csv
+  std::int64_t rows = 0;     ///< in history.csv, without its first line
+  std::int64_t frames = 0;   ///< in fields.h5
+  double next_history = 0;   ///< when the next row is due [s]
+  double next_fields = 0;    ///< when the next frame is due [s]
+  void remember(Memory& memory);
+};
+
 /// Takes every accepted state; writes on rank 0. Collective throughout.
 class Output {
  public:
   /// Makes the folder and writes lattice.h5 and options.yaml.
   /// \param lattice  the whole lattice; rank 0 keeps a reference for the fields' geometry
-  /// \throws InputError if the folder cannot be made
+  /// \param restart  what a checkpoint says, or null: the files of that run are cut back to it and
+  /// go on
+  /// \throws InputError if the folder cannot be made, or does not hold the files to go on with
   Output(const OutputOptions& options, const Lattice& lattice, const Model<Spatial>& model,
-         const std::vector<PlacedLoad>& loads, const std::string& options_yaml);
+         const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
+         const OutputMemory* restart = nullptr);
   ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
@@ -51,6 +66,9 @@ class Output {
   void accept(const Accepted<Spatial>& accepted);
   /// Writes the last accepted state if it is not on file yet.
   void finish();
+
+  /// What a checkpoint must know to cut the files back to this moment.
+  const OutputMemory& memory() const;
 
   const Sample& first() const;
   const Sample& last() const;

@@ -5,7 +5,10 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "floe/solve/checkpoint.h"
 #include "floe/solve/model.h"
 
 namespace floe {
@@ -16,15 +19,24 @@ struct Accepted {
   const State<Space>& state;
   const Wrenches<Space>& wrenches;  ///< of all forces, on owned bodies
   std::int64_t step;                ///< 0: the initial state
+  std::vector<std::pair<std::string, double>> columns =
+      {};             ///< what the integrator itself knows (energies)
+  bool last = false;  ///< no other will follow
+  std::vector<std::pair<std::string, double>> forces =
+      {};  ///< what the forces reported then; empty: they can still be asked
 };
 
 /// How a run ended, for summary.json and the exit code.
 struct RunResult {
   bool done = false;
+  bool stopped = false;  ///< on request; a checkpoint has been written
   std::string message;
-  std::int64_t steps = 0;
+  std::int64_t steps = 0;      ///< since time 0
+  std::int64_t steps_now = 0;  ///< explicit: since the start or restart
   std::int64_t newton_iterations = 0;
   double dt = 0;                     ///< last step taken
+  double stable_dt = 0;              ///< explicit: the largest stable step
+  std::string limited_by;            ///< explicit: what limits it
   std::int64_t unstable_modes = -1;  ///< of the last equilibrium; -1: not known
 };
 
@@ -42,6 +54,26 @@ using Observer = std::function<void(const Accepted<Space>&)>;
 /// storage. Collective.
 RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
                           const Observer<Spatial>& observer);
+
+/// What explicit dynamics is told.
+struct ExplicitOptions {
+  double end = 1;
+  double dt = 0;  ///< 0: safety times the stable step
+  double safety = 0.9;
+  bool allow_unstable = false;   ///< take a given dt above the stable step
+  double velocity_limit = 1000;  ///< of any body [m/s]
+  double energy_limit = 0.1;     ///< of the energy balance's error over the energies that move
+  double history = 0;            ///< time between samples [s]; 0: 200 over the run
+  double fields = 0;             ///< further samples, for frames [s]; 0: none
+  CheckpointOptions checkpoint;
+};
+
+/// Newton's equations by PETSc's TS: own type `leapfrog`, velocities half a step behind. Every
+/// sample goes to the observer. Stops, with the last sample as last good state, when a velocity or
+/// the energy balance crosses its limit or a number is not finite. Collective. \throws InputError
+/// for a dt above the stable step, and for options of solvers that explicit dynamics does not use
+RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
+                       const Observer<Spatial>& observer);
 
 /// Sets the static solver up and gives it up again: for -check. \throws InputError for a solver
 /// PETSc does not have

@@ -74,6 +74,11 @@ class Model {
   const BeamForce<Space>* beams() const { return beams_; }
   Kinematics kinematics() const { return kinematics_; }
 
+  /// What resists acceleration, per local body: its mass and that of the water it takes along [kg].
+  const std::vector<double>& inertial_mass() const { return inertial_mass_; }
+  /// Water that owned bodies take along [kg]; what a body weighs stays as it is.
+  void add_mass(std::span<const double> added);
+
   /// All wrenches at a state whose ghosts are up to date.
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const;
 
@@ -91,6 +96,7 @@ class Model {
  private:
   Part part_;
   double length_scale_ = 1;
+  std::vector<double> inertial_mass_;
   std::vector<PlacedBoundary> boundaries_;
   std::vector<std::unique_ptr<Force<Space>>> forces_;
   const BeamForce<Space>* beams_ = nullptr;

@@ -1,0 +1,117 @@
+/// \file
+/// Lanes of doubles: as many as the machine's registers hold, and the transposes between records of
+/// bodies and lanes.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <experimental/simd>
+
+namespace floe {
+
+/// One double per lane (8 with AVX-512, 4 with AVX2, 2 with SSE2).
+using Lanes = std::experimental::native_simd<double>;
+inline constexpr std::size_t lanes = Lanes::size();
+
+inline Lanes load(const double* aligned) { return {aligned, std::experimental::vector_aligned}; }
+
+/// 1 or -1 with the sign of x.
+inline Lanes sign_of(const Lanes& x) {
+  Lanes one(1.0);
+  where(x < 0.0, one) = -1.0;
+  return one;
+}
+template <class T>
+double sign_of(const T& x) {
+  return x < 0.0 ? -1.0 : 1.0;
+}
+
+namespace detail {
+
+using Four [[gnu::vector_size(32)]] = double;
+
+inline Four load_four(const double* p) {
+  Four v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+/// Rows a, b, c, d to columns, in place.
+inline void transpose(Four& a, Four& b, Four& c, Four& d) {
+  const Four ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+             ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+             cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+}  // namespace detail
+
+/// Four consecutive doubles of each of `lanes` records, one record per lane.
+/// \param at  where lane k's four doubles stand
+template <class At, class Lane = Lanes>  // a parameter, so that only the branch taken is compiled
+std::array<Lane, 4> gather_four(At at) {
+  using namespace detail;
+  constexpr std::size_t width = Lane::size();
+  if constexpr (width == 8) {
+    Four a = load_four(at(0)), b = load_four(at(1)), c = load_four(at(2)), d = load_four(at(3));
+    Four e = load_four(at(4)), f = load_four(at(5)), g = load_four(at(6)), h = load_four(at(7));
+    transpose(a, b, c, d);
+    transpose(e, f, g, h);
+    const auto join = [](Four low, Four high) {
+      return std::bit_cast<Lane>(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7));
+    };
+    return {join(a, e), join(b, f), join(c, g), join(d, h)};
+  } else if constexpr (width == 4) {
+    Four a = load_four(at(0)), b = load_four(at(1)), c = load_four(at(2)), d = load_four(at(3));
+    transpose(a, b, c, d);
+    return {std::bit_cast<Lane>(a), std::bit_cast<Lane>(b), std::bit_cast<Lane>(c),
+            std::bit_cast<Lane>(d)};
+  } else {
+    std::array<Lane, 4> out;
+    for (std::size_t k = 0; k < 4; ++k) out[k] = Lane([&](auto lane) { return at(lane)[k]; });
+    return out;
+  }
+}
+
+/// The way back: four doubles per lane, row by row. \param rows  lanes x 4, filled
+template <class Lane>
+void scatter_four(const std::array<Lane, 4>& in, std::array<detail::Four, Lane::size()>& rows) {
+  using namespace detail;
+  constexpr std::size_t width = Lane::size();
+  if constexpr (width == 8) {
+    using Eight [[gnu::vector_size(64)]] = double;
+    std::array<Four, 4> low, high;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Eight v = std::bit_cast<Eight>(in[k]);
+      low[k] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
+      high[k] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    }
+    transpose(low[0], low[1], low[2], low[3]);
+    transpose(high[0], high[1], high[2], high[3]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      rows[k] = low[k];
+      rows[4 + k] = high[k];
+    }
+  } else if constexpr (width == 4) {
+    for (std::size_t k = 0; k < 4; ++k) rows[k] = std::bit_cast<Four>(in[k]);
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+  } else {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      for (std::size_t k = 0; k < 4; ++k) rows[lane][k] = in[k][lane];
+    }
+  }
+}
+
+/// Adds four doubles to memory.
+inline void add_four(double* p, detail::Four v) {
+  v += detail::load_four(p);
+  __builtin_memcpy(p, &v, sizeof v);
+}
+
+}  // namespace floe

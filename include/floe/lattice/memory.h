@@ -1,0 +1,59 @@
+/// \file
+/// What a run takes along over a restart, to and from a checkpoint file.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "floe/base/hdf5.h"
+#include "floe/lattice/partition.h"
+
+namespace floe {
+
+/// One visit serves both ways: what is named is written when saving and set when loading, so that
+/// the two cannot disagree. The file is in global order and says nothing of the ranks but each
+/// one's share of a sum. Collective throughout; rank 0 alone touches the file. What is asked for
+/// while loading and is not in the file raises InputError on all ranks.
+class Memory {
+ public:
+  /// Saves into `file` (rank 0; null elsewhere), or loads from it. \param part  must outlive this
+  Memory(const Part& part, Hdf5File* file, bool loading)
+      : part_(part), file_(file), loading_(loading) {}
+
+  bool loading() const { return loading_; }
+  /// Names that follow are below this group.
+  void enter(const std::string& group) { group_ = group.empty() ? "" : group + "/"; }
+
+  /// A number or numbers that all ranks hold alike.
+  void common(const std::string& name, double& value);
+  void common(const std::string& name, std::int64_t& value);
+  void common(const std::string& name, bool& value);
+  void common(const std::string& name, std::vector<double>& values);
+  void common(const std::string& name, std::string& text);
+
+  /// This rank's share of a sum: given back as it was on the same number of ranks, else rank 0 gets
+  /// the sum.
+  void share(const std::string& name, double& value);
+
+  /// Rows of `width` numbers, one for each of some owned bodies (each on one rank only).
+  /// \param bodies  local indices   \param rows  row-major
+  void rows(const std::string& name, std::span<const std::int32_t> bodies, std::span<double> rows,
+            int width);
+
+ private:
+  void save_rows(const std::string& name, const std::vector<std::int32_t>& global,
+                 std::span<const double> rows, int width);
+  std::vector<double> gathered(std::span<const double> mine) const;
+  /// Numbers of a dataset on all ranks.
+  std::vector<double> read(const std::string& name, int columns = 1);
+  [[noreturn]] void refuse(const std::string& why) const;
+
+  const Part& part_;
+  Hdf5File* file_;
+  bool loading_;
+  std::string group_;
+};
+
+}  // namespace floe

@@ -1,0 +1,164 @@
+#include "floe/lattice/memory.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "floe/base/options.h"
+#include "floe/base/petsc.h"
+
+namespace floe {
+namespace {
+
+/// Collective: lets rank 0 do what may raise InputError, which then is raised on all ranks.
+void on_root(MPI_Comm comm, auto&& work) {
+  std::string verdict;
+  if (rank(comm) == 0) {
+    try {
+      work();
+    } catch (const InputError& error) {
+      verdict = error.what();
+    }
+  }
+  throw_verdict(verdict, comm);
+}
+
+void broadcast(std::vector<double>& values, MPI_Comm comm) {
+  auto count = static_cast<std::int64_t>(values.size());
+  MPI_Bcast(&count, 1, MPI_INT64_T, 0, comm);
+  values.resize(static_cast<std::size_t>(count));
+  constexpr std::int64_t piece = 1 << 28;  // MPI counts in int
+  for (std::int64_t at = 0; at < count; at += piece)
+    MPI_Bcast(values.data() + at, static_cast<int>(std::min(piece, count - at)), MPI_DOUBLE, 0,
+              comm);
+}
+
+}  // namespace
+
+void Memory::refuse(const std::string& why) const {
+  throw InputError("checkpoint: restart: " + why);
+}
+
+std::vector<double> Memory::read(const std::string& name, int columns) {
+  std::vector<double> values;
+  on_root(part_.comm, [&] { values = file_->read(name, columns); });
+  broadcast(values, part_.comm);
+  return values;
+}
+
+void Memory::common(const std::string& name, std::vector<double>& values) {
+  if (loading_) {
+    values = read(group_ + name);
+  } else if (file_ != nullptr) {
+    file_->write(group_ + name, values);
+  }
+}
+
+void Memory::common(const std::string& name, double& value) {
+  std::vector<double> one{value};
+  common(name, one);
+  if (one.size() != 1) refuse(group_ + name + " must be one number");
+  value = one[0];
+}
+
+void Memory::common(const std::string& name, std::int64_t& value) {
+  auto number = static_cast<double>(value);  // exact below 2^53
+  common(name, number);
+  value = static_cast<std::int64_t>(number);
+}
+
+void Memory::common(const std::string& name, bool& value) {
+  double number = value ? 1 : 0;
+  common(name, number);
+  value = number != 0;
+}
+
+void Memory::common(const std::string& name, std::string& text) {
+  if (!loading_) {
+    if (file_ != nullptr) file_->write_text(group_ + name, text);
+    return;
+  }
+  on_root(part_.comm, [&] { text = file_->read_text(group_ + name); });
+  auto size = static_cast<std::int64_t>(text.size());
+  MPI_Bcast(&size, 1, MPI_INT64_T, 0, part_.comm);
+  text.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, part_.comm);
+}
+
+void Memory::share(const std::string& name, double& value) {
+  const auto ranks = static_cast<std::size_t>(size(part_.comm));
+  const int me = rank(part_.comm);
+  if (!loading_) {
+    const std::vector<double> all = gathered({&value, 1});
+    if (file_ != nullptr) file_->write(group_ + name, all);
+    return;
+  }
+  const std::vector<double> all = read(group_ + name);
+  if (all.size() == ranks) {
+    value = all[static_cast<std::size_t>(me)];
+  } else {
+    value = me == 0 ? std::accumulate(all.begin(), all.end(), 0.0) : 0.0;
+  }
+}
+
+/// Rank after rank, on rank 0.
+std::vector<double> Memory::gathered(std::span<const double> mine) const {
+  const auto ranks = static_cast<std::size_t>(size(part_.comm));
+  const int count = static_cast<int>(mine.size());
+  std::vector<int> counts(ranks), offsets(ranks, 0);
+  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, part_.comm);
+  for (std::size_t r = 1; r < ranks; ++r) offsets[r] = offsets[r - 1] + counts[r - 1];
+  std::vector<double> all(
+      static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0)));
+  MPI_Gatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE,
+              0, part_.comm);
+  return all;
+}
+
+void Memory::rows(const std::string& name, std::span<const std::int32_t> bodies,
+                  std::span<double> rows, int width) {
+  std::vector<std::int32_t> global;
+  global.reserve(bodies.size());
+  for (const std::int32_t b : bodies) global.push_back(part_.global[static_cast<std::size_t>(b)]);
+  if (!loading_) {
+    save_rows(name, global, rows, width);
+    return;
+  }
+  const auto w = static_cast<std::size_t>(width);
+  const std::vector<double> listed = read(group_ + name + "_bodies"),
+                            values = read(group_ + name, width);
+  bool all_there = values.size() == listed.size() * w;
+  for (std::size_t k = 0; k < global.size() && all_there; ++k) {
+    const auto at = static_cast<std::size_t>(
+        std::lower_bound(listed.begin(), listed.end(), static_cast<double>(global[k])) -
+        listed.begin());
+    all_there = at < listed.size() && listed[at] == static_cast<double>(global[k]);
+    if (all_there) std::copy_n(&values[at * w], w, &rows[k * w]);
+  }
+  int mine = all_there ? 1 : 0, all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, part_.comm);
+  if (all == 0) refuse(group_ + name + " is of other bodies than this scene's");
+}
+
+void Memory::save_rows(const std::string& name, const std::vector<std::int32_t>& global,
+                       std::span<const double> rows, int width) {
+  const auto w = static_cast<std::size_t>(width);
+  const std::vector<double> mine(global.begin(), global.end());
+  const std::vector<double> bodies = gathered(mine), values = gathered(rows);
+  if (file_ == nullptr) return;
+  std::vector<std::size_t> order(bodies.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return bodies[a] < bodies[b]; });
+  std::vector<std::int32_t> sorted;
+  std::vector<double> ordered;
+  sorted.reserve(order.size());
+  ordered.reserve(values.size());
+  for (const std::size_t k : order) {
+    sorted.push_back(static_cast<std::int32_t>(bodies[k]));
+    ordered.insert(ordered.end(), &values[k * w], &values[k * w] + w);
+  }
+  file_->write(group_ + name + "_bodies", sorted);
+  file_->write(group_ + name, ordered, width);
+}
+
+}  // namespace floe

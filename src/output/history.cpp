@@ -1,0 +1,59 @@
+#include "output/history.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "floe/base/petsc.h"
+
+namespace floe {
+
+History::History(const std::string& path, std::int64_t keep) : path_(path) {
+  if (keep > 0) {
+    std::ifstream old(path);
+    std::string line;
+    std::int64_t rows = -1;                                         // the first line is not a row
+    while (rows < keep && std::getline(old, line) && !old.eof()) {  // eof: no newline, torn
+      size_ += static_cast<std::int64_t>(line.size()) + 1;
+      if (++rows == 0) header_ = line + "\n";
+    }
+    if (rows < keep)
+      throw InputError("checkpoint: restart: '" + path + "' has " +
+                       std::to_string(std::max<std::int64_t>(rows, 0)) +
+                       " rows, the checkpoint knows of " + std::to_string(keep) +
+                       ": a run goes on in the folder where it began");
+  }
+  file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (file_ < 0 || ::ftruncate(file_, size_) != 0 || ::lseek(file_, size_, SEEK_SET) < 0)
+    throw FileError("cannot write " + path + ": " + std::strerror(errno));
+}
+
+History::~History() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void History::write_header(const std::string& line) {
+  write(line);
+  header_ = line;
+}
+
+void History::write(const std::string& line) {
+  const auto wanted = static_cast<::ssize_t>(line.size());
+  ::ssize_t done = ::write(file_, line.data(), line.size());
+  if (done >= 0 && done < wanted) {  // the disk is full: what is left over says so
+    const ::ssize_t rest =
+        ::write(file_, line.data() + done, line.size() - static_cast<std::size_t>(done));
+    done = rest < 0 ? -1 : done + rest;
+  }
+  if (done != wanted) {
+    const std::string why = std::strerror(done < 0 ? errno : ENOSPC);
+    if (::ftruncate(file_, size_) != 0) size_ = -1;
+    throw FileError("cannot write " + path_ + ": " + why);
+  }
+  size_ += wanted;
+}
+
+}  // namespace floe

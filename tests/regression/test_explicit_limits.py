@@ -1,0 +1,124 @@
+#!/usr/bin/python3
+"""Explicit runs that must not go on: a step above the stable one, a run that blows up, options of solvers.
+
+Each runs in a temporary folder of its own, as a user would run it, at 1 and at 2 ranks.
+"""
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+
+SECONDS = 120
+ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+PULL = """integrator: explicit
+forces: [beam]
+sheet: {length: 10, thickness: 0.5, element_size: 1.5, iterations: 10}
+boundary:
+  names: [left, right]
+  left: {set: left, fix: x}
+  right: {set: right, fix: x, velocity: [0.1, 0, 0]}
+time: {end: 0.01}
+"""
+
+
+class Run:
+    """One run: `code`, `error` (standard error without warnings), `summary` or None."""
+
+    def __init__(self, scene, *words, ranks=1):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "s.yaml").write_text(scene)
+            command = [str(FLOE), "s.yaml", *words]
+            if ranks > 1:
+                command = ["mpiexec", "-q", "-n", str(ranks), *command]
+            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=SECONDS,
+                                  env={**os.environ, **ENVIRONMENT})
+            self.code, self.error = done.returncode, done.stderr
+            summary = Path(folder, "out/s/summary.json")
+            self.summary = json.loads(summary.read_text()) if summary.exists() else None
+            self.has_folder = Path(folder, "out").exists()
+
+
+class ExplicitLimits(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        run = Run(PULL)
+        assert run.code == 0, run.error
+        cls.stable = run.summary["stable_dt"]
+        cls.good = run.summary
+
+    def test_auto_is_the_stable_step_times_safety(self):
+        self.assertLessEqual(self.good["dt"], 0.9 * self.stable)
+        self.assertGreater(self.good["dt"], 0.85 * self.stable)
+        self.assertAlmostEqual(self.good["dt"] * self.good["steps"], 0.01, delta=1e-12)
+
+    def test_a_step_above_the_stable_one_is_refused(self):
+        for ranks in (1, 2):
+            run = Run(PULL, "-time_dt", repr(1.01 * self.stable), ranks=ranks)
+            self.assertEqual(run.code, 2, run.error)
+            self.assertFalse(run.has_folder)
+            lines = run.error.strip().splitlines()
+            self.assertEqual(len(lines), 1, run.error)
+            for word in ("time: dt", "stable step", "body", "allow_unstable"):
+                self.assertIn(word, lines[0])
+            number = float(re.search(r"must be <= (\S+)", lines[0])[1])
+            self.assertAlmostEqual(number / self.stable, 1, delta=1e-4)
+
+    def test_a_step_just_below_it_is_taken(self):
+        run = Run(PULL, "-time_dt", repr(0.99 * self.stable), "-beam_damping_ratio", "0")
+        self.assertEqual(run.code, 0, run.error)
+
+    def test_a_run_that_blows_up_stops_and_says_where(self):
+        for ranks in (1, 2):
+            run = Run(PULL, "-time_dt", repr(1.05 * self.stable), "-time_allow_unstable", "-time_end", "0.5",
+                      ranks=ranks)
+            self.assertEqual(run.code, 1, run.error)
+            last = [line for line in run.error.splitlines() if line.startswith("floe: ")][-1]
+            self.assertRegex(last, r"at time \S+ s")
+            self.assertRegex(last, r"limit: (velocity|energy_error)")
+            if "limit: velocity" in last:
+                self.assertRegex(last, r"body \d+ at \(")
+            self.assertNotEqual(run.summary["status"], "done")
+            self.assertIn(run.summary["message"], last)
+            self.assertLess(run.summary["steps"] * run.summary["dt"], 0.5)
+
+    def test_a_number_that_is_not_finite_stops_it(self):
+        # Too wide a limit to stop a velocity before it is infinite.
+        run = Run(PULL, "-time_dt", repr(3 * self.stable), "-time_allow_unstable", "-time_end", "0.5",
+                  "-limit_velocity", "1e300", "-limit_energy_error", "1e300", "-output_history", "0.5")
+        self.assertEqual(run.code, 1, run.error)
+        self.assertRegex(run.error, r"not finite at time \S+ s, body \d+ at \(")
+
+    def test_a_limit_of_the_user_stops_it(self):
+        run = Run(PULL, "-limit_velocity", "0.05")
+        self.assertEqual(run.code, 1, run.error)
+        self.assertIn("limit: velocity 0.05 m/s", run.error)
+
+    def test_options_of_solvers_are_refused(self):
+        for option in ("-snes_rtol", "-ksp_type", "-pc_type", "-mat_type"):
+            run = Run(PULL, option, "1")
+            self.assertEqual(run.code, 2, option + run.error)
+            self.assertIn(option[1:], run.error)
+            self.assertIn("explicit", run.error)
+            self.assertFalse(run.has_folder)
+
+    def test_types_of_petsc_that_cannot_step_this_are_refused(self):
+        for kind, reason in (("basicsymplectic", "angular momentum"), ("beuler", "implicit"),
+                             ("alpha2", "implicit"), ("euler", "unstable"), ("nonsense", "leapfrog")):
+            run = Run(PULL, "-ts_type", kind)
+            self.assertEqual(run.code, 2, kind + run.error)
+            self.assertIn(kind, run.error)
+            self.assertIn(reason, run.error)
+            self.assertFalse(run.has_folder)
+
+
+if __name__ == "__main__":
+    unittest.main()

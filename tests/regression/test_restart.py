@@ -1,0 +1,355 @@
+#!/usr/bin/python3
+"""Checkpoint and restart: a run that was interrupted and went on equals the run that was not.
+
+By the STOP file, by SIGTERM, by kill -9 at random moments; on 1 and 2 ranks, bit for bit on the same number, to 1e-9
+on another. And what a restart refuses, and what a full disk does. FLOE_FULL=1 kills 20 times instead of 4.
+"""
+import csv
+import json
+import os
+import random
+import resource
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+FULL = os.environ.get("FLOE_FULL") == "1"
+
+# Damping loss, load work, boundary work and the water's forces all have a history or energies of their own. Rows
+# of history.csv and frames are due at different steps.
+SCENE = """integrator: explicit
+forces: [beam, gravity, buoyancy, drag]
+water: {drag_linear: 1e4}
+sheet: {length: 20, element_size: 2, iterations: 20}
+beam: {damping_ratio: 0.2}
+boundary:
+  names: [left, right]
+  left: {set: left, fix: x}
+  right: {set: right, fix: x, velocity: [0.01, 0, 0]}
+load: {names: [p], p: {point: [1, 1], force: [0, 0, -1e5], moment: [0, 1e4, 0], ramp: 0.1}}
+time: {end: 10}
+output: {history: 0.041, fields: 0.37}
+checkpoint: {every: 1000}
+"""
+INTERRUPTED = 3
+TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s", "output_s",
+         "peak_memory_mb", "ns_per_beam_step"}
+
+
+def contents(path):
+    """Every dataset and attribute of an HDF5 file."""
+    found = {}
+
+    def visit(name, item):
+        for key, value in item.attrs.items():
+            found[name + "@" + key] = value
+        if isinstance(item, h5py.Dataset):
+            found[name] = item[()]
+    with h5py.File(path) as file:
+        file.visititems(visit)
+    return found
+
+
+class RestartTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        (self.folder / "scene.yaml").write_text(SCENE)
+
+    def begin(self, *options, dir="out/scene", ranks=1, **how):
+        """A started process."""
+        mpi = ["mpiexec", "-q", "-n", str(ranks)] if ranks > 1 else []
+        return subprocess.Popen([*mpi, str(FLOE), "scene.yaml", *options, "-output_dir", dir], cwd=self.folder,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                env={**os.environ, **ENVIRONMENT}, **how)
+
+    def finish(self, process, code=0):
+        """What a process that must end with `code` said on its standard error."""
+        out, err = process.communicate(timeout=300)
+        self.assertEqual(process.returncode, code, out + err)
+        return err
+
+    def run_whole(self, *options, **how):
+        self.finish(self.begin(*options, **how))
+        return self.folder / how.get("dir", "out/scene")
+
+    def interrupted(self, interrupt, *options, dir="b", ranks=1):
+        """A run that `interrupt(process, folder)` stops once its history has some rows."""
+        process = self.begin(*options, dir=dir, ranks=ranks)
+        self.wait_for_rows(process, self.folder / dir, 20)
+        interrupt(process, self.folder / dir)
+        return process
+
+    def wait_for_rows(self, process, folder, rows):
+        history = folder / "history.csv"
+        while process.poll() is None and not (history.exists() and history.read_text().count("\n") > rows):
+            time.sleep(0.002)
+        self.assertIsNone(process.poll(), "the run ended before it could be interrupted")
+
+    def go_on(self, *options, dir="b", ranks=1):
+        return self.run_whole("-checkpoint_restart", f"{dir}/checkpoint.h5", *options, dir=dir, ranks=ranks)
+
+    def assert_same(self, a, b):
+        """Two folders hold the same run, bit for bit."""
+        self.assertEqual((a / "history.csv").read_text(), (b / "history.csv").read_text())
+        self.assertEqual((a / "fields.xmf").read_text(), (b / "fields.xmf").read_text())
+        for name in ("fields.h5", "checkpoint.h5", "lattice.h5"):
+            first, second = contents(a / name), contents(b / name)
+            self.assertEqual(set(first), set(second), name)
+            for key in set(first) - {"options"}:
+                np.testing.assert_array_equal(first[key], second[key], f"{name}: {key}")
+        one, two = (json.loads((f / "summary.json").read_text()) for f in (a, b))
+        self.assertEqual({k: v for k, v in one.items() if k not in TIMES},
+                         {k: v for k, v in two.items() if k not in TIMES})
+        options = [(f / "options.yaml").read_text().replace(f"dir: {f.name}", "") for f in (a, b)]
+        self.assertEqual(*options)
+
+
+def stop_file(process, folder):
+    (folder / "STOP").touch()
+
+
+def terminate(process, folder):
+    process.send_signal(signal.SIGTERM)
+
+
+def interrupt(process, folder):
+    process.send_signal(signal.SIGINT)
+
+
+class Stopped(RestartTest):
+    def check(self, how, ranks):
+        straight = self.run_whole(dir="a", ranks=ranks)
+        process = self.interrupted(how, ranks=ranks)
+        said = self.finish(process, INTERRUPTED)
+        self.assertIn("go on with: floe scene.yaml -checkpoint_restart b/checkpoint.h5", said)
+        self.assertFalse((self.folder / "b/STOP").exists())
+        summary = json.loads((self.folder / "b/summary.json").read_text())
+        self.assertEqual(summary["status"], "stopped")
+        self.assertLess(summary["time"], 10)
+        self.assert_same(straight, self.go_on(ranks=ranks))
+
+    def test_by_file(self):
+        self.check(stop_file, 1)
+
+    def test_by_file_on_two_ranks(self):
+        self.check(stop_file, 2)
+
+    def test_by_sigterm(self):
+        self.check(terminate, 1)
+
+    def test_by_sigint(self):
+        self.check(interrupt, 1)
+
+    def test_twice(self):
+        straight = self.run_whole(dir="a")
+        self.finish(self.interrupted(stop_file), INTERRUPTED)
+        process = self.begin("-checkpoint_restart", "b/checkpoint.h5", dir="b")
+        self.wait_for_rows(process, self.folder / "b", 80)
+        terminate(process, self.folder / "b")
+        self.finish(process, INTERRUPTED)
+        self.assert_same(straight, self.go_on())
+
+    def test_on_another_number_of_ranks(self):
+        straight = self.run_whole(dir="a")
+        for before, after in ((1, 2), (2, 1), (2, 3)):
+            dir = f"b{before}{after}"
+            self.finish(self.interrupted(stop_file, dir=dir, ranks=before), INTERRUPTED)
+            b = self.go_on(dir=dir, ranks=after)
+            first, second = contents(straight / "fields.h5"), contents(b / "fields.h5")
+            self.assertEqual(set(first), set(second))
+            for key, values in first.items():
+                scale = np.max(np.abs(values)) if np.size(values) else 0
+                np.testing.assert_allclose(second[key], values, rtol=1e-9, atol=1e-9 * scale, err_msg=key)
+            tables = [np.loadtxt(f / "history.csv", delimiter=",", skiprows=1) for f in (straight, b)]
+            names = (b / "history.csv").read_text().split("\n")[0].split(",")
+            for name, one, two in zip(names, tables[0].T, tables[1].T):
+                energies = max(np.max(np.abs(c)) for n, c in zip(names, tables[0].T) if n.startswith("energy"))
+                scale = energies if name.startswith("energy") else np.max(np.abs(one))
+                np.testing.assert_allclose(two, one, rtol=1e-9, atol=1e-9 * max(scale, 1), err_msg=name)
+
+
+class GoingOn(RestartTest):
+    def test_end_may_be_later(self):
+        folder = self.run_whole("-time_end", "1", dir="b")
+        before = json.loads((folder / "summary.json").read_text())
+        rows = (folder / "history.csv").read_text()
+        self.go_on("-time_end", "2")
+        after = json.loads((folder / "summary.json").read_text())
+        self.assertEqual(after["dt"], before["dt"])
+        self.assertEqual(after["steps"], 2 * before["steps"])
+        self.assertAlmostEqual(after["time"], 2, 9)
+        self.assertTrue((folder / "history.csv").read_text().startswith(rows))
+        self.assertLess(abs(after["energy"]["balance_error"]), 1e-3 * after["energy"]["strain"])
+
+    def test_a_finished_run_changes_nothing(self):
+        a, b = (self.run_whole("-time_end", "1", dir=d) for d in "ab")
+        self.go_on("-time_end", "1")
+        self.assert_same(a, b)
+
+    def test_without_section_no_checkpoint_is_left(self):
+        (self.folder / "scene.yaml").write_text(SCENE.replace("checkpoint: {every: 1000}\n", ""))
+        folder = self.run_whole("-time_end", "1")
+        self.assertFalse((folder / "checkpoint.h5").exists())
+
+    def test_by_the_clock(self):
+        process = self.begin("-checkpoint_every", "0.01", dir="b")
+        self.wait_for_rows(process, self.folder / "b", 150)
+        self.assertTrue((self.folder / "b/checkpoint.h5").exists())
+        self.finish(process)
+
+
+class Refused(RestartTest):
+    def refused(self, *options, dir="b"):
+        """The line that a restart is refused with; nothing in the folder has changed."""
+        folder = self.folder / dir
+        before = {p.name: p.read_bytes() for p in folder.iterdir()} if folder.exists() else None
+        said = self.finish(self.begin(*options, dir=dir), 2)
+        self.assertEqual(said.count("\n"), 1, said)
+        after = {p.name: p.read_bytes() for p in folder.iterdir()} if folder.exists() else None
+        self.assertEqual(before, after)
+        return said
+
+    def setUp(self):
+        super().setUp()
+        self.run_whole("-time_end", "1", dir="b")
+
+    def test_no_checkpoint(self):
+        self.assertIn("'nowhere.h5' does not exist", self.refused("-checkpoint_restart", "nowhere.h5"))
+        self.assertIn("is not an HDF5 file", self.refused("-checkpoint_restart", "scene.yaml"))
+        self.assertIn("layout is missing", self.refused("-checkpoint_restart", "b/lattice.h5"))
+
+    def test_another_lattice(self):
+        for change in (("-sheet_seed", "2"), ("-sheet_length", "22"), ("-ice_young", "5e9")):
+            said = self.refused("-checkpoint_restart", "b/checkpoint.h5", *change)
+            self.assertIn("is of another lattice", said)
+
+    def test_other_forces(self):
+        said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,gravity", "-time_end", "2")
+        self.assertIn("checkpoint: restart", said)
+
+    def test_an_end_before_it(self):
+        said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-time_end", "0.5")
+        self.assertIn("time: end: 0.5 must be >= 1", said)
+
+    def test_a_folder_without_its_files(self):
+        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", "-time_end", "2", dir="c"), 2)
+        self.assertIn("a run goes on in the folder where it began", said)
+
+    def test_quasistatic(self):
+        said = self.refused("-integrator", "quasistatic", "-checkpoint_every", "3")
+        self.assertIn("integrator' is quasistatic", said)
+
+
+class Killed(RestartTest):
+    def test_at_random_moments(self):
+        """kill -9: every file is readable, rows and frames are whole, and going on gives the straight run."""
+        for ranks in (1, 2):
+            options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", "-time_end", "20" if FULL else "10"]
+            began = time.monotonic()
+            straight = self.run_whole(*options, dir=f"a{ranks}", ranks=ranks)
+            duration = time.monotonic() - began
+            chance = random.Random(ranks)
+            restarts, start = 0, True
+            dir = f"b{ranks}"
+            folder = self.folder / dir
+            for kill in range(20 if FULL else 4):
+                resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
+                process = self.begin(*options, *resume, dir=dir, ranks=ranks)
+                try:
+                    process.communicate(timeout=chance.uniform(0.15, 0.6) * duration)
+                    self.assertEqual(process.returncode, 0)
+                    restarts, start = restarts + (not start), True  # it ended before the kill: from the start again
+                    self.assert_same(straight, folder)
+                    for name in ("checkpoint.h5", "history.csv", "fields.h5", "fields.xmf"):
+                        (folder / name).unlink()
+                    continue
+                except subprocess.TimeoutExpired:
+                    self.kill(process, ranks)
+                self.check_files(folder)
+                start = not (folder / "checkpoint.h5").exists()
+                restarts += not start
+            resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
+            self.run_whole(*options, *resume, dir=dir, ranks=ranks)
+            self.assertGreater(restarts, 0)
+            self.assert_same(straight, folder)
+
+    def kill(self, process, ranks):
+        """SIGKILL to every rank; with several they are mpiexec's children, and it ends once they have."""
+        victims = [process.pid]
+        if ranks > 1:
+            children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+            victims = [int(child) for child in children] or victims
+        for victim in victims:
+            os.kill(victim, signal.SIGKILL)
+        process.communicate()
+
+    def check_files(self, folder):
+        if not folder.exists():
+            return
+        rows = (folder / "history.csv").read_text() if (folder / "history.csv").exists() else ""
+        self.assertTrue(rows == "" or rows.endswith("\n"))
+        table = list(csv.reader(rows.splitlines()))
+        self.assertLessEqual({len(row) for row in table}, {len(table[0])} if table else set())
+        for name in ("fields.h5", "checkpoint.h5"):
+            if (folder / name).exists():
+                found = contents(folder / name)
+                if name == "fields.h5" and (folder / "fields.xmf").exists():
+                    named = (folder / "fields.xmf").read_text().count("<Time ")
+                    self.assertGreaterEqual(sum(key.endswith("@time") for key in found), named)
+
+
+class DiskFull(RestartTest):
+    def limited(self, size, *options):
+        """A run whose files cannot grow beyond `size(folder)` bytes once it has some rows; what it says."""
+        history = self.folder / "b/history.csv"
+        rows = history.read_text().count("\n") if history.exists() else 0
+        process = self.begin(*options, dir="b")
+        self.wait_for_rows(process, self.folder / "b", rows + 20)
+        limit = size(self.folder / "b")
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (limit, limit))
+        (self.folder / "b/STOP").touch()  # a last checkpoint, if nothing else fails before
+        said = self.finish(process, 1)
+        self.assertIn("floe: cannot write", said)
+        self.assertIn("File too large", said)
+        self.assertNotIn("internal", said)
+        self.assertEqual(list((self.folder / "b").glob("*.part")), [])
+        return said
+
+    def test_fields(self):
+        said = self.limited(lambda folder: (folder / "fields.h5").stat().st_size, "-output_fields", "0.001")
+        self.assertIn("fields.h5", said)
+        self.assertGreater(sum(key.endswith("@time") for key in contents(self.folder / "b/fields.h5")), 1)
+
+    def test_checkpoint(self):
+        """The checkpoint does not fit; an earlier one stays as it was, and the run can go on from it."""
+        straight = self.run_whole("-output_fields", "20", dir="a")
+        self.finish(self.interrupted(stop_file, "-output_fields", "20"), INTERRUPTED)
+        before = (self.folder / "b/checkpoint.h5").read_bytes()
+        said = self.limited(lambda folder: len(before) - 3000, "-output_fields", "20",
+                            "-checkpoint_restart", "b/checkpoint.h5")
+        self.assertIn("checkpoint.h5", said)
+        self.assertEqual((self.folder / "b/checkpoint.h5").read_bytes(), before)
+        self.assert_same(straight, self.go_on("-output_fields", "20"))
+
+    def test_history(self):
+        said = self.limited(lambda folder: (folder / "history.csv").stat().st_size + 100, "-output_history", "0.001",
+                            "-output_fields", "20")
+        self.assertIn("history.csv", said)
+        self.assertTrue((self.folder / "b/history.csv").read_text().endswith("\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()

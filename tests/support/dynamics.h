@@ -1,0 +1,92 @@
+/// \file
+/// A lattice in motion, stepped from outside: what run_explicit does, without samples and limits.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "floe/build.h"
+#include "solve/motion.h"
+#include "support/frames.h"
+
+namespace floe::test {
+
+/// Between steps the wrenches are those of the state: positions at t_n, velocities at t_n - dt/2.
+class Dynamics {
+ public:
+  Dynamics(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
+      : model_(lattice, comm, scene.boundaries), motion_(model_) {
+    add_forces(scene, place_loads(scene, lattice), model_);
+    const auto local = static_cast<std::size_t>(model_.part().local);
+    state_ = State<Spatial>(local);
+    wrenches_ = Wrenches<Spatial>(local);
+    motion_.start(state_, model_.part().bodies.velocity, model_.part().bodies.angular_velocity);
+    evaluate();
+  }
+  Dynamics(const Dynamics&) = delete;
+  Dynamics& operator=(const Dynamics&) = delete;
+
+  /// To be called once, before the first step.
+  void set_step(double dt) {
+    dt_ = dt;
+    motion_.stagger(state_, wrenches_, dt_);
+    evaluate();
+  }
+  /// Returns the square of the largest speed [m^2/s^2].
+  double step() {
+    const double largest = motion_.step(state_, wrenches_, dt_);
+    for (const auto& force : model_.forces()) force->commit(state_, dt_);
+    evaluate();
+    return largest;
+  }
+  void steps(long count) {
+    for (long n = 0; n < count; ++n) (void)step();
+  }
+
+  Model<Spatial>& model() { return model_; }
+  State<Spatial>& state() { return state_; }
+  const Wrenches<Spatial>& wrenches() const { return wrenches_; }
+  const Motion& motion() const { return motion_; }
+  void evaluate() {
+    model_.part().ghosts.update(state_.records, Spatial::record);
+    model_.evaluate(state_, wrenches_);
+  }
+
+  double kinetic() const { return motion_.energies(state_, wrenches_, dt_).kinetic; }
+  std::array<double, 6> momentum() const { return motion_.momentum(state_, wrenches_, dt_); }
+  double reported(const std::string& name) const {
+    for (const auto& [column, value] : model_.report(state_)) {
+      if (column == name) return value;
+    }
+    return 0;
+  }
+
+ private:
+  Model<Spatial> model_;
+  Motion motion_;
+  State<Spatial> state_;
+  Wrenches<Spatial> wrenches_;
+  double dt_ = 0;
+};
+
+/// Gives a frame of equal beams the masses of its material: half beams to either end, rotary
+/// inertias of its section (about axis 1 the polar one). Beams lie along x, axis 2 along y.
+inline void give_mass(Lattice& frame, const FrameSection& section, double density) {
+  Bodies& bodies = frame.bodies;
+  std::vector<double> tributary(bodies.position.size(), 0);
+  for (std::size_t m = 0; m < frame.beams.bodies.size(); ++m) {
+    for (const std::int32_t b : frame.beams.bodies[m])
+      tributary[static_cast<std::size_t>(b)] += 0.5 * frame.beams.length[m];
+  }
+  for (std::size_t b = 0; b < tributary.size(); ++b) {
+    const double line = density * tributary[b];
+    bodies.mass[b] = line * section.area;
+    bodies.inertia[b] = {line * (section.inertia_y + section.inertia_z), line * section.inertia_y,
+                         line * section.inertia_z};
+  }
+}
+
+}  // namespace floe::test
