@@ -237,7 +237,7 @@ class Refused(RestartTest):
             self.assertIn("is of another lattice", said)
 
     def test_other_forces(self):
-        said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,gravity", "-time_end", "2")
+        said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,drag", "-time_end", "2")
         self.assertIn("checkpoint: restart", said)
 
     def test_an_end_before_it(self):
