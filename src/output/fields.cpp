@@ -44,7 +44,7 @@ Fields::Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep
   set_topology();
   if (keep >= 0) {
     cut_back(static_cast<std::size_t>(keep));
-    write_xmf();
+    write_xmf();  // a run killed before its first frame's name was written has none yet
   } else {
     file_.emplace(Hdf5File::create_growing(dir + "/fields.h5"));
     write_mesh();
@@ -104,6 +104,8 @@ void Fields::cut_back(std::size_t keep) {
       Hdf5File kept = Hdf5File::create(path);
       kept.copy(old, "/mesh");
       for (std::size_t k = 0; k < keep; ++k) kept.copy(old, group_name(k));
+      write_xmf();  // before the frames go: a run killed in between leaves no name of a frame that
+                    // is gone
       kept.close();
     }
   }
