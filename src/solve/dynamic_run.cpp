@@ -10,7 +10,7 @@
 namespace floe {
 
 template <class Space>
-DynamicRun<Space>::DynamicRun(std::string_view what, Model<Space>& model,
+DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Model<Space>& model,
                               const DynamicOptions& options, const Observer<Space>& observer)
     : model_(model),
       options_(options),
@@ -18,7 +18,8 @@ DynamicRun<Space>::DynamicRun(std::string_view what, Model<Space>& model,
       state_(static_cast<std::size_t>(model.part().local)),
       wrenches_(static_cast<std::size_t>(model.part().local)),
       checkpoints_(options_.checkpoint, model.part()),
-      what_(what) {
+      what_(what),
+      type_(type) {
   // What strains of 1e-12 everywhere would store.
   double mine = 0, all = 0;
   const double strain = 1e-12 * model.length_scale();
@@ -45,7 +46,7 @@ template <class Space>
 void DynamicRun<Space>::plan(double wanted) {
   steps_ = static_cast<std::int64_t>(std::ceil(options_.end / wanted * (1 - 1e-12)));
   steps_ = std::max<std::int64_t>(steps_, 1);
-  dt_ = options_.end / static_cast<double>(steps_);
+  dt_ = adaptive_ ? std::min(wanted, options_.end) : options_.end / static_cast<double>(steps_);
   result_.dt = dt_;
   set_sampling();
 }
@@ -56,6 +57,12 @@ void DynamicRun<Space>::remember(Memory& memory) {
   const double mine = largest_;
   MPI_Allreduce(&mine, &largest_, 1, MPI_DOUBLE, MPI_MAX, model_.part().comm);
   memory.enter("run");
+  std::string type = type_;
+  memory.common("type", type);
+  if (type != type_)
+    throw InputError("checkpoint: restart: '" + options_.checkpoint.restart + "' is of ts_type '" +
+                     type + "', which keeps its state in another way than this run's '" + type_ +
+                     "'");
   memory.common("step", done_);
   memory.common("steps", steps_);
   memory.common("time", state_.time);
@@ -86,7 +93,7 @@ bool DynamicRun<Space>::restart() {
   checkpoints_.load([&](Memory& memory) { remember(memory); });
   result_.dt = dt_;
   steps_ = static_cast<std::int64_t>(std::ceil(options_.end / dt_ * (1 - 1e-12)));
-  if (steps_ < done_)
+  if (adaptive_ ? options_.end < state_.time : steps_ < done_)
     throw InputError("time: end: " + text(options_.end) + " must be >= " + text(state_.time) +
                      " [s], the time of the checkpoint");
   set_sampling();
@@ -100,17 +107,19 @@ RunResult DynamicRun<Space>::solve(TS ts) {
   check(TSSetStepNumber(ts, static_cast<PetscInt>(done_)));
   check(TSSetTime(ts, state_.time));
   check(TSSetTimeStep(ts, dt_));
-  check(TSSetMaxSteps(ts, static_cast<PetscInt>(std::min<std::int64_t>(steps_, most_steps_))));
-  check(TSSetMaxTime(ts, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
+  if (adaptive_) {
+    check(TSSetMaxSteps(ts, most_steps_));
+    check(TSSetMaxTime(ts, options_.end));
+    check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_MATCHSTEP));
+  } else {
+    check(TSSetMaxSteps(ts, static_cast<PetscInt>(std::min<std::int64_t>(steps_, most_steps_))));
+    check(TSSetMaxTime(ts, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
+  }
   check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
   progress_.emplace(what_, options_.end);
   {
     const Timed timed(Event::solve);
-    check(TSSolve(ts, nullptr));
-    if (error_) std::rethrow_exception(error_);
-    TSConvergedReason reason = TS_CONVERGED_ITERATING;
-    check(TSGetConvergedReason(ts, &reason));
-    result_.done = reason > 0 && finish();
+    result_.done = first() && step(ts) && finish();
   }
   if (result_.done && options_.checkpoint.at_end)
     checkpoints_.save([&](Memory& memory) { remember(memory); });
@@ -118,9 +127,23 @@ RunResult DynamicRun<Space>::solve(TS ts) {
   result_.steps_now = done_ - before_;
   result_.message = why_;
   if (result_.stopped)
-    result_.message = "stopped on request at time " + text(state_.time) + " s, step " +
-                      std::to_string(done_) + " of " + std::to_string(steps_);
+    result_.message = "stopped on request at time " + text(state_.time) + " s, " + step_text();
   return result_;
+}
+
+/// All steps. False if the run did not come to its end.
+template <class Space>
+bool DynamicRun<Space>::step(TS ts) {
+  const int ierr = TSSolve(ts, nullptr);
+  if (error_) std::rethrow_exception(error_);
+  if (ierr == PETSC_ERR_FP) {  // the error of an adaptive step
+    why_ = "a number that is not finite at time " + text(state_.time) + " s";
+    return false;
+  }
+  check(ierr);
+  TSConvergedReason reason = TS_CONVERGED_ITERATING;
+  check(TSGetConvergedReason(ts, &reason));
+  return reason > 0;
 }
 
 template <class Space>
@@ -140,15 +163,18 @@ bool DynamicRun<Space>::moved(double time, double speed2) {
 template <class Space>
 bool DynamicRun<Space>::look_around() {
   constexpr std::int64_t now_and_then = 50;
-  if (done_ % now_and_then == 0)
-    progress_->update(state_.time,
-                      "step " + std::to_string(done_) + " of " + std::to_string(steps_));
+  if (done_ % now_and_then == 0) progress_->update(state_.time, step_text());
   const auto wish = checkpoints_.wish(done_);
   if (wish == Checkpoints::Wish::none) return true;
   if (!within_limits()) return false;  // no checkpoint of a state that is lost already
   checkpoints_.save([&](Memory& memory) { remember(memory); });
   result_.stopped = wish == Checkpoints::Wish::stop;
   return !result_.stopped;
+}
+
+template <class Space>
+std::string DynamicRun<Space>::step_text() const {
+  return "step " + std::to_string(done_) + (adaptive_ ? "" : " of " + std::to_string(steps_));
 }
 
 /// The last state, whose forces no step has asked for.

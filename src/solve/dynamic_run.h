@@ -18,8 +18,8 @@
 
 namespace floe {
 
-/// A run with a step that divides it into equal ones. An integrator derives from this, and in each
-/// step calls
+/// A run with a step that divides it into equal ones, or with one that adapts. An integrator
+/// derives from this, and in each step calls
 ///   evaluate()        the forces at t_n, unless it knows them,
 ///   sample_if_due()   false: the run ends here,
 ///   moved()           once the state is that of t_n+1; false: the run ends here,
@@ -27,9 +27,10 @@ namespace floe {
 template <class Space>
 class DynamicRun {
  public:
-  /// \param what  a word for the progress line   \param model, observer  must outlive this
-  DynamicRun(std::string_view what, Model<Space>& model, const DynamicOptions& options,
-             const Observer<Space>& observer);
+  /// \param what  a word for the progress line   \param type  of PETSc's TS: checkpoints of another
+  /// are not taken   \param model, observer  must outlive this
+  DynamicRun(std::string_view what, std::string_view type, Model<Space>& model,
+             const DynamicOptions& options, const Observer<Space>& observer);
   virtual ~DynamicRun() = default;
   DynamicRun(const DynamicRun&) = delete;
   DynamicRun& operator=(const DynamicRun&) = delete;
@@ -42,7 +43,8 @@ class DynamicRun {
   void read_options(TS ts);
   /// Goes on from the checkpoint that the options name, if they name one: then the step is its.
   bool restart();
-  /// Takes a step as near to the wanted one as divides the run equally.
+  /// Takes a step as near to the wanted one as divides the run equally; if steps adapt, the wanted
+  /// one to begin with.
   void plan(double wanted);
   /// Solves with a TS whose steps call the run's functions through guarded(), from the run's state
   /// at the run's step; says how it ended.
@@ -69,6 +71,16 @@ class DynamicRun {
   virtual Energies energies() const = 0;
   /// What the integrator itself takes along over a restart, beside records, time and dt.
   virtual void remember_own(Memory& memory) = 0;
+  /// What it does between the run's beginning and the first step; false: the run ends here.
+  virtual bool first() { return true; }
+
+  /// Whether the step adapts: then the last one is cut to end at the end.
+  bool is_adaptive() const { return adaptive_; }
+  void set_adaptive(bool adaptive) { adaptive_ = adaptive; }
+  /// The next step [s].
+  void set_dt(double dt) { dt_ = dt; }
+  /// Says why a run ends that did not come to its end.
+  void give_up(std::string why) { why_ = std::move(why); }
 
   Model<Space>& model() { return model_; }
   const DynamicOptions& options() const { return options_; }
@@ -80,6 +92,11 @@ class DynamicRun {
   void evaluate();
   /// Hands the state out if a sample is due at its time.
   bool sample_if_due() { return !due() || sample(); }
+  bool evaluate_and_sample_if_due() {
+    if (!due()) return true;
+    evaluate();
+    return sample();
+  }
   /// The state is that after one more step, at `time`. \param speed2  square of the largest speed
   /// of this rank's bodies [m^2/s^2]
   bool moved(double time, double speed2);
@@ -90,10 +107,12 @@ class DynamicRun {
   static constexpr std::int64_t check_every = 100;  // steps between looks at the velocity limit
   static constexpr double early = 1e-6;             // of a step
 
+  bool step(TS ts);
   void set_sampling();
   bool due() const;
   bool sample(bool last = false);
   bool finish();
+  std::string step_text() const;
   bool within_limits();
   std::string where() const;
   void remember(Memory& memory);
@@ -106,11 +125,13 @@ class DynamicRun {
   Ledger ledger_;
   Checkpoints checkpoints_;
   std::string_view what_;
+  std::string type_;
   std::optional<Progress> progress_;
   RunResult result_;
   std::exception_ptr error_;
   std::array<double, 2> sample_every_{};
   double dt_ = 0, next_sample_ = 0, largest_ = 0;
+  bool adaptive_ = false;
   std::int64_t steps_ = 0, done_ = 0, before_ = 0, sampled_ = -1;
   PetscInt most_steps_ = 0;  // -ts_max_steps
   std::string why_;

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "solve/dynamic_run.h"
+#include "solve/explicit_run.h"
 #include "solve/leapfrog.h"
 #include "solve/motion.h"
 #include "solve/stable_step.h"
@@ -15,26 +16,21 @@ class LeapfrogRun final : public DynamicRun<Spatial> {
  public:
   LeapfrogRun(Model<Spatial>& model, const ExplicitOptions& options,
               const Observer<Spatial>& observer)
-      : DynamicRun("explicit", model, options, observer), options_(options), motion_(model) {
+      : DynamicRun("explicit", ts_leapfrog, model, options, observer),
+        options_(options),
+        motion_(model) {
+    result().stepper = ts_leapfrog;
     motion_.start(state(), model.part().bodies.velocity, model.part().bodies.angular_velocity);
     evaluate();
   }
 
   /// Fixes the step: the given one, or from the stable step.
   void choose_step() {
-    const double given = options().dt;
     const StableStep stable = stable_step(model(), state());
     evaluate();  // forces keep by-products of their last evaluation: the power they take
     result().stable_dt = stable.dt;
     result().limited_by = stable.limit;
-    if (given > stable.dt && !options_.allow_unstable)
-      throw InputError("time: dt: " + text(given) + " must be <= " + text(stable.dt) +
-                       " [s], the stable step, limited by the " + stable.limit +
-                       " (time: allow_unstable: true takes it all the same)");
-    const double wanted = given > 0 ? given : options_.safety * stable.dt;
-    if (!std::isfinite(wanted))
-      throw InputError("time: dt: auto finds no force that limits the step; give one");
-    plan(wanted);
+    plan(wanted_step(options_, options().dt, stable));
     motion_.stagger(state(), wrenches(), dt());
     model().part().ghosts.update(state().records, Spatial::record);
   }
@@ -63,11 +59,8 @@ class LeapfrogRun final : public DynamicRun<Spatial> {
   Motion motion_;
 };
 
-}  // namespace
-
-RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
+RunResult run_leapfrog(Model<Spatial>& model, const ExplicitOptions& options,
                        const Observer<Spatial>& observer) {
-  refuse_options_of_others();
   register_leapfrog();
   const StopSignals signals;
   LeapfrogRun run(model, options, observer);
@@ -84,6 +77,25 @@ RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
   LeapfrogStep step = [&](double dt) { return run.guarded([&] { return run.step(dt); }); };
   set_leapfrog_step(ts, &step);
   return run.solve(ts);
+}
+
+}  // namespace
+
+double wanted_step(const ExplicitOptions& options, double given, const StableStep& stable) {
+  if (given > stable.dt && !options.allow_unstable)
+    throw InputError("time: dt: " + text(given) + " must be <= " + text(stable.dt) +
+                     " [s], the stable step, limited by the " + stable.limit +
+                     " (time: allow_unstable: true takes it all the same)");
+  const double wanted = given > 0 ? given : options.safety * stable.dt;
+  if (!std::isfinite(wanted))
+    throw InputError("time: dt: auto finds no force that limits the step; give one");
+  return wanted;
+}
+
+RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
+                       const Observer<Spatial>& observer) {
+  return explicit_type() == TSRK ? run_rk(model, options, observer)
+                                 : run_leapfrog(model, options, observer);
 }
 
 }  // namespace floe
