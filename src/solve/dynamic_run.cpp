@@ -99,6 +99,7 @@ bool DynamicRun<Space>::restart() {
   set_sampling();
   model_.part().ghosts.update(state_.records, Space::record);
   before_ = done_;
+  time_ = state_.time;
   return true;
 }
 
@@ -137,7 +138,7 @@ bool DynamicRun<Space>::step(TS ts) {
   const int ierr = TSSolve(ts, nullptr);
   if (error_) std::rethrow_exception(error_);
   if (ierr == PETSC_ERR_FP) {  // the error of an adaptive step
-    why_ = "a number that is not finite at time " + text(state_.time) + " s";
+    why_ = "a number that is not finite after time " + text(time_) + " s";
     return false;
   }
   check(ierr);
@@ -155,7 +156,7 @@ void DynamicRun<Space>::evaluate() {
 template <class Space>
 bool DynamicRun<Space>::moved(double time, double speed2) {
   ++done_;
-  state_.time = time;
+  state_.time = time_ = time;
   largest_ = std::isfinite(speed2) ? std::max(largest_, speed2) : speed2;
   return done_ % check_every != 0 || within_limits();
 }

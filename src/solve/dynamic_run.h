@@ -37,6 +37,8 @@ class DynamicRun {
 
   State<Space>& state() { return state_; }
   double dt() const { return dt_; }
+  /// Of the last accepted state, where state() may be that of a stage [s].
+  double time() const { return time_; }
   std::int64_t done() const { return done_; }
 
   /// Gives a TS the run's times and reads its options; -ts_dt, -ts_max_time and -ts_max_steps win.
@@ -130,7 +132,7 @@ class DynamicRun {
   RunResult result_;
   std::exception_ptr error_;
   std::array<double, 2> sample_every_{};
-  double dt_ = 0, next_sample_ = 0, largest_ = 0;
+  double time_ = 0, dt_ = 0, next_sample_ = 0, largest_ = 0;
   bool adaptive_ = false;
   std::int64_t steps_ = 0, done_ = 0, before_ = 0, sampled_ = -1;
   PetscInt most_steps_ = 0;  // -ts_max_steps

@@ -126,6 +126,10 @@ void RkRun::read_types() {
   TSAdaptType chosen = nullptr;
   check(TSAdaptGetType(adapt, &chosen));
   const std::string adaptivity = chosen, rk = type;
+  if (rk == TSRK1FE)
+    throw InputError(
+        "ts_rk_type: '1fe' cannot step this scene: it is Euler's method, which makes "
+        "slow vibrations grow however they are damped");
   if (adaptivity != TSADAPTNONE && adaptivity != TSADAPTBASIC)
     throw InputError("ts_adapt_type: '" + adaptivity +
                      "' is not for bodies: must be none (a fixed step) or basic (from the error)");
@@ -153,7 +157,7 @@ void RkRun::choose_step() {
   result().limited_by = stable.limit;
   // Steps this far inside what the scene's rates allow mean that the region leaves out the
   // imaginary axis, or nearly.
-  constexpr double useless = 0.05;
+  constexpr double useless = 0.2;
   const double fastest = std::max(stable.omega, stable.decay);
   if (!options_.allow_unstable && stable.dt * fastest < useless)
     throw InputError(
@@ -210,28 +214,28 @@ bool RkRun::stepped() {
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
   check(TSGetConvergedReason(ts_, &reason));
   if (reason < 0) {
-    give_up("steps are rejected again and again at time " + text(state().time) +
+    give_up("steps are rejected again and again at time " + text(time()) +
             " s (limits: -ts_rtol, -ts_atol, -ts_max_reject)");
     return false;
   }
-  double time = static_cast<double>(done() + 1) * dt();
+  double now = static_cast<double>(done() + 1) * dt();
   if (is_adaptive()) {
     double next = 0;
-    check(TSGetTime(ts_, &time));
+    check(TSGetTime(ts_, &now));
     check(TSGetTimeStep(ts_, &next));
     set_dt(next);
   } else {
-    check(TSSetTime(ts_, time));  // no sum of roundings
+    check(TSSetTime(ts_, now));  // no sum of roundings
   }
   {
     const Numbers numbers(solution_);
-    equations_.to_records(*numbers, time, state());
+    equations_.to_records(*numbers, now, state());
     const double* work = &(*numbers)[equations_.bodies_size()];
     for (const auto& force : model().forces()) force->take_work(*work++);
     boundary_work_ += *work;
     equations_.from_records(state(), *numbers);
   }
-  if (!moved(time, equations_.largest_speed2(state()))) return false;
+  if (!moved(now, equations_.largest_speed2(state()))) return false;
   // The last state is the run's to sample.
   if (reason == TS_CONVERGED_ITERATING && !evaluate_and_sample_if_due()) return false;
   return look_around();

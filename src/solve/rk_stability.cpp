@@ -105,18 +105,15 @@ Complex StabilityPolynomial::operator()(Complex z) const {
   return sum;
 }
 
-bool StabilityPolynomial::grows(Complex z) const {
-  constexpr double most = 1e-9;
-  return !(std::norm((*this)(z)) <= 1 + 2 * most);
-}
-
-double StabilityPolynomial::largest_step(double stiffness, double damping) const {
+double StabilityPolynomial::largest_step(double stiffness, double damping, double growth) const {
   // In units of 1/size the roots are of size 1 or less.
   const double size = std::max(damping, std::sqrt(stiffness));
   if (!(size > 0)) return infinity;
   const double half = 0.5 * damping / size, k = stiffness / size / size;
   const Complex root = std::sqrt(Complex(half * half - k));
   const std::array<Complex, 2> roots{-half + root, -half - root};
+  const double most = (1 + growth) * (1 + growth);
+  const auto grows = [&](Complex z) { return !(std::norm((*this)(z)) <= most); };
   const auto unstable = [&](double t) { return grows(t * roots[0]) || grows(t * roots[1]); };
   // No method's region reaches further than the square of its number of stages.
   const auto stages = static_cast<double>(coefficients_.size() - 1);
@@ -134,14 +131,15 @@ double StabilityPolynomial::largest_step(double stiffness, double damping) const
 
 namespace {
 
-Worst worst(const StabilityPolynomial& polynomial, const Polygon& polygon, const Pair& scale) {
+Worst worst(const StabilityPolynomial& polynomial, const Polygon& polygon, const Pair& scale,
+            double growth) {
   constexpr int per_edge = 32;
   Worst found;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     for (int n = 0; n < per_edge; ++n) {
       const Pair p = between(polygon[i], polygon[(i + 1) % polygon.size()], n / double(per_edge));
-      const double dt =
-          polynomial.largest_step(std::max(0.0, p.k) * scale.k, std::max(0.0, p.c) * scale.c);
+      const double dt = polynomial.largest_step(std::max(0.0, p.k) * scale.k,
+                                                std::max(0.0, p.c) * scale.c, growth);
       if (dt < found.dt) found = {dt, p};
     }
   }
@@ -151,7 +149,7 @@ Worst worst(const StabilityPolynomial& polynomial, const Polygon& polygon, const
 }  // namespace
 
 StableStep rk_stable_step(const StabilityPolynomial& polynomial, const Model<Spatial>& model,
-                          const State<Spatial>& state) {
+                          const State<Spatial>& state, double growth) {
   std::vector<VibrationMode> modes;
   StableStep result;
   const auto search = [&](const Weights& weights) -> const VibrationMode& {
@@ -173,12 +171,12 @@ StableStep rk_stable_step(const StabilityPolynomial& polynomial, const Model<Spa
   const double top = 1 + margin, right = damped ? top : 0;
   Polygon outer{{0, 0}, {right, 0}, {right, top}, {0, top}};
   Polygon inner{{0, 0}, pair_of(modes[0]), pair_of(modes[1])};
-  Worst limit = worst(polynomial, outer, scale);
+  Worst limit = worst(polynomial, outer, scale, growth);
   constexpr int most = 8;
   constexpr double close = 0.99;
   for (int it = 0; damped && scale.k > 0 && it < most; ++it) {
     const Polygon reached = hull(inner);
-    if (limit.dt >= close * worst(polynomial, reached, scale).dt) break;
+    if (limit.dt >= close * worst(polynomial, reached, scale, growth).dt) break;
     // A line that parts the limiting point from what was reached.
     Pair n = limit.at - nearest(reached, limit.at);
     const double length = std::sqrt(dot(n, n));
@@ -187,7 +185,7 @@ StableStep rk_stable_step(const StabilityPolynomial& polynomial, const Model<Spa
     const VibrationMode& mode = search({n.k / scale.k, n.c / scale.c});
     outer = clipped(outer, n, mode.value + margin);
     inner.push_back(pair_of(mode));
-    limit = worst(polynomial, outer, scale);
+    limit = worst(polynomial, outer, scale, growth);
   }
   result.dt = limit.dt;
   result.omega = std::sqrt(std::max(0.0, limit.at.k) * scale.k);
