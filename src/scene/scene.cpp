@@ -181,6 +181,15 @@ Boundary read_boundary(Options& options, const std::string& name) {
   return boundary;
 }
 
+/// Bodies with mass cannot be displaced at once.
+void require_motion(const Scene& scene, const Boundary& boundary) {
+  if (scene.integrator == Integrator::quasistatic || boundary.ramp.seconds > 0 ||
+      !boundary.displacement || *boundary.displacement == Point3{})
+    return;
+  throw InputError("boundary: " + boundary.name +
+                   ": displacement needs ramp > 0 in a run with time: at once would be a jump");
+}
+
 Load read_load(Options& options, const std::string& name) {
   Load load;
   load.name = name;
@@ -293,6 +302,7 @@ Scene read_scene(const std::string& path) {
   check_floats(scene);
   for (const std::string& name : options.names("boundary"))
     scene.boundaries.push_back(read_boundary(options, name));
+  require_motion(scene, scene.boundaries.back());
   for (const std::string& name : options.names("load"))
     scene.loads.push_back(read_load(options, name));
   read_time(options, scene);
