@@ -8,15 +8,29 @@
 namespace floe {
 namespace {
 
-/// Loops over the beams of a part; kinematics and damping are chosen outside them.
-template <Kinematics kinematics, bool damped>
+/// Whether the triads of a part's beams all have their third axis along z, to rounding. Collective:
+/// forces must not depend on how bodies are shared.
+bool is_flat(const Part& part) {
+  constexpr double rounding = 4e-16;
+  int flat = 1;
+  for (std::int32_t m = 0; m < part.beams.size() && flat == 1; ++m) {
+    const auto [e1, e2, e3] = beam_triad(part, m);
+    flat = e1.z == 0 && std::abs(e2.z) <= rounding && std::abs(e2.x + e1.y) <= rounding &&
+           std::abs(e2.y - e1.x) <= rounding;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &flat, 1, MPI_INT, MPI_MIN, part.comm);
+  return flat == 1;
+}
+
+/// Loops over the beams of a part; kinematics, damping and frames are chosen outside them.
+template <Kinematics kinematics, bool damped, template <class> class Frame>
 class SpatialBeams final : public BeamForce<Spatial> {
  public:
   using Pointwise = SpatialBeam<kinematics>;
 
   SpatialBeams(const Part& part, const BeamOptions& options)
       : part_(part),
-        blocks_((part.beams.bodies.size() + lanes - 1) / lanes, BeamBlock{}),
+        blocks_((part.beams.bodies.size() + lanes - 1) / lanes, BeamBlock<Frame>{}),
         dashpots_(damped ? blocks_.size() : 0, DashpotBlock{}),
         stiffness_(static_cast<std::size_t>(part.local)) {
     BeamConstants<double>
@@ -105,7 +119,7 @@ class SpatialBeams final : public BeamForce<Spatial> {
  private:
   void set(std::int32_t m, const BeamOptions& options) {
     const auto k = static_cast<std::size_t>(m);
-    BeamBlock& block = blocks_[k / lanes];
+    BeamBlock<Frame>& block = blocks_[k / lanes];
     const BeamConstants<double> c = Pointwise::make(part_, m, options.shear);
     block.set(k % lanes, c);
     const auto [i, j] = part_.beams.bodies[k];
@@ -135,7 +149,7 @@ class SpatialBeams final : public BeamForce<Spatial> {
   }
 
   const Part& part_;
-  std::vector<BeamBlock> blocks_;
+  std::vector<BeamBlock<Frame>> blocks_;
   std::vector<DashpotBlock> dashpots_;
   std::vector<double> stiffness_;
   mutable double power_lost_ = 0;  ///< in the last evaluation [W]; a by-product, no history
@@ -145,9 +159,13 @@ class SpatialBeams final : public BeamForce<Spatial> {
 
 template <Kinematics kinematics>
 std::unique_ptr<BeamForce<Spatial>> make_spatial(const Part& part, const BeamOptions& options) {
-  if (options.damping_ratio > 0)
-    return std::make_unique<SpatialBeams<kinematics, true>>(part, options);
-  return std::make_unique<SpatialBeams<kinematics, false>>(part, options);
+  const bool damped = options.damping_ratio > 0;
+  if (is_flat(part)) {
+    if (damped) return std::make_unique<SpatialBeams<kinematics, true, FlatFrame>>(part, options);
+    return std::make_unique<SpatialBeams<kinematics, false, FlatFrame>>(part, options);
+  }
+  if (damped) return std::make_unique<SpatialBeams<kinematics, true, AnyFrame>>(part, options);
+  return std::make_unique<SpatialBeams<kinematics, false, AnyFrame>>(part, options);
 }
 
 /// Moment of inertia at rest of a local body about a world axis.
