@@ -98,6 +98,26 @@ LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& 
   return b;
 }
 
+/// Adds a block's shares to its bodies' wrenches, in the order of the lanes.
+inline void scatter(const std::array<std::int32_t, lanes>& i,
+                    const std::array<std::int32_t, lanes>& j, const BeamGradient<Lanes>& g,
+                    double* wrenches) {
+  const Lanes zero(0.0);
+  std::array<detail::Four, lanes> fi, mi, fj, mj;
+  scatter_four<Lanes>({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
+  scatter_four<Lanes>({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
+  scatter_four<Lanes>({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
+  scatter_four<Lanes>({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    double* wi = wrenches + static_cast<std::size_t>(i[lane]) * Spatial::wrench;
+    add_four(wi, fi[lane]);
+    add_four(wi + 4, mi[lane]);
+    double* wj = wrenches + static_cast<std::size_t>(j[lane]) * Spatial::wrench;
+    add_four(wj, fj[lane]);
+    add_four(wj + 4, mj[lane]);
+  }
+}
+
 /// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 [[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block, const DashpotBlock* dashpots,
@@ -122,20 +142,7 @@ template <Kinematics kinematics, bool damped, template <class> class Frame>
               stress.c + viscous.c};
   }
   const BeamGradient<Lanes> g = Kernel::gradient(beam, s, stress);
-  const Lanes zero(0.0);
-  std::array<detail::Four, lanes> fi, mi, fj, mj;
-  scatter_four<Lanes>({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
-  scatter_four<Lanes>({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
-  scatter_four<Lanes>({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
-  scatter_four<Lanes>({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    double* wi = wrenches + static_cast<std::size_t>(block.i[lane]) * Spatial::wrench;
-    add_four(wi, fi[lane]);
-    add_four(wi + 4, mi[lane]);
-    double* wj = wrenches + static_cast<std::size_t>(block.j[lane]) * Spatial::wrench;
-    add_four(wj, fj[lane]);
-    add_four(wj + 4, mj[lane]);
-  }
+  scatter(block.i, block.j, g, wrenches);
   return lost;
 }
 

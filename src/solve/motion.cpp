@@ -99,11 +99,15 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
   }
 }
 
-[[gnu::flatten]] double Motion::step_block(std::size_t block, State<Spatial>& state,
-                                           const Wrenches<Spatial>& wrenches, double dt) const {
-  const auto owned = static_cast<std::size_t>(part_.owned);
-  // Lanes beyond the last body repeat it, and are not written.
-  const auto body_of = [&](std::size_t lane) { return std::min(block * lanes + lane, owned - 1); };
+/// \param count  bodies of the block: lanes beyond the last body repeat it, and are not written
+template <class Count>
+[[gnu::always_inline]] inline Lanes Motion::step_block(std::size_t block, Count count,
+                                                        State<Spatial>& state,
+                                                        const Wrenches<Spatial>& wrenches,
+                                                        double dt) const {
+  const auto body_of = [&](std::size_t lane) {
+    return block * lanes + (count == lanes ? lane : std::min(lane, count - 1));
+  };
   const auto four = [&](std::size_t offset) {
     return gather_four([&](std::size_t lane) { return state.record(body_of(lane)) + offset; });
   };
@@ -121,7 +125,6 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
   std::array<detail::Four, lanes> rows;
   const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
     scatter_four<Lanes>(values, rows);
-    const std::size_t count = std::min(lanes, owned - block * lanes);
     for (std::size_t lane = 0; lane < count; ++lane)
       __builtin_memcpy(state.record(block * lanes + lane) + offset, &rows[lane], sizeof rows[lane]);
   };
@@ -129,9 +132,23 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
   put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
   put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
   put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
-  const Lanes v2 = dot(m.v, m.v);
-  const double sum = reduce(v2);  // a maximum would lose what is not a number
-  return std::isfinite(sum) ? hmax(v2) : sum;
+  return dot(m.v, m.v);
+}
+
+[[gnu::flatten]] double Motion::step_blocks(State<Spatial>& state,
+                                            const Wrenches<Spatial>& wrenches, double dt) const {
+  const auto owned = static_cast<std::size_t>(part_.owned);
+  const std::size_t whole = owned / lanes, left = owned % lanes;
+  // A maximum would lose what is not a number, a sum keeps it.
+  Lanes largest(0.0), sum(0.0);
+  const auto take = [&](const Lanes& v2) {
+    largest = max(largest, v2);
+    sum += v2;
+  };
+  for (std::size_t block = 0; block < whole; ++block)
+    take(step_block(block, std::integral_constant<std::size_t, lanes>{}, state, wrenches, dt));
+  if (left > 0) take(step_block(whole, left, state, wrenches, dt));
+  return std::isfinite(reduce(sum)) ? hmax(largest) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {
@@ -140,13 +157,7 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
     std::copy_n(record, Spatial::record,
                 saved_.begin() + static_cast<std::ptrdiff_t>(k * Spatial::record));
   }
-  double largest = 0;
-  bool finite = true;
-  for (std::size_t block = 0; block < blocks_.size(); ++block) {
-    const double v2 = step_block(block, state, wrenches, dt);
-    finite = finite && std::isfinite(v2);
-    largest = std::max(largest, v2);
-  }
+  const double largest = step_blocks(state, wrenches, dt);
   if (!held_.empty()) {
     model_.prescribe(state.time, now_);
     model_.prescribe(state.time + dt, next_);
@@ -158,7 +169,7 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
     }
   }
   state.time += dt;
-  return finite ? largest : std::numeric_limits<double>::quiet_NaN();
+  return largest;
 }
 
 /// A body of which some components are prescribed: those get the velocity that takes them where

@@ -28,6 +28,14 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
+/// Asks for all cache lines of something that is read soon.
+template <class T>
+void prefetch(const T& what) {
+  constexpr std::size_t line = 64;
+  for (std::size_t k = 0; k < sizeof(T); k += line)
+    __builtin_prefetch(reinterpret_cast<const char*>(&what) + k);
+}
+
 namespace detail {
 
 using Four [[gnu::vector_size(32)]] = double;
