@@ -48,10 +48,9 @@ struct alignas(64) BeamBlock {
     if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
       return with_frame(AnyFrame<double>{{at(0), at(1), 0}, {-at(1), at(0), 0}, {0, 0, 1}}, at);
     } else {
-      return with_frame(AnyFrame<double>{{at(0), at(1), at(2)},
-                                         {at(3), at(4), at(5)},
-                                         {at(6), at(7), at(8)}},
-                        at);
+      return with_frame(
+          AnyFrame<double>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}},
+          at);
     }
   }
   BeamConstants<Lanes, Frame> get() const {
@@ -59,10 +58,8 @@ struct alignas(64) BeamBlock {
     if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
       return with_frame(FlatFrame<Lanes>{at(0), at(1)}, at);
     } else {
-      return with_frame(AnyFrame<Lanes>{{at(0), at(1), at(2)},
-                                        {at(3), at(4), at(5)},
-                                        {at(6), at(7), at(8)}},
-                        at);
+      return with_frame(
+          AnyFrame<Lanes>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}}, at);
     }
   }
 };
@@ -120,8 +117,9 @@ inline void scatter(const std::array<std::int32_t, lanes>& i,
 
 /// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
 template <Kinematics kinematics, bool damped, template <class> class Frame>
-[[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block, const DashpotBlock* dashpots,
-                                              const double* records, double* wrenches) {
+[[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block,
+                                              const DashpotBlock* dashpots, const double* records,
+                                              double* wrenches) {
   using Kernel = BeamKernel<kinematics>;
   const BeamConstants<Lanes, Frame> beam = block.get();
   const LaneBodies i = gather<damped>(records, block.i), j = gather<damped>(records, block.j);

@@ -147,8 +147,7 @@ inline HalfAngle<Lanes> half_angle(const Lanes& s2, const Lanes& w) {
 template <class T>
 void take_shorter_way(Quat<T>& b, Quat<T>& r) {
   const auto sign = sign_of(r.w);
-  for (Quat<T>* q : {&b, &r})
-    *q = {T(sign * q->w), T(sign * q->x), T(sign * q->y), T(sign * q->z)};
+  for (Quat<T>* q : {&b, &r}) *q = {T(sign * q->w), T(sign * q->x), T(sign * q->y), T(sign * q->z)};
 }
 inline void take_shorter_way(Quat<Lanes>& b, Quat<Lanes>& r) {
   if (none_of(r.w < 0.0)) [[likely]]
@@ -273,9 +272,10 @@ BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
 
 /// Rates of the linear strains.
 template <class T, class Constants>
-BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity,
-                           const Vec3<T>& spin_i, const Vec3<T>& spin_j) {
-  const Vec3<T> chord = beam.rest.to_local(velocity), mean = beam.rest.to_local(0.5 * (spin_i + spin_j));
+BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                           const Vec3<T>& spin_j) {
+  const Vec3<T> chord = beam.rest.to_local(velocity),
+                mean = beam.rest.to_local(0.5 * (spin_i + spin_j));
   return {chord.x, T(chord.y - T(beam.l0 * mean.z)), T(chord.z + T(beam.l0 * mean.y)),
           beam.rest.to_local(spin_j - spin_i)};
 }

@@ -101,7 +101,8 @@ void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
 /// A quaternion that is a unit one but for turns of one step.
 template <class T>
 Quat<T> unit(const Quat<T>& q) {
-  const T n = inverse_root(T(T(T(q.w * q.w) - 1.0) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z)));
+  const T n =
+      inverse_root(T(T(T(q.w * q.w) - 1.0) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z)));
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 

@@ -97,7 +97,6 @@ void Model<Space>::pin(const std::vector<Pin>& pins) {
 
 template <class Space>
 void Model<Space>::prescribe(double time, std::span<double> values) const {
-  std::fill(values.begin(), values.end(), 0.0);
   for (const PlacedBoundary& placed : boundaries_) {
     const std::array<double, 6> value = placed.boundary.value(time);
     for (const std::int32_t body : placed.bodies) {

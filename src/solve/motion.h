@@ -58,6 +58,8 @@ class Motion {
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
                  const Wrenches<Spatial>& wrenches, std::span<const double> now,
                  std::span<const double> next, double dt);
+  void turn_held(std::int32_t body, const double* before, double* after, const double* wrench,
+                 std::span<const double> now, std::span<const double> next, double dt);
   BodyConstants<double> constants(std::int32_t body) const;
 
   const Model<Spatial>& model_;

@@ -49,8 +49,12 @@ inline Four load_four(const double* p) {
 using Eight [[gnu::vector_size(64)]] = double;
 
 /// Entries 0, 2, 4, 6 of a and b in turn; entries 1, 3, 5, 7.
-inline Eight evens(Eight a, Eight b) { return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14); }
-inline Eight odds(Eight a, Eight b) { return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15); }
+inline Eight evens(Eight a, Eight b) {
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+inline Eight odds(Eight a, Eight b) {
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+}
 
 /// Rows a, b, c, d to columns, in place.
 inline void transpose(Four& a, Four& b, Four& c, Four& d) {
