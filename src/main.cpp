@@ -1,5 +1,7 @@
 // floe SCENE.yaml [-key value ...]: reads like the method section of a paper.
 
+#include <malloc.h>
+
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -126,6 +128,9 @@ int main(int argc, char** argv) {
     case floe::Help::none:
       break;
   }
+  // Arrays above this size go back to the system when they are freed (by default the limit grows
+  // up to 32 MB, and the peak of a large sheet's set-up is kept for the whole run).
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
   floe::Mpi mpi(argc, argv);
   try {
     const std::string path = floe::check_command_line(argc, argv);

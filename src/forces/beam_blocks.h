@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "floe/base/simd.h"
@@ -15,34 +16,51 @@
 
 namespace floe {
 
-/// What beams are at rest, number by number, lane by lane.
+/// Numbers of a frame, in the order of its members.
+template <template <class> class Frame>
+inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
+
+/// What beams are at rest, number by number, lane by lane: frame, l0, six stiffnesses.
+template <template <class> class Frame>
 struct alignas(64) BeamBlock {
-  std::array<std::array<double, lanes>, 16> values;  ///< rest triad (9), l0, six stiffnesses
-  std::array<std::int32_t, lanes> i, j;              ///< local bodies
+  static constexpr std::size_t first = frame_size<Frame>;
+  std::array<std::array<double, lanes>, first + 7> values;
+  std::array<std::int32_t, lanes> i, j;  ///< local bodies
 
   void set(std::size_t lane, const BeamConstants<double>& c) {
-    const std::array<double, 16> all{c.rest.e1.x, c.rest.e1.y, c.rest.e1.z, c.rest.e2.x,
-                                     c.rest.e2.y, c.rest.e2.z, c.rest.e3.x, c.rest.e3.y,
-                                     c.rest.e3.z, c.l0,        c.kn,        c.ksz,
-                                     c.ksy,       c.kt,        c.kby,       c.kbz};
-    for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
+    std::size_t k = 0;
+    const auto put = [&](double value) { values[k++][lane] = value; };
+    const auto& [e1, e2, e3] = c.rest;
+    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+      for (const double value : {e1.x, e1.y}) put(value);
+    } else {
+      for (const double value : {e1.x, e1.y, e1.z, e2.x, e2.y, e2.z, e3.x, e3.y, e3.z}) put(value);
+    }
+    for (const double value : {c.l0, c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz}) put(value);
   }
-  template <class C, class Read>
-  static BeamConstants<C> assemble(Read at) {
-    return {{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}},
-            at(9),
-            at(10),
-            at(11),
-            at(12),
-            at(13),
-            at(14),
-            at(15)};
+  template <class C, template <class> class Any>
+  static BeamConstants<C, Any> with_frame(Any<C> frame, auto at) {
+    return {frame,         at(first),     at(first + 1), at(first + 2),
+            at(first + 3), at(first + 4), at(first + 5), at(first + 6)};
   }
   BeamConstants<double> get(std::size_t lane) const {
-    return assemble<double>([&](std::size_t k) { return values[k][lane]; });
+    const auto at = [&](std::size_t k) { return values[k][lane]; };
+    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+      return with_frame(AnyFrame<double>{{at(0), at(1), 0}, {-at(1), at(0), 0}, {0, 0, 1}}, at);
+    } else {
+      return with_frame(
+          AnyFrame<double>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}},
+          at);
+    }
   }
-  BeamConstants<Lanes> get() const {
-    return assemble<Lanes>([&](std::size_t k) { return load(values[k].data()); });
+  BeamConstants<Lanes, Frame> get() const {
+    const auto at = [&](std::size_t k) { return load(values[k].data()); };
+    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+      return with_frame(FlatFrame<Lanes>{at(0), at(1)}, at);
+    } else {
+      return with_frame(
+          AnyFrame<Lanes>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}}, at);
+    }
   }
 };
 
@@ -77,12 +95,33 @@ LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& 
   return b;
 }
 
+/// Adds a block's shares to its bodies' wrenches, in the order of the lanes.
+inline void scatter(const std::array<std::int32_t, lanes>& i,
+                    const std::array<std::int32_t, lanes>& j, const BeamGradient<Lanes>& g,
+                    double* wrenches) {
+  const Lanes zero(0.0);
+  std::array<detail::Four, lanes> fi, mi, fj, mj;
+  scatter_four<Lanes>({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
+  scatter_four<Lanes>({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
+  scatter_four<Lanes>({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
+  scatter_four<Lanes>({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    double* wi = wrenches + static_cast<std::size_t>(i[lane]) * Spatial::wrench;
+    add_four(wi, fi[lane]);
+    add_four(wi + 4, mi[lane]);
+    double* wj = wrenches + static_cast<std::size_t>(j[lane]) * Spatial::wrench;
+    add_four(wj, fj[lane]);
+    add_four(wj + 4, mj[lane]);
+  }
+}
+
 /// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
-template <Kinematics kinematics, bool damped>
-[[gnu::always_inline]] inline Lanes add_block(const BeamBlock& block, const DashpotBlock* dashpots,
-                                              const double* records, double* wrenches) {
+template <Kinematics kinematics, bool damped, template <class> class Frame>
+[[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block,
+                                              const DashpotBlock* dashpots, const double* records,
+                                              double* wrenches) {
   using Kernel = BeamKernel<kinematics>;
-  const BeamConstants<Lanes> beam = block.get();
+  const BeamConstants<Lanes, Frame> beam = block.get();
   const LaneBodies i = gather<damped>(records, block.i), j = gather<damped>(records, block.j);
   const BeamStrains<Lanes> s = Kernel::strains(beam, j.u - i.u, i.q, j.q);
   BeamStress<Lanes> stress = elastic_stress(beam, s);
@@ -101,20 +140,7 @@ template <Kinematics kinematics, bool damped>
               stress.c + viscous.c};
   }
   const BeamGradient<Lanes> g = Kernel::gradient(beam, s, stress);
-  const Lanes zero(0.0);
-  std::array<detail::Four, lanes> fi, mi, fj, mj;
-  scatter_four<Lanes>({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
-  scatter_four<Lanes>({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
-  scatter_four<Lanes>({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
-  scatter_four<Lanes>({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    double* wi = wrenches + static_cast<std::size_t>(block.i[lane]) * Spatial::wrench;
-    add_four(wi, fi[lane]);
-    add_four(wi + 4, mi[lane]);
-    double* wj = wrenches + static_cast<std::size_t>(block.j[lane]) * Spatial::wrench;
-    add_four(wj, fj[lane]);
-    add_four(wj + 4, mj[lane]);
-  }
+  scatter(block.i, block.j, g, wrenches);
   return lost;
 }
 

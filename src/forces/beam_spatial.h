@@ -38,7 +38,8 @@ struct SpatialBeam {
   /// Constants of beam m of a part.
   static Constants make(const Part& part, std::int32_t m, Shear shear) {
     Constants c{};
-    c.rest = beam_triad(part, m);
+    const auto [e1, e2, e3] = beam_triad(part, m);
+    c.rest = {e1, e2, e3};
     c.l0 = part.beams.length[static_cast<std::size_t>(m)];
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;

@@ -51,7 +51,7 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
   std::vector<std::int32_t> renumbered(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     renumbered[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
-  lattice.bodies = pick(lattice.bodies, order);
+  permute(lattice.bodies, order);
   lattice.shapes = pick(lattice.shapes, order);
   for (auto& [name, set] : lattice.sets) {
     for (std::int32_t& body : set) body = renumbered[static_cast<std::size_t>(body)];
@@ -75,7 +75,7 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
     return lattice.beams.bodies[static_cast<std::size_t>(a)] <
            lattice.beams.bodies[static_cast<std::size_t>(b)];
   });
-  lattice.beams = pick(lattice.beams, beams);
+  permute(lattice.beams, beams);
   return order;
 }
 

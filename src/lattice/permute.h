@@ -32,9 +32,25 @@ inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
           pick(b.axis_y, order),    pick(b.width, order),         pick(b.height, order)};
 }
 
+/// The same in place, array by array: what is left of one is given back before the next is copied.
+inline void permute(Bodies& b, std::span<const std::int32_t> order) {
+  const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
+  each(b.position, b.orientation, b.mass, b.inertia, b.velocity, b.angular_velocity);
+}
+inline void permute(Beams& b, std::span<const std::int32_t> order) {
+  const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
+  each(b.bodies, b.area, b.inertia_y, b.inertia_z, b.torsion, b.length, b.young, b.shear_modulus,
+       b.shear_factor, b.axis_y, b.width, b.height);
+}
+
 inline Shapes pick(const Shapes& s, std::span<const std::int32_t> order) {
   Shapes out;
   if (s.empty()) return out;
+  if (order.size() + 1 == s.vertex_of.size()) {  // all of them: just as much again
+    out.vertices.reserve(s.vertices.size());
+    out.corners.reserve(s.corners.size());
+    out.corner_of.reserve(s.corner_of.size());
+  }
   for (const std::int32_t body : order) {
     const auto b = static_cast<std::size_t>(body);
     const std::int32_t shift = static_cast<std::int32_t>(out.vertices.size()) - s.vertex_of[b];

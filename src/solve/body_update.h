@@ -33,35 +33,76 @@ struct BodyMotion {
   Vec3<T> v, w, momentum;
 };
 
-/// Angular momentum and quaternion (principal axes to world, not normalised) turned by half a step
-/// about one axis.
+/// 1/(1 + x) for a small x >= 0: the series, whose first term left out is 1e-16; a body that turns
+/// by more than 0.04 rad per step needs the division. Bodies that do not need it must not see that
+/// their neighbours in the lanes do.
+inline constexpr double small_square = 1e-4;
+template <class T>
+T inverse_above_one_series(const T& x) {
+  return T(1.0 - x) * T(1.0 + T(x * x));
+}
+inline double inverse_above_one(double x) {
+  return x < small_square ? inverse_above_one_series(x) : 1.0 / (1.0 + x);
+}
+inline Lanes inverse_above_one(const Lanes& x) {
+  Lanes value = inverse_above_one_series(x);
+  const auto large = !(x < small_square);
+  if (any_of(large)) [[unlikely]]
+    where(large, value) = 1.0 / (1.0 + x);
+  return value;
+}
+
+/// 1/sqrt(1 + x) for a small x: as above, first term left out 0.2 x^6 (Abramowitz & Stegun 3.6.10).
+inline constexpr double small_excess = 1e-3;
+template <class T>
+T inverse_root_series(const T& x) {
+  const T x2 = x * x;
+  const T low = T(1.0 - T(0.5 * x)), middle = T(3.0 / 8.0 - T(5.0 / 16.0 * x)),
+          high = T(35.0 / 128.0 - T(63.0 / 256.0 * x));
+  return low + T(x2 * T(middle + T(x2 * high)));
+}
+inline double inverse_root(double x) {
+  return std::abs(x) < small_excess ? inverse_root_series(x) : 1.0 / std::sqrt(1.0 + x);
+}
+inline Lanes inverse_root(const Lanes& x) {
+  Lanes value = inverse_root_series(x);
+  const auto large = !(abs(x) < small_excess);
+  if (any_of(large)) [[unlikely]]
+    where(large, value) = 1.0 / sqrt(1.0 + x);
+  return value;
+}
+
+/// Angular momentum and quaternion (principal axes to world, not normalised) turned about one axis.
+/// \param half  half the step over the moment of inertia: t = half l, the rotation is by 2 atan t
 template <int axis, class T>
-void turn_about(Quat<T>& q, Vec3<T>& l, const T& inverse_inertia, double half_step) {
-  const auto component = [&]() -> const T& {
-    if constexpr (axis == 0) return l.x;
-    if constexpr (axis == 1) return l.y;
-    if constexpr (axis == 2) return l.z;
+void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
+  // sin = 2 t/(1 + t^2), cos = 1 - t sin
+  const auto turn = [&](const T& t, T& first, T& second) {
+    const T s = T(t + t) * inverse_above_one(T(t * t));
+    const T was = first;
+    first = was + T(s * T(second - T(t * was)));
+    second = second - T(s * T(was + T(t * second)));
   };
-  const T t = half_step * T(component() * inverse_inertia);
-  const T t2 = t * t;
-  const T scale = 1.0 / T(1.0 + t2);
-  const T c = T(1.0 - t2) * scale, s = T(2.0 * t) * scale;
   if constexpr (axis == 0) {
-    l = {l.x, T(c * l.y) + T(s * l.z), T(c * l.z) - T(s * l.y)};
+    const T t = half * l.x;
+    turn(t, l.y, l.z);
     q = {q.w - T(t * q.x), q.x + T(t * q.w), q.y + T(t * q.z), q.z - T(t * q.y)};
   } else if constexpr (axis == 1) {
-    l = {T(c * l.x) - T(s * l.z), l.y, T(c * l.z) + T(s * l.x)};
+    const T t = half * l.y;
+    turn(t, l.z, l.x);
     q = {q.w - T(t * q.y), q.x - T(t * q.z), q.y + T(t * q.w), q.z + T(t * q.x)};
   } else {
-    l = {T(c * l.x) + T(s * l.y), T(c * l.y) - T(s * l.x), l.z};
+    const T t = half * l.z;
+    turn(t, l.x, l.y);
     q = {q.w - T(t * q.z), q.x + T(t * q.y), q.y - T(t * q.x), q.z + T(t * q.w)};
   }
 }
 
+/// A quaternion that is a unit one but for turns of one step.
 template <class T>
 Quat<T> unit(const Quat<T>& q) {
-  using std::sqrt;
-  const T n = 1.0 / sqrt(T(T(q.w * q.w) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z)));
+  const T n =
+      inverse_root(T(T(T(q.w * q.w) - 1.0) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z)));
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 
@@ -71,13 +112,15 @@ void drift_rotation(const BodyConstants<T>& body, BodyMotion<T>& m, double dt) {
   Quat<T> axes = product(m.q, body.axes);
   Vec3<T> l = triad(axes).to_local(m.momentum);
   const Vec3<T>& inverse = body.inverse_inertia;
-  turn_about<0>(axes, l, inverse.x, 0.25 * dt);
-  turn_about<1>(axes, l, inverse.y, 0.25 * dt);
-  turn_about<2>(axes, l, inverse.z, 0.5 * dt);
-  turn_about<1>(axes, l, inverse.y, 0.25 * dt);
-  turn_about<0>(axes, l, inverse.x, 0.25 * dt);
+  const Vec3<T> half{T(T(0.25 * dt) * inverse.x), T(T(0.25 * dt) * inverse.y),
+                     T(T(0.5 * dt) * inverse.z)};
+  turn_about<0>(axes, l, half.x);
+  turn_about<1>(axes, l, half.y);
+  turn_about<2>(axes, l, half.z);
+  turn_about<1>(axes, l, half.y);
+  turn_about<0>(axes, l, half.x);
   axes = unit(axes);
-  m.q = unit(product(axes, conjugate(body.axes)));
+  m.q = product(axes, conjugate(body.axes));
   m.w = triad(axes).to_world({inverse.x * l.x, inverse.y * l.y, inverse.z * l.z});
 }
 

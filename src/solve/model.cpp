@@ -112,7 +112,6 @@ void Model<Space>::prescribe_accelerations(double time, std::span<double> accele
 
 template <class Space>
 void Model<Space>::spread(Prescription motion, double time, std::span<double> values) const {
-  std::fill(values.begin(), values.end(), 0.0);
   for (const PlacedBoundary& placed : boundaries_) {
     const std::array<double, 6> value = (placed.boundary.*motion)(time);
     for (const std::int32_t body : placed.bodies) {

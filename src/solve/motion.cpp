@@ -99,11 +99,15 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
   }
 }
 
-[[gnu::flatten]] double Motion::step_block(std::size_t block, State<Spatial>& state,
-                                           const Wrenches<Spatial>& wrenches, double dt) const {
-  const auto owned = static_cast<std::size_t>(part_.owned);
-  // Lanes beyond the last body repeat it, and are not written.
-  const auto body_of = [&](std::size_t lane) { return std::min(block * lanes + lane, owned - 1); };
+/// \param count  bodies of the block: lanes beyond the last body repeat it, and are not written
+template <class Count>
+[[gnu::always_inline]] inline Lanes Motion::step_block(std::size_t block, Count count,
+                                                       State<Spatial>& state,
+                                                       const Wrenches<Spatial>& wrenches,
+                                                       double dt) const {
+  const auto body_of = [&](std::size_t lane) {
+    return block * lanes + (count == lanes ? lane : std::min(lane, count - 1));
+  };
   const auto four = [&](std::size_t offset) {
     return gather_four([&](std::size_t lane) { return state.record(body_of(lane)) + offset; });
   };
@@ -121,7 +125,6 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
   std::array<detail::Four, lanes> rows;
   const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
     scatter_four<Lanes>(values, rows);
-    const std::size_t count = std::min(lanes, owned - block * lanes);
     for (std::size_t lane = 0; lane < count; ++lane)
       __builtin_memcpy(state.record(block * lanes + lane) + offset, &rows[lane], sizeof rows[lane]);
   };
@@ -129,9 +132,23 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
   put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
   put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
   put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
-  const Lanes v2 = dot(m.v, m.v);
-  const double sum = reduce(v2);  // a maximum would lose what is not a number
-  return std::isfinite(sum) ? hmax(v2) : sum;
+  return dot(m.v, m.v);
+}
+
+[[gnu::flatten]] double Motion::step_blocks(State<Spatial>& state,
+                                            const Wrenches<Spatial>& wrenches, double dt) const {
+  const auto owned = static_cast<std::size_t>(part_.owned);
+  const std::size_t whole = owned / lanes, left = owned % lanes;
+  // A maximum would lose what is not a number, a sum keeps it.
+  Lanes largest(0.0), sum(0.0);
+  const auto take = [&](const Lanes& v2) {
+    largest = max(largest, v2);
+    sum += v2;
+  };
+  for (std::size_t block = 0; block < whole; ++block)
+    take(step_block(block, std::integral_constant<std::size_t, lanes>{}, state, wrenches, dt));
+  if (left > 0) take(step_block(whole, left, state, wrenches, dt));
+  return std::isfinite(reduce(sum)) ? hmax(largest) : std::numeric_limits<double>::quiet_NaN();
 }
 
 double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {
@@ -140,13 +157,7 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
     std::copy_n(record, Spatial::record,
                 saved_.begin() + static_cast<std::ptrdiff_t>(k * Spatial::record));
   }
-  double largest = 0;
-  bool finite = true;
-  for (std::size_t block = 0; block < blocks_.size(); ++block) {
-    const double v2 = step_block(block, state, wrenches, dt);
-    finite = finite && std::isfinite(v2);
-    largest = std::max(largest, v2);
-  }
+  const double largest = step_blocks(state, wrenches, dt);
   if (!held_.empty()) {
     model_.prescribe(state.time, now_);
     model_.prescribe(state.time + dt, next_);
@@ -158,59 +169,57 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
     }
   }
   state.time += dt;
-  return finite ? largest : std::numeric_limits<double>::quiet_NaN();
+  return largest;
 }
 
-/// A body of which some components are prescribed: those get the velocity that takes them where
-/// they must be, by an impulse of the boundary; the others are free. The boundary's work is that
-/// impulse times the mean velocity.
+/// A body of which some components are prescribed, stepped as if it were free: those get the
+/// velocity that takes them where they must be, by an impulse of the boundary; the others are free.
+/// The boundary's work is that impulse times the mean velocity.
 void Motion::step_held(std::int32_t body, const double* before, State<Spatial>& state,
                        const Wrenches<Spatial>& wrenches, std::span<const double> now,
                        std::span<const double> next, double dt) {
   const auto b = static_cast<std::size_t>(body);
   const std::uint8_t bits = model_.prescribed()[b];
+  double* after = state.record(b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if ((bits >> k & 1U) == 0) continue;
+    const std::size_t u = Spatial::displacement + k, v = Spatial::velocity + k;
+    const double given = (next[k] - now[k]) / dt;
+    const double mass = 1.0 / blocks_[b / lanes].values[0][b % lanes];
+    boundary_work_ += mass * (given - after[v]) * 0.5 * (given + before[v]);
+    after[v] = given;
+    after[u] = before[u] + dt * given;
+  }
+  if (bits >> 3 != 0) turn_held(body, before, after, wrenches.of(b), now, next, dt);
+}
+
+/// The rotation of a body that is held about some axes.
+void Motion::turn_held(std::int32_t body, const double* before, double* after, const double* f,
+                       std::span<const double> now, std::span<const double> next, double dt) {
+  const std::uint8_t bits = model_.prescribed()[static_cast<std::size_t>(body)];
   const auto fixed = [&](std::size_t k) { return (bits >> k & 1U) != 0; };
   const BodyConstants<double> c = constants(body);
-  const double* f = wrenches.of(b);
   BodyMotion<double> m = read(before);
-
-  const std::array<double, 3> old{m.v.x, m.v.y, m.v.z};
-  std::array<double, 3> v = old;
-  for (std::size_t k = 0; k < 3; ++k) {
-    v[k] += dt * c.inverse_mass * f[k];
+  m.momentum = m.momentum + dt * Vec3<double>{f[3], f[4], f[5]};
+  const Eigen::Matrix3d inverse = in_world(triad(product(m.q, c.axes)), c.inverse_inertia);
+  const Eigen::Vector3d spin = inverse * Eigen::Vector3d(m.momentum.x, m.momentum.y, m.momentum.z);
+  const Eigen::Vector3d old_spin(m.w.x, m.w.y, m.w.z);
+  // Impulses about the axes that are held; 0 about the others.
+  Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d miss = Eigen::Vector3d::Zero(), mean = miss;
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    const auto k = static_cast<std::size_t>(3 + r);
     if (!fixed(k)) continue;
     const double given = (next[k] - now[k]) / dt;
-    boundary_work_ += (given - v[k]) / c.inverse_mass * 0.5 * (given + old[k]);
-    v[k] = given;
+    miss[r] = given - spin[r];
+    mean[r] = 0.5 * (given + old_spin[r]);
+    for (Eigen::Index s = 0; s < 3; ++s)
+      compliance(r, s) = fixed(static_cast<std::size_t>(3 + s)) ? inverse(r, s) : 0.0;
   }
-  m.v = {v[0], v[1], v[2]};
-  m.u = m.u + dt * m.v;
-
-  m.momentum = m.momentum + dt * Vec3<double>{f[3], f[4], f[5]};
-  const int count = fixed(3) + fixed(4) + fixed(5);
-  if (count > 0) {
-    const Triad<double> axes = triad(product(m.q, c.axes));
-    const Eigen::Matrix3d inverse = in_world(axes, c.inverse_inertia);
-    const Eigen::Vector3d spin =
-        inverse * Eigen::Vector3d(m.momentum.x, m.momentum.y, m.momentum.z);
-    const Eigen::Vector3d old_spin(m.w.x, m.w.y, m.w.z);
-    // Impulses about the axes that are held; 0 about the others.
-    Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity();
-    Eigen::Vector3d miss = Eigen::Vector3d::Zero(), mean = miss;
-    for (Eigen::Index r = 0; r < 3; ++r) {
-      const auto k = static_cast<std::size_t>(3 + r);
-      if (!fixed(k)) continue;
-      const double given = (next[k] - now[k]) / dt;
-      miss[r] = given - spin[r];
-      mean[r] = 0.5 * (given + old_spin[r]);
-      for (Eigen::Index s = 0; s < 3; ++s)
-        compliance(r, s) = fixed(static_cast<std::size_t>(3 + s)) ? inverse(r, s) : 0.0;
-    }
-    const Eigen::Vector3d impulse = compliance.partialPivLu().solve(miss);
-    boundary_work_ += impulse.dot(mean);
-    m.momentum = m.momentum + Vec3<double>{impulse[0], impulse[1], impulse[2]};
-  }
-  if (count == 3) {  // the rotation is given whole: no gyroscopic motion beside it
+  const Eigen::Vector3d impulse = compliance.partialPivLu().solve(miss);
+  boundary_work_ += impulse.dot(mean);
+  m.momentum = m.momentum + Vec3<double>{impulse[0], impulse[1], impulse[2]};
+  if (bits >> 3 == 7) {  // the rotation is given whole: no gyroscopic motion beside it
     m.w = {(next[3] - now[3]) / dt, (next[4] - now[4]) / dt, (next[5] - now[5]) / dt};
     m.q = normalised(product(exp_rotation(dt * m.w), m.q));
     const Triad<double> axes = triad(product(m.q, c.axes));
@@ -219,7 +228,10 @@ void Motion::step_held(std::int32_t body, const double* before, State<Spatial>& 
   } else {
     drift_rotation(c, m, dt);
   }
-  write(m, state.record(b));
+  const Vec3<double> u{after[0], after[1], after[2]},
+      v{after[Spatial::velocity], after[Spatial::velocity + 1], after[Spatial::velocity + 2]};
+  m.u = u, m.v = v;
+  write(m, after);
 }
 
 /// Velocity and angular momentum half a step on: by the forces where a body is free, as given where

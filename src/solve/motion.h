@@ -51,11 +51,15 @@ class Motion {
     std::array<std::array<double, lanes>, 8> values;  ///< 1/m, 1/I, axes
     BodyConstants<Lanes> get() const;
   };
-  double step_block(std::size_t block, State<Spatial>& state, const Wrenches<Spatial>& wrenches,
-                    double dt) const;
+  template <class Count>
+  Lanes step_block(std::size_t block, Count count, State<Spatial>& state,
+                   const Wrenches<Spatial>& wrenches, double dt) const;
+  double step_blocks(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const;
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
                  const Wrenches<Spatial>& wrenches, std::span<const double> now,
                  std::span<const double> next, double dt);
+  void turn_held(std::int32_t body, const double* before, double* after, const double* wrench,
+                 std::span<const double> now, std::span<const double> next, double dt);
   BodyConstants<double> constants(std::int32_t body) const;
 
   const Model<Spatial>& model_;

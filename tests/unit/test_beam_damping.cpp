@@ -2,6 +2,7 @@
 // and two bodies joined by one beam decay as a damped oscillator does.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -52,6 +53,58 @@ class Dashpots : public testing::TestWithParam<std::pair<DampingModes, Kinematic
  protected:
   BeamOptions options() const { return {Shear::exact, GetParam().second, 0.7, GetParam().first}; }
 };
+
+/// Beams of a flat sheet keep their triads in two numbers, those of any other lattice in nine: a
+/// sheet that stands askew, with all that moves in it, has the same forces, turned.
+TEST_P(Dashpots, FlatSheetAndTheSameStandingAskewHaveTheSameForces) {
+  const Lattice flat = test::sheet(6, 5, 1);
+  Lattice askew = flat;
+  const Quat<double> turn = exp_rotation({0.7, -0.3, 1.2});
+  const auto turned = [&](Point3& x) {
+    const Vec3<double> t = rotate(turn, {x[0], x[1], x[2]});
+    x = {t.x, t.y, t.z};
+  };
+  std::for_each(askew.bodies.position.begin(), askew.bodies.position.end(), turned);
+  std::for_each(askew.beams.axis_y.begin(), askew.beams.axis_y.end(), turned);
+  for (auto& [w, x, y, z] : askew.bodies.orientation) {
+    const Quat<double> q = product(turn, Quat<double>{w, x, y, z});
+    w = q.w, x = q.x, y = q.y, z = q.z;
+  }
+  const auto wrenches = [&](const Lattice& lattice, bool turn_state) {
+    const Part part = partition(lattice, PETSC_COMM_SELF);
+    State<Spatial> state = test::deformed(part, 0.1, 0.2);
+    Random random(8);
+    put_random_velocities(state, random);
+    for (std::size_t b = 0; turn_state && b < static_cast<std::size_t>(part.local); ++b) {
+      double* r = state.record(b);
+      for (double* v :
+           {r, r + Spatial::rotation + 1, r + Spatial::velocity, r + Spatial::angular_velocity}) {
+        Point3 x{v[0], v[1], v[2]};
+        turned(x);
+        std::copy(x.begin(), x.end(), v);
+      }
+    }
+    Wrenches<Spatial> w(static_cast<std::size_t>(part.local));
+    make_beam_force<Spatial>(part, options())->add(state, w);
+    return w;
+  };
+  Wrenches<Spatial> expected = wrenches(flat, false), seen = wrenches(askew, true);
+  double size = 0, difference = 0;
+  for (std::size_t k = 0; k < expected.values.size(); k += Spatial::wrench) {
+    for (const std::size_t first : {k, k + 3}) {
+      double* w = expected.values.data() + first;
+      Point3 x{w[0], w[1], w[2]};
+      turned(x);
+      std::copy(x.begin(), x.end(), w);
+    }
+    for (std::size_t a = k; a < k + 6; ++a) {
+      size = std::max(size, std::abs(expected.values[a]));
+      difference = std::max(difference, std::abs(seen.values[a] - expected.values[a]));
+    }
+  }
+  EXPECT_GT(size, 0);
+  EXPECT_LT(difference, 1e-12 * size);
+}
 
 TEST_P(Dashpots, TakePowerAndBalanceForcesAndMoments) {
   const Lattice lattice = test::sheet(6, 5, 1);

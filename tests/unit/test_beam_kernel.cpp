@@ -457,12 +457,14 @@ Real reference_asin_remainder(Real s) {
   return -sum;
 }
 
-TEST(AsinRemainder, SeriesAndClosedFormAgreeAtTheSwitch) {
+TEST(HalfAngle, SeriesAndClosedFormsAgreeAtTheSwitch) {
   for (const double s : {1e-200, 1e-9, 1e-3, 0.05, 0.0999, 0.1 * (1 - 1e-15), 0.1 * (1 + 1e-15),
                          0.1001, 0.3, 0.6, 0.99, 1 - 1e-12, 1.0}) {
-    const double seen = asin_remainder(s * s, std::sqrt((1 - s) * (1 + s)));
+    const HalfAngle<double> seen = half_angle(s * s, std::sqrt((1 - s) * (1 + s)));
     const auto expected = static_cast<double>(reference_asin_remainder(s));
-    EXPECT_NEAR(seen / expected, 1, s < 0.1 ? 1e-15 : 3e-13) << s;
+    EXPECT_NEAR(seen.h / expected, 1, s < 0.1 ? 1e-15 : 3e-13) << s;
+    const Real w = std::sqrt((1 - Real(s)) * (1 + Real(s)));
+    EXPECT_NEAR(seen.inverse_sum * static_cast<double>(std::sqrt(2 * (1 + w))), 1, 4e-16) << s;
   }
 }
 

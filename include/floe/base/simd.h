@@ -28,6 +28,14 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
+/// Asks for all cache lines of something that is read soon.
+template <class T>
+void prefetch(const T& what) {
+  constexpr std::size_t line = 64;
+  for (std::size_t k = 0; k < sizeof(T); k += line)
+    __builtin_prefetch(reinterpret_cast<const char*>(&what) + k);
+}
+
 namespace detail {
 
 using Four [[gnu::vector_size(32)]] = double;
@@ -36,6 +44,16 @@ inline Four load_four(const double* p) {
   Four v;
   __builtin_memcpy(&v, p, sizeof v);
   return v;
+}
+
+using Eight [[gnu::vector_size(64)]] = double;
+
+/// Entries 0, 2, 4, 6 of a and b in turn; entries 1, 3, 5, 7.
+inline Eight evens(Eight a, Eight b) {
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+inline Eight odds(Eight a, Eight b) {
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
 }
 
 /// Rows a, b, c, d to columns, in place.
@@ -59,14 +77,22 @@ std::array<Lane, 4> gather_four(At at) {
   using namespace detail;
   constexpr std::size_t width = Lane::size();
   if constexpr (width == 8) {
-    Four a = load_four(at(0)), b = load_four(at(1)), c = load_four(at(2)), d = load_four(at(3));
-    Four e = load_four(at(4)), f = load_four(at(5)), g = load_four(at(6)), h = load_four(at(7));
-    transpose(a, b, c, d);
-    transpose(e, f, g, h);
-    const auto join = [](Four low, Four high) {
-      return std::bit_cast<Lane>(__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7));
+    // Pairs of records side by side, chosen so that lanes come out in order.
+    const auto pair = [&](std::size_t low, std::size_t high) {
+      return __builtin_shufflevector(load_four(at(low)), load_four(at(high)), 0, 1, 2, 3, 4, 5, 6,
+                                     7);
     };
-    return {join(a, e), join(b, f), join(c, g), join(d, h)};
+    const Eight a = pair(0, 2), b = pair(1, 3), c = pair(4, 6), d = pair(5, 7);
+    const Eight ab_even = evens(a, b), ab_odd = odds(a, b), cd_even = evens(c, d),
+                cd_odd = odds(c, d);
+    const auto low = [](Eight x, Eight y) {
+      return std::bit_cast<Lane>(__builtin_shufflevector(x, y, 0, 1, 4, 5, 8, 9, 12, 13));
+    };
+    const auto high = [](Eight x, Eight y) {
+      return std::bit_cast<Lane>(__builtin_shufflevector(x, y, 2, 3, 6, 7, 10, 11, 14, 15));
+    };
+    return {low(ab_even, cd_even), low(ab_odd, cd_odd), high(ab_even, cd_even),
+            high(ab_odd, cd_odd)};
   } else if constexpr (width == 4) {
     Four a = load_four(at(0)), b = load_four(at(1)), c = load_four(at(2)), d = load_four(at(3));
     transpose(a, b, c, d);
@@ -85,19 +111,19 @@ void scatter_four(const std::array<Lane, 4>& in, std::array<detail::Four, Lane::
   using namespace detail;
   constexpr std::size_t width = Lane::size();
   if constexpr (width == 8) {
-    using Eight [[gnu::vector_size(64)]] = double;
-    std::array<Four, 4> low, high;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Eight v = std::bit_cast<Eight>(in[k]);
-      low[k] = __builtin_shufflevector(v, v, 0, 1, 2, 3);
-      high[k] = __builtin_shufflevector(v, v, 4, 5, 6, 7);
-    }
-    transpose(low[0], low[1], low[2], low[3]);
-    transpose(high[0], high[1], high[2], high[3]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      rows[k] = low[k];
-      rows[4 + k] = high[k];
-    }
+    const auto eight = [&](std::size_t k) { return std::bit_cast<Eight>(in[k]); };
+    const Eight even01 = evens(eight(0), eight(1)), odd01 = odds(eight(0), eight(1)),
+                even23 = evens(eight(2), eight(3)), odd23 = odds(eight(2), eight(3));
+    const auto put = [&](std::size_t first, Eight x, Eight y) {  // lanes first, + 2, + 4, + 6
+      const Eight low = __builtin_shufflevector(x, y, 0, 1, 8, 9, 2, 3, 10, 11),
+                  high = __builtin_shufflevector(x, y, 4, 5, 12, 13, 6, 7, 14, 15);
+      rows[first] = __builtin_shufflevector(low, low, 0, 1, 2, 3);
+      rows[first + 2] = __builtin_shufflevector(low, low, 4, 5, 6, 7);
+      rows[first + 4] = __builtin_shufflevector(high, high, 0, 1, 2, 3);
+      rows[first + 6] = __builtin_shufflevector(high, high, 4, 5, 6, 7);
+    };
+    put(0, even01, even23);
+    put(1, odd01, odd23);
   } else if constexpr (width == 4) {
     for (std::size_t k = 0; k < 4; ++k) rows[k] = std::bit_cast<Four>(in[k]);
     transpose(rows[0], rows[1], rows[2], rows[3]);

@@ -87,7 +87,8 @@ class Model {
   std::span<const std::uint8_t> held() const { return held_; }
   /// Takes the pins of free motions over.
   void pin(const std::vector<Pin>& pins);
-  /// Prescribed values at a time, n per local body (0 where free or pinned) [m, rad].
+  /// Prescribed values at a time [m, rad] into n entries per local body; those that are free or
+  /// pinned are left as they are.
   void prescribe(double time, std::span<double> values) const;
   /// Their rates [m/s, rad/s] and accelerations in the same form.
   void prescribe_rates(double time, std::span<double> rates) const;

@@ -1,0 +1,232 @@
+// One explicit step and what it is made of, ns per beam: build/release/bench/explicit_bench.
+//   step      forces, update of the bodies, nothing else
+//   zero      wrenches set to zero
+//   gather    records of the beams' bodies into lanes
+//   kernel    arithmetic of a beam on one block that stays in the nearest cache: the floor
+//   scatter   shares added to the bodies' wrenches
+//   beams     the three together, as they run
+//   bodies    leapfrog of the bodies
+//   ts        what PETSc's TS adds to a step, in ns per step
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <map>
+
+#include "floe/base/petsc.h"
+#include "floe/solve/model.h"
+#include "forces/beam_blocks.h"
+#include "forces/beam_spatial.h"
+#include "solve/leapfrog.h"
+#include "solve/motion.h"
+
+namespace {
+
+using namespace floe;
+using Blocks = std::vector<BeamBlock<FlatFrame>>;
+
+/// A meshed sheet of about `bodies` bodies with a smooth deformation and motion.
+class Case {
+ public:
+  Case(std::int64_t bodies, double damping)
+      : lattice_(mesh(bodies)), model(lattice_, PETSC_COMM_SELF, {}), motion(start(damping)) {
+    const Part& part = model.part();
+    blocks.resize((part.beams.bodies.size() + lanes - 1) / lanes);
+    for (std::int32_t m = 0; m < part.beams.size(); ++m) {
+      const auto k = static_cast<std::size_t>(m);
+      BeamBlock<FlatFrame>& block = blocks[k / lanes];
+      block.set(k % lanes, SpatialBeam<Kinematics::corotational>::make(part, m, Shear::one_point));
+      block.i[k % lanes] = part.beams.bodies[k][0];
+      block.j[k % lanes] = part.beams.bodies[k][1];
+    }
+    lattice_ = {};
+  }
+  static Case& of(std::int64_t bodies, double damping) {
+    static std::map<std::pair<std::int64_t, double>, std::unique_ptr<Case>> cases;
+    auto& found = cases[{bodies, damping}];
+    if (!found) found = std::make_unique<Case>(bodies, damping);
+    return *found;
+  }
+  /// Sets the counter that tools/bench prints.
+  void count(benchmark::State& bench) const {
+    bench.counters["ns_per_beam"] = benchmark::Counter(
+        static_cast<double>(model.part().beams.size()) * 1e-9,
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  }
+  void step() {
+    model.evaluate(state, wrenches);
+    benchmark::DoNotOptimize(motion.step(state, wrenches, dt));
+    for (const auto& force : model.forces()) force->commit(state, dt);
+  }
+
+  static constexpr double dt = 1e-5;
+
+ private:
+  static Lattice mesh(std::int64_t bodies) {
+    SheetPlan plan;
+    plan.element_size = 1;
+    plan.length = plan.width = std::sqrt(static_cast<double>(bodies) * std::sqrt(3.0) / 2);
+    plan.iterations = 5;
+    SheetSection section;
+    section.thickness = 0.5;
+    Lattice lattice = make_sheet(tessellate(plan, PETSC_COMM_SELF), section);
+    (void)reorder(lattice);
+    return lattice;
+  }
+  Motion start(double damping) {
+    BeamOptions options;
+    options.damping_ratio = damping;
+    model.set_beams(make_beam_force<Spatial>(model.part(), options), Kinematics::corotational);
+    const Part& part = model.part();
+    const auto local = static_cast<std::size_t>(part.local);
+    state = State<Spatial>(local);
+    wrenches = Wrenches<Spatial>(local);
+    std::vector<Point3> velocity(local), spin(local);
+    for (std::size_t b = 0; b < local; ++b) {
+      const Point3& x = part.bodies.position[b];
+      for (std::size_t k = 0; k < 3; ++k) {
+        velocity[b][k] = 1e-3 * std::sin(0.1 * x[0] + static_cast<double>(k));
+        spin[b][k] = 1e-4 * std::cos(0.1 * x[1] - static_cast<double>(k));
+      }
+    }
+    Motion made(model);
+    made.start(state, velocity, spin);
+    return made;
+  }
+
+  Lattice lattice_;
+
+ public:
+  Model<Spatial> model;
+  State<Spatial> state;
+  Wrenches<Spatial> wrenches;
+  Motion motion;
+  Blocks blocks;
+};
+
+void step(benchmark::State& bench, double damping) {
+  Case& c = Case::of(bench.range(0), damping);
+  for (auto _ : bench) c.step();
+  c.count(bench);
+}
+
+void zero(benchmark::State& bench) {
+  Case& c = Case::of(bench.range(0), 0);
+  for (auto _ : bench) {
+    std::fill(c.wrenches.values.begin(), c.wrenches.values.end(), 0.0);
+    benchmark::ClobberMemory();
+  }
+  c.count(bench);
+}
+
+[[gnu::flatten]] void gather_all(const Case& c) {
+  Lanes sum(0.0);
+  for (const BeamBlock<FlatFrame>& block : c.blocks) {
+    for (const auto* bodies : {&block.i, &block.j}) {
+      const LaneBodies b = gather<false>(c.state.records.data(), *bodies);
+      sum += (b.u.x + b.u.y + b.u.z) + (b.q.w + b.q.x + b.q.y + b.q.z);
+    }
+  }
+  benchmark::DoNotOptimize(reduce(sum));
+}
+void gather(benchmark::State& bench) {
+  const Case& c = Case::of(bench.range(0), 0);
+  for (auto _ : bench) gather_all(c);
+  c.count(bench);
+}
+
+[[gnu::flatten]] void compute_all(const Case& c) {
+  using Kernel = BeamKernel<Kinematics::corotational>;
+  BeamBlock<FlatFrame> block = c.blocks.front();
+  const LaneBodies i = floe::gather<false>(c.state.records.data(), block.i),
+                   j = floe::gather<false>(c.state.records.data(), block.j);
+  Lanes sum(0.0);
+  for (std::size_t k = 0; k < c.blocks.size(); ++k) {
+    __asm__ volatile("" : : "r"(&block), "r"(&i), "r"(&j) : "memory");
+    const BeamConstants<Lanes, FlatFrame> beam = block.get();
+    const BeamGradient<Lanes> g =
+        Kernel::gradient(beam, Kernel::strains(beam, j.u - i.u, i.q, j.q));
+    sum += (g.force.x + g.force.y + g.force.z) + (g.moment_i.x + g.moment_i.y + g.moment_i.z) +
+           (g.moment_j.x + g.moment_j.y + g.moment_j.z);
+  }
+  benchmark::DoNotOptimize(reduce(sum));
+}
+void kernel(benchmark::State& bench) {
+  const Case& c = Case::of(bench.range(0), 0);
+  for (auto _ : bench) compute_all(c);
+  c.count(bench);
+}
+
+[[gnu::flatten]] void scatter_all(Case& c) {
+  const Lanes one(1e-3);
+  const BeamGradient<Lanes> g{{one, one, one}, {one, one, one}, {one, one, one}};
+  for (const BeamBlock<FlatFrame>& block : c.blocks)
+    floe::scatter(block.i, block.j, g, c.wrenches.values.data());
+}
+void scatter(benchmark::State& bench) {
+  Case& c = Case::of(bench.range(0), 0);
+  for (auto _ : bench) scatter_all(c);
+  c.count(bench);
+}
+
+void beams(benchmark::State& bench, double damping) {
+  Case& c = Case::of(bench.range(0), damping);
+  for (auto _ : bench) {
+    c.model.beams()->add(c.state, c.wrenches);
+    benchmark::ClobberMemory();
+  }
+  c.count(bench);
+}
+
+void bodies(benchmark::State& bench) {
+  Case& c = Case::of(bench.range(0), 0);
+  std::fill(c.wrenches.values.begin(), c.wrenches.values.end(), 0.0);
+  for (auto _ : bench) benchmark::DoNotOptimize(c.motion.step(c.state, c.wrenches, 1e-9));
+  c.count(bench);
+}
+
+/// A TS whose steps do nothing.
+void ts(benchmark::State& bench) {
+  register_leapfrog();
+  constexpr PetscInt steps = 10000;
+  Handle<Vec> solution;
+  check(VecCreateSeq(PETSC_COMM_SELF, 16, solution.put()));
+  LeapfrogStep nothing = [](double) { return true; };
+  for (auto _ : bench) {
+    Handle<TS> stepper;
+    check(TSCreate(PETSC_COMM_SELF, stepper.put()));
+    check(TSSetType(stepper, ts_leapfrog));
+    check(TSSetSolution(stepper, solution));
+    check(TSSetTimeStep(stepper, 1.0));
+    check(TSSetMaxSteps(stepper, steps));
+    check(TSSetMaxTime(stepper, 1e9));
+    check(TSSetExactFinalTime(stepper, TS_EXACTFINALTIME_STEPOVER));
+    set_leapfrog_step(stepper, &nothing);
+    check(TSSolve(stepper, nullptr));
+  }
+  bench.counters["ns_per_step"] = benchmark::Counter(
+      static_cast<double>(steps) * 1e-9,
+      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->Arg(1460)->Arg(29561)->Arg(1000000)->Unit(benchmark::kMicrosecond);
+}
+BENCHMARK_CAPTURE(step, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(step, damped, 1.0)->Apply(sizes);
+BENCHMARK_CAPTURE(beams, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(beams, damped, 1.0)->Apply(sizes);
+BENCHMARK(gather)->Apply(sizes);
+BENCHMARK(kernel)->Apply(sizes);
+BENCHMARK(scatter)->Apply(sizes);
+BENCHMARK(bodies)->Apply(sizes);
+BENCHMARK(zero)->Apply(sizes);
+BENCHMARK(ts)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  floe::Mpi mpi(argc, argv);
+  floe::Session session(argc, argv, "");
+  benchmark::RunSpecifiedBenchmarks();
+}
