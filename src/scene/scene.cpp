@@ -300,9 +300,10 @@ Scene read_scene(const std::string& path) {
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   check_floats(scene);
-  for (const std::string& name : options.names("boundary"))
+  for (const std::string& name : options.names("boundary")) {
     scene.boundaries.push_back(read_boundary(options, name));
-  require_motion(scene, scene.boundaries.back());
+    require_motion(scene, scene.boundaries.back());
+  }
   for (const std::string& name : options.names("load"))
     scene.loads.push_back(read_load(options, name));
   read_time(options, scene);

@@ -51,6 +51,23 @@ void DynamicRun<Space>::plan(double wanted) {
   set_sampling();
 }
 
+template <class Space>
+void DynamicRun<Space>::replan(TS ts, double wanted) {
+  if (adaptive_) {
+    dt_ = std::min(dt_, wanted);
+  } else {
+    time_base_ = time_;
+    step_base_ = done_;
+    const double left = options_.end - time_;
+    steps_ = static_cast<std::int64_t>(std::ceil(left / wanted * (1 - 1e-12)));
+    dt_ = left / static_cast<double>(steps_);
+    steps_ += done_;
+    check(TSSetMaxSteps(ts, static_cast<PetscInt>(std::min<std::int64_t>(steps_, most_steps_))));
+  }
+  result_.dt = dt_;
+  check(TSSetTimeStep(ts, dt_));
+}
+
 /// All that a run goes on from. Collective.
 template <class Space>
 void DynamicRun<Space>::remember(Memory& memory) {
@@ -67,6 +84,8 @@ void DynamicRun<Space>::remember(Memory& memory) {
   memory.common("steps", steps_);
   memory.common("time", state_.time);
   memory.common("dt", dt_);
+  memory.common("time_base", time_base_);
+  memory.common("step_base", step_base_);
   memory.common("stable_dt", result_.stable_dt);
   memory.common("limited_by", result_.limited_by);
   memory.common("next_sample", next_sample_);
@@ -92,7 +111,8 @@ bool DynamicRun<Space>::restart() {
   if (options_.checkpoint.restart.empty()) return false;
   checkpoints_.load([&](Memory& memory) { remember(memory); });
   result_.dt = dt_;
-  steps_ = static_cast<std::int64_t>(std::ceil(options_.end / dt_ * (1 - 1e-12)));
+  steps_ = step_base_ +
+           static_cast<std::int64_t>(std::ceil((options_.end - time_base_) / dt_ * (1 - 1e-12)));
   if (adaptive_ ? options_.end < state_.time : steps_ < done_)
     throw InputError("time: end: " + text(options_.end) + " must be >= " + text(state_.time) +
                      " [s], the time of the checkpoint");

@@ -48,6 +48,12 @@ class DynamicRun {
   /// Takes a step as near to the wanted one as divides the run equally; if steps adapt, the wanted
   /// one to begin with.
   void plan(double wanted);
+  /// The same for what is left of the run, in the middle of it.
+  void replan(TS ts, double wanted);
+  /// When the next step ends [s]; not for steps that adapt.
+  double next_time() const {
+    return time_base_ + static_cast<double>(done_ + 1 - step_base_) * dt_;
+  }
   /// Solves with a TS whose steps call the run's functions through guarded(), from the run's state
   /// at the run's step; says how it ended.
   RunResult solve(TS ts);
@@ -85,6 +91,7 @@ class DynamicRun {
   void give_up(std::string why) { why_ = std::move(why); }
 
   Model<Space>& model() { return model_; }
+  const Model<Space>& model() const { return model_; }
   const DynamicOptions& options() const { return options_; }
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
@@ -132,9 +139,10 @@ class DynamicRun {
   RunResult result_;
   std::exception_ptr error_;
   std::array<double, 2> sample_every_{};
-  double time_ = 0, dt_ = 0, next_sample_ = 0, largest_ = 0;
+  double time_ = 0, dt_ = 0, next_sample_ = 0, time_base_ = 0, largest_ = 0;
   bool adaptive_ = false;
-  std::int64_t steps_ = 0, done_ = 0, before_ = 0, sampled_ = -1;
+  // Step step_base_ ended at time_base_; equal ones follow.
+  std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1;
   PetscInt most_steps_ = 0;  // -ts_max_steps
   std::string why_;
 };

@@ -1,61 +1,60 @@
-#include <cmath>
-
-#include "solve/dynamic_run.h"
 #include "solve/explicit_run.h"
 #include "solve/leapfrog.h"
 #include "solve/motion.h"
 #include "solve/stable_step.h"
-#include "solve/text.h"
 #include "solve/ts_options.h"
 
 namespace floe {
 namespace {
 
 /// Leapfrog's run: velocities half a step behind positions.
-class LeapfrogRun final : public DynamicRun<Spatial> {
+class LeapfrogRun final : public ExplicitRun {
  public:
   LeapfrogRun(Model<Spatial>& model, const ExplicitOptions& options,
               const Observer<Spatial>& observer)
-      : DynamicRun("explicit", ts_leapfrog, model, options, observer),
-        options_(options),
-        motion_(model) {
+      : ExplicitRun(ts_leapfrog, model, options, observer), motion_(model) {
     result().stepper = ts_leapfrog;
     motion_.start(state(), model.part().bodies.velocity, model.part().bodies.angular_velocity);
     evaluate();
   }
 
-  /// Fixes the step: the given one, or from the stable step.
-  void choose_step() {
-    const StableStep stable = stable_step(model(), state());
-    evaluate();  // forces keep by-products of their last evaluation: the power they take
-    result().stable_dt = stable.dt;
-    result().limited_by = stable.limit;
-    plan(wanted_step(options_, options().dt, stable));
+  void begin() {
+    choose_step();
     motion_.stagger(state(), wrenches(), dt());
     model().part().ghosts.update(state().records, Spatial::record);
   }
 
   /// The forces at t_n are known: samples that are due see them, then bodies move to t_n+1.
-  bool step(double dt) {
+  bool step(TS ts) {
     if (done() > 0) evaluate();
     if (!sample_if_due()) return false;
-    const double speed2 = motion_.step(state(), wrenches(), dt);
-    for (const auto& force : model().forces()) force->commit(state(), dt);
-    return moved(static_cast<double>(done() + 1) * dt, speed2) && look_around();
+    if (!keep_step_stable(ts)) return false;
+    const double speed2 = motion_.step(state(), wrenches(), dt());
+    for (const auto& force : model().forces()) force->commit(state(), dt());
+    return moved(next_time(), speed2) && look_around();
   }
 
  private:
+  StableStep find_stable_step() override {
+    const StableStep stable = stable_step(model(), state());
+    evaluate();  // forces keep by-products of their last evaluation: the power they take
+    return stable;
+  }
+  /// Velocities lag half of the next step.
+  void step_changed(TS, double before) override {
+    motion_.stagger(state(), wrenches(), dt() - before);
+  }
   Energies energies() const override {
     const auto [kinetic, boundary] = motion_.energies(state(), wrenches(), dt());
     return {kinetic, boundary};
   }
   void remember_own(Memory& memory) override {
+    ExplicitRun::remember_own(memory);
     double work = motion_.boundary_work();
     memory.share("boundary_work", work);
     motion_.set_boundary_work(work);
   }
 
-  const ExplicitOptions& options_;
   Motion motion_;
 };
 
@@ -73,24 +72,13 @@ RunResult run_leapfrog(Model<Spatial>& model, const ExplicitOptions& options,
   check(TSSetType(ts, ts_leapfrog));
   check(TSSetSolution(ts, solution));
   run.read_options(ts);
-  if (!run.restart()) run.choose_step();
-  LeapfrogStep step = [&](double dt) { return run.guarded([&] { return run.step(dt); }); };
+  if (!run.restart()) run.begin();
+  LeapfrogStep step = [&](double) { return run.guarded([&] { return run.step(ts); }); };
   set_leapfrog_step(ts, &step);
   return run.solve(ts);
 }
 
 }  // namespace
-
-double wanted_step(const ExplicitOptions& options, double given, const StableStep& stable) {
-  if (given > stable.dt && !options.allow_unstable)
-    throw InputError("time: dt: " + text(given) + " must be <= " + text(stable.dt) +
-                     " [s], the stable step, limited by the " + stable.limit +
-                     " (time: allow_unstable: true takes it all the same)");
-  const double wanted = given > 0 ? given : options.safety * stable.dt;
-  if (!std::isfinite(wanted))
-    throw InputError("time: dt: auto finds no force that limits the step; give one");
-  return wanted;
-}
 
 RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
                        const Observer<Spatial>& observer) {

@@ -38,12 +38,10 @@ class Numbers {
   std::span<double> span_;
 };
 
-class RkRun final : public DynamicRun<Spatial> {
+class RkRun final : public ExplicitRun {
  public:
   RkRun(Model<Spatial>& model, const ExplicitOptions& options, const Observer<Spatial>& observer)
-      : DynamicRun("explicit", "rk", model, options, observer),
-        options_(options),
-        equations_(model) {
+      : ExplicitRun(TSRK, model, options, observer), equations_(model) {
     check(VecCreateMPI(model.part().comm, static_cast<PetscInt>(equations_.size()), PETSC_DETERMINE,
                        solution_.put()));
     check(TSCreate(model.part().comm, ts_.put()));
@@ -66,7 +64,10 @@ class RkRun final : public DynamicRun<Spatial> {
       boundary_work_ = equations_.begin(state());
       choose_step();
     }
-    if (is_adaptive()) set_tolerances();
+    if (is_adaptive()) {
+      set_tolerances();
+      limit_steps();
+    }
     equations_.from_records(state(), *Numbers(solution_));
     check(TSRestartStep(ts_));  // or a method that reuses its last stage would do so at step n > 0
     return solve(ts_);
@@ -75,15 +76,22 @@ class RkRun final : public DynamicRun<Spatial> {
  private:
   void read_types();
   StabilityPolynomial polynomial() const;
-  void choose_step();
   void set_tolerances();
+  void limit_steps();
   bool stepped();
 
   bool first() override { return evaluate_and_sample_if_due(); }
   Energies energies() const override {
     return {equations_.kinetic(state()), boundary_work_ + equations_.work_of_state(state())};
   }
-  void remember_own(Memory& memory) override { memory.share("boundary_work", boundary_work_); }
+  void remember_own(Memory& memory) override {
+    ExplicitRun::remember_own(memory);
+    memory.share("boundary_work", boundary_work_);
+  }
+  StableStep find_stable_step() override;
+  void step_changed(TS, double) override {
+    if (is_adaptive()) limit_steps();
+  }
 
   static RkRun& of(TS ts) {
     RkRun* run = nullptr;
@@ -107,7 +115,6 @@ class RkRun final : public DynamicRun<Spatial> {
     return 0;
   }
 
-  const ExplicitOptions& options_;
   BodyEquations equations_;
   Handle<Vec> solution_;
   Handle<TS> ts_;
@@ -151,15 +158,14 @@ StabilityPolynomial RkRun::polynomial() const {
   return {std::span(a, s * s), std::span(b, s)};
 }
 
-void RkRun::choose_step() {
+StableStep RkRun::find_stable_step() {
+  model().part().ghosts.update(state().records, Spatial::record);
   const StableStep stable = rk_stable_step(polynomial(), model(), state());
-  result().stable_dt = stable.dt;
-  result().limited_by = stable.limit;
   // Steps this far inside what the scene's rates allow mean that the region leaves out the
   // imaginary axis, or nearly.
   constexpr double useless = 0.2;
   const double fastest = std::max(stable.omega, stable.decay);
-  if (!options_.allow_unstable && stable.dt * fastest < useless)
+  if (done() == 0 && !explicit_options().allow_unstable && stable.dt * fastest < useless)
     throw InputError(
         "ts_rk_type: '" + result().stepper.substr(3) +
         "' makes vibrations grow that are not damped enough, whatever the step: its stability "
@@ -168,7 +174,7 @@ void RkRun::choose_step() {
         stable.limit +
         "; time: allow_unstable: true with a dt takes it all "
         "the same)");
-  plan(wanted_step(options_, options().dt, stable));
+  return stable;
 }
 
 /// Errors of a step are measured against atol + rtol |y|; for components of different units, atol
@@ -179,8 +185,7 @@ void RkRun::set_tolerances() {
   Handle<Vec> atol, rtol;
   check(VecDuplicate(solution_, atol.put()));
   check(VecDuplicate(solution_, rtol.put()));
-  const bool bounded = std::isfinite(result().stable_dt);
-  const double time = bounded ? result().stable_dt : dt();
+  const double time = std::isfinite(result().stable_dt) ? result().stable_dt : dt();
   const Part& part = model().part();
   {
     const Numbers a(atol), r(rtol);
@@ -200,13 +205,17 @@ void RkRun::set_tolerances() {
     std::fill((*r).begin() + works, (*r).end(), 0.0);
   }
   check(TSSetTolerances(ts_, absolute, atol, relative, rtol));
-  if (!bounded || options_.allow_unstable) return;
+}
+
+/// Steps that adapt stay below the stable one.
+void RkRun::limit_steps() {
+  if (!std::isfinite(result().stable_dt) || explicit_options().allow_unstable) return;
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts_, &adapt));
   PetscReal most = 0;
   check(TSAdaptGetStepLimits(adapt, nullptr, &most));
   check(TSAdaptSetStepLimits(adapt, PETSC_DEFAULT,
-                             std::min(most, options_.safety * result().stable_dt)));
+                             std::min(most, explicit_options().safety * result().stable_dt)));
 }
 
 /// After an accepted step.
@@ -218,7 +227,7 @@ bool RkRun::stepped() {
             " s (limits: -ts_rtol, -ts_atol, -ts_max_reject)");
     return false;
   }
-  double now = static_cast<double>(done() + 1) * dt();
+  double now = next_time();
   if (is_adaptive()) {
     double next = 0;
     check(TSGetTime(ts_, &now));
@@ -237,7 +246,8 @@ bool RkRun::stepped() {
   }
   if (!moved(now, equations_.largest_speed2(state()))) return false;
   // The last state is the run's to sample.
-  if (reason == TS_CONVERGED_ITERATING && !evaluate_and_sample_if_due()) return false;
+  if (reason == TS_CONVERGED_ITERATING && !(evaluate_and_sample_if_due() && keep_step_stable(ts_)))
+    return false;
   return look_around();
 }
 

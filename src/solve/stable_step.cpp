@@ -25,15 +25,23 @@ class Operators {
       : model_(model),
         part_(model.part()),
         base_(state),
+        moving_(state),
         moved_(state),
-        at_base_(static_cast<std::size_t>(part_.local)),
-        forward_(at_base_),
-        backward_(at_base_) {
-    // Forces without the velocities of the moment: C is the derivative to them.
-    for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b)
-      std::fill_n(base_.record(b) + Spatial::velocity, 9, 0.0);
+        while_moving_(static_cast<std::size_t>(part_.local)),
+        forward_(while_moving_),
+        backward_(while_moving_) {
+    // Stiffness without the velocities of the moment, so that dashpots have no part in it.
+    double fastest2 = 0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b) {
+      double* v = base_.record(b) + Spatial::velocity;
+      fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      std::fill_n(v, 9, 0.0);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &fastest2, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+    speed_ = std::sqrt(fastest2);
+    if (speed_ < slow) moving_ = base_;
     moved_ = base_;
-    evaluate(base_, at_base_);
+    evaluate(moving_, while_moving_);
   }
 
   int evaluations() const { return evaluations_; }
@@ -79,9 +87,12 @@ class Operators {
     displace(z, -step, 0);
     evaluate(moved_, backward_);
     stiffness = weighted(forward_, backward_, step > 0 ? -0.5 / step : 0.0);
-    displace(z, 0, 1);
+    // Damping is linear but for quadratic drag: about the velocities of the moment, by 1 % of them.
+    const double change =
+        speed_ < slow || step == 0 ? 1.0 : 1e4 * step * speed_ / model_.length_scale();
+    displace(z, 0, change);
     evaluate(moved_, forward_);
-    damping = weighted(forward_, at_base_, -1.0);
+    damping = weighted(forward_, while_moving_, -1.0 / change);
   }
 
  private:
@@ -109,8 +120,9 @@ class Operators {
         q = product(exp_rotation(turn), q);
       }
       r[3] = q.w, r[4] = q.x, r[5] = q.y, r[6] = q.z;
+      constexpr auto at = static_cast<std::size_t>(Spatial::velocity);
       for (std::size_t k = 0; k < 6; ++k)
-        r[static_cast<std::size_t>(Spatial::velocity) + k] = velocity * x[k];
+        r[at + k] = velocity != 0 ? moving_.record(b)[at + k] + velocity * x[k] : 0.0;
     }
     part_.ghosts.update(moved_.records, Spatial::record);
   }
@@ -138,8 +150,10 @@ class Operators {
 
   const Model<Spatial>& model_;
   const Part& part_;
-  State<Spatial> base_, moved_;
-  Wrenches<Spatial> at_base_, forward_, backward_;
+  static constexpr double slow = 1e-6;  // [m/s]: no quadratic drag to speak of
+  State<Spatial> base_, moving_, moved_;
+  Wrenches<Spatial> while_moving_, forward_, backward_;
+  double speed_ = 0;
   int evaluations_ = 0;
 };
 
