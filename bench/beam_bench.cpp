@@ -1,54 +1,23 @@
 // ns per beam of the beam forces on a regular-ordered sheet: FloeBench --benchmark_filter=beam
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-
-#include "floe/base/petsc.h"
 #include "floe/forces/beam.h"
-#include "floe/lattice/lattice.h"
-#include "floe/lattice/partition.h"
+#include "sheet.h"
 
 namespace {
 
 using namespace floe;
 
-/// A meshed sheet of about `bodies` bodies with a smooth deformation and motion.
-struct Case {
-  Part part;
-  State<Spatial> state;
-  Wrenches<Spatial> wrenches;
-  explicit Case(std::int64_t bodies) {
-    SheetPlan plan;
-    plan.element_size = 1;
-    plan.length = plan.width = std::sqrt(static_cast<double>(bodies) * std::sqrt(3.0) / 2);
-    plan.iterations = 5;
-    Lattice lattice = make_sheet(tessellate(plan, PETSC_COMM_SELF), SheetSection{});
-    (void)reorder(lattice);
-    part = partition(lattice, PETSC_COMM_SELF);
-    state = State<Spatial>(static_cast<std::size_t>(part.local));
-    wrenches = Wrenches<Spatial>(static_cast<std::size_t>(part.local));
-    for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
-      const Point3& x = part.bodies.position[b];
-      double* r = state.record(b);
-      for (int k = 0; k < 3; ++k) {
-        r[k] = 1e-3 * std::sin(x[0] + k) * std::cos(x[1]);
-        r[Spatial::rotation + 1 + k] = 1e-3 * std::cos(x[0] - k);
-        r[Spatial::velocity + k] = 1e-2 * std::sin(x[1] + k);
-      }
-    }
-  }
-};
-
-void beam(benchmark::State& bench, double damping) {
-  Case c(bench.range(0));
+void beam(benchmark::State& run, double damping) {
+  bench::Sheet c(run.range(0));
   BeamOptions options;
   options.damping_ratio = damping;
   const auto force = make_beam_force<Spatial>(c.part, options);
-  for (auto _ : bench) {
+  for (auto _ : run) {
     force->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
   }
-  bench.counters["ns_per_beam"] = benchmark::Counter(
+  run.counters["ns_per_beam"] = benchmark::Counter(
       static_cast<double>(c.part.beams.size()) * 1e-9,
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
@@ -57,9 +26,4 @@ BENCHMARK_CAPTURE(beam, damped, 1.0)->Arg(1460)->Arg(29561)->Unit(benchmark::kMi
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  floe::Mpi mpi(argc, argv);
-  floe::Session session(argc, argv, "");
-  benchmark::RunSpecifiedBenchmarks();
-}
+int main(int argc, char** argv) { return floe::bench::run(argc, argv); }

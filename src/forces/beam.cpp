@@ -85,6 +85,26 @@ class SpatialBeams final : public BeamForce<Spatial> {
   double power(const State<Spatial>&) const override { return -power_lost_; }
   void take_work(double work) override { lost_ -= work; }
 
+  /// Of the stiffnesses that change with a beam's length, against the lighter of its bodies: k_n,
+  /// and k_s (l0/l)^2 + |N|/l across.
+  std::optional<double> fastest_rate(const State<Spatial>& state) const override {
+    if (kinematics == Kinematics::linear) return {};
+    double fastest2 = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      const auto c = constants(m);
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const Point3 &from = part_.bodies.position[a], &to = part_.bodies.position[b];
+      const Vec3<double> chord = Vec3<double>{to[0] - from[0], to[1] - from[1], to[2] - from[2]} +
+                                 (displacement(state, b) - displacement(state, a));
+      const double l = std::sqrt(dot(chord, chord)), stretch = c.l0 / l;
+      const double across =
+          std::max(c.ksy, c.ksz) * stretch * stretch + std::abs(c.kn * (l - c.l0)) / l;
+      fastest2 = std::max(
+          fastest2, std::max(c.kn, across) / std::min(part_.bodies.mass[a], part_.bodies.mass[b]));
+    });
+    return std::sqrt(fastest2);
+  }
+
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {

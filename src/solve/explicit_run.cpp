@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "solve/text.h"
 
@@ -9,19 +11,18 @@ namespace floe {
 
 ExplicitRun::ExplicitRun(std::string_view type, Model<Spatial>& model,
                          const ExplicitOptions& options, const Observer<Spatial>& observer)
-    : DynamicRun("explicit", type, model, options, observer),
-      explicit_options_(options),
-      rates_(model.forces().size(), -1) {}
+    : DynamicRun("explicit", type, model, options, observer), explicit_options_(options) {}
 
 StableStep ExplicitRun::look() {
   const StableStep stable = find_stable_step();
   evaluations_ = stable.evaluations;
   last_look_ = done();
+  last_stable_ = stable.dt;
+  last_rate_ = fastest_rate();
   return stable;
 }
 
 void ExplicitRun::choose_step() {
-  (void)is_faster();
   const StableStep stable = look();
   result().stable_dt = stable.dt;
   result().limited_by = stable.limit;
@@ -36,35 +37,31 @@ void ExplicitRun::choose_step() {
   plan(wanted);
 }
 
-/// Whether a force moves or stops bodies a fifth faster than it ever did when this was last true.
-bool ExplicitRun::is_faster() {
-  std::vector<double> rates(rates_.size(), -1);
-  bool any = false;
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (const auto rate = model().forces()[k]->fastest_rate(state())) {
-      rates[k] = *rate;
-      any = true;
-    }
+/// Sum of the forces' own fastest rates, of all ranks' bodies; 0 if none has any.
+double ExplicitRun::fastest_rate() {
+  std::vector<double> rates;
+  for (const auto& force : model().forces()) {
+    if (const auto rate = force->fastest_rate(state())) rates.push_back(*rate);
   }
-  if (!any) return false;
+  if (rates.empty()) return 0;
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPI_DOUBLE, MPI_MAX,
                 model().part().comm);
-  constexpr double much = 1.2;
-  bool faster = false;
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (!(rates[k] > much * std::max(rates_[k], 0.0))) continue;
-    rates_[k] = rates[k];
-    faster = true;
-  }
-  return faster;
+  return std::accumulate(rates.begin(), rates.end(), 0.0);
+}
+
+/// The least stable step that dt is taken with.
+double ExplicitRun::needed() const {
+  return options().dt > 0 ? dt() : dt() / (0.5 * (1 + explicit_options_.safety));
 }
 
 bool ExplicitRun::look_is_due() {
-  if (explicit_options_.allow_unstable) return false;
-  // A step costs about an evaluation, and the rates a tenth of it.
-  constexpr std::int64_t now_and_then = 20, least = 1000, share = 100;
-  return done() - last_look_ >= std::max(least, share * evaluations_) ||
-         (done() % now_and_then == 0 && done() > 0 && is_faster());
+  if (explicit_options_.allow_unstable || done() == 0) return false;
+  // A step costs about an evaluation, and the rates less than half of it.
+  constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
+  if (done() - last_look_ >= std::max(least, share * evaluations_)) return true;
+  if (!sampled() && done() % now_and_then != 0) return false;
+  const double rate = fastest_rate();
+  return rate > last_rate_ && !(last_stable_ * (last_rate_ / rate) >= needed());
 }
 
 bool ExplicitRun::keep_step_stable(TS ts) {
@@ -74,17 +71,16 @@ bool ExplicitRun::keep_step_stable(TS ts) {
     result().stable_dt = stable.dt;
     result().limited_by = stable.limit;
   }
-  const double safety = explicit_options_.safety, before = dt();
+  if (needed() <= stable.dt) return true;
   if (options().dt > 0) {
-    if (before <= stable.dt) return true;
     give_up("the stable step has fallen to " + text(stable.dt) + " s, below dt, at time " +
             text(time()) + " s, limited by the " + stable.limit +
             " (time: dt: auto would take shorter steps from there on; allow_unstable: true goes on "
             "all the same)");
     return false;
   }
-  if (before <= 0.5 * (1 + safety) * stable.dt) return true;
-  replan(ts, safety * stable.dt);
+  const double before = dt();
+  replan(ts, explicit_options_.safety * stable.dt);
   step_changed(ts, before);
   return true;
 }
@@ -92,7 +88,8 @@ bool ExplicitRun::keep_step_stable(TS ts) {
 void ExplicitRun::remember_own(Memory& memory) {
   memory.common("last_look", last_look_);
   memory.common("look_evaluations", evaluations_);
-  memory.common("rates", rates_);
+  memory.common("look_stable_dt", last_stable_);
+  memory.common("look_rate", last_rate_);
 }
 
 }  // namespace floe

@@ -27,9 +27,9 @@ class Operators {
         base_(state),
         moving_(state),
         moved_(state),
-        while_moving_(static_cast<std::size_t>(part_.local)),
-        forward_(while_moving_),
-        backward_(while_moving_) {
+        at_rest_(static_cast<std::size_t>(part_.local)),
+        forward_(at_rest_),
+        backward_(at_rest_) {
     // Stiffness without the velocities of the moment, so that dashpots have no part in it.
     double fastest2 = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b) {
@@ -41,7 +41,7 @@ class Operators {
     speed_ = std::sqrt(fastest2);
     if (speed_ < slow) moving_ = base_;
     moved_ = base_;
-    evaluate(moving_, while_moving_);
+    evaluate(base_, at_rest_);
   }
 
   int evaluations() const { return evaluations_; }
@@ -87,12 +87,20 @@ class Operators {
     displace(z, -step, 0);
     evaluate(moved_, backward_);
     stiffness = weighted(forward_, backward_, step > 0 ? -0.5 / step : 0.0);
-    // Damping is linear but for quadratic drag: about the velocities of the moment, by 1 % of them.
-    const double change =
-        speed_ < slow || step == 0 ? 1.0 : 1e4 * step * speed_ / model_.length_scale();
+    if (speed_ < slow || step == 0) {
+      displace(z, 0, 1);
+      evaluate(moved_, forward_);
+      damping = weighted(forward_, at_rest_, -1.0);
+      return;
+    }
+    // About the velocities of the moment, on which quadratic drag depends: by 1e-3 of them to
+    // either side, or the images of a search's vectors would not be those of one linear map.
+    const double change = 1e3 * step * speed_ / model_.length_scale();
     displace(z, 0, change);
     evaluate(moved_, forward_);
-    damping = weighted(forward_, while_moving_, -1.0 / change);
+    displace(z, 0, -change);
+    evaluate(moved_, backward_);
+    damping = weighted(forward_, backward_, -0.5 / change);
   }
 
  private:
@@ -152,7 +160,7 @@ class Operators {
   const Part& part_;
   static constexpr double slow = 1e-6;  // [m/s]: no quadratic drag to speak of
   State<Spatial> base_, moving_, moved_;
-  Wrenches<Spatial> while_moving_, forward_, backward_;
+  Wrenches<Spatial> at_rest_, forward_, backward_;
   double speed_ = 0;
   int evaluations_ = 0;
 };
