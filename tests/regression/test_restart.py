@@ -403,6 +403,8 @@ class RealDiskFull(RestartTest):
                 (self.disk / "STOP").touch()
                 self.finish(process, INTERRUPTED)
                 self.assertRegex(self.full(left(), *options), name)
+                if "fields" in name:  # the frames that came after the checkpoint are left out by a copy
+                    self.assertIn("fields.h5.part: No space", self.full(50 << 10, *options))
                 self.assert_same(straight, self.go_on(*options))
 
 
