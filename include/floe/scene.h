@@ -43,7 +43,8 @@ struct Scene {
   } forces;
   bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
-  double thickness = 1;  ///< of the sheet [m]
+  std::string mesh_file;  ///< where the sheet's relaxed generators are kept; empty: nowhere
+  double thickness = 1;   ///< of the sheet [m]
   Ice ice;
   double shear_factor = 5.0 / 6.0;
   Torsion torsion = Torsion::saint_venant;

@@ -9,6 +9,7 @@
 #include "floe/forces/buoyancy.h"
 #include "floe/forces/drag.h"
 #include "floe/forces/gravity.h"
+#include "mesh_file.h"
 
 namespace floe {
 namespace {
@@ -30,11 +31,14 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   {
     const Timed timed(Event::mesh);
     Progress progress("mesh", scene.sheet.iterations);
-    cells = tessellate(scene.sheet, comm, [&](int iteration, double move) {
+    const auto show = [&](int iteration, double move) {
       char note[48];
       std::snprintf(note, sizeof note, "largest move %.2g l", move);
       progress.update(iteration, note);
-    });
+    };
+    cells = scene.mesh_file.empty()
+                ? tessellate(scene.sheet, comm, show)
+                : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show);
   }
   report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate};
   const Timed timed(Event::lattice);

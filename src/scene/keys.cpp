@@ -37,6 +37,9 @@ constexpr std::array table{
                "most iterations of the relaxation"},
     OptionSpec{"sheet: tolerance", number, "0", "", ">= 0",
                "the relaxation ends when no generator moves by more than this times element_size"},
+    OptionSpec{"sheet: mesh_file", text, "(none)", "", "",
+               "HDF5 file that keeps the relaxed generators: read if it is there, else written; "
+               "scenes that share a sheet mesh it once"},
 
     OptionSpec{"region: names", names, "(none)", "", "",
                "further sets of bodies: one section each"},

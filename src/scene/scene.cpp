@@ -79,6 +79,7 @@ void read_sheet(Options& options, Scene& scene) {
   const std::int64_t iterations = options.integer("sheet: iterations");
   plan.iterations = static_cast<int>(std::min<std::int64_t>(iterations, 1'000'000'000));
   plan.tolerance = options.number("sheet: tolerance");
+  if (options.given("sheet: mesh_file")) scene.mesh_file = options.text("sheet: mesh_file");
   scene.thickness = options.number("sheet: thickness");
 
   const double shorter = std::min(plan.length, plan.width);
