@@ -53,8 +53,9 @@ void fail(int ierr, const std::source_location& where) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   last_message.clear();
   const bool not_a_number = ierr == PETSC_ERR_ARG_OUTOFRANGE && text.rfind("Input string", 0) == 0;
+  const bool not_in_list = ierr == PETSC_ERR_USER && text.rfind("Unknown option", 0) == 0;
   if (ierr == PETSC_ERR_ARG_UNKNOWN_TYPE || ierr == PETSC_ERR_USER_INPUT ||
-      ierr == PETSC_ERR_MISSING_FACTOR || not_a_number) {
+      ierr == PETSC_ERR_MISSING_FACTOR || not_a_number || not_in_list) {
     for (char& c : text) {
       if (c == '\n') c = ' ';
     }

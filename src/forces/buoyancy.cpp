@@ -1,6 +1,7 @@
 #include "floe/forces/buoyancy.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "floe/base/petsc.h"
 #include "forces/immersion.h"
@@ -83,6 +84,22 @@ class Buoyancy final : public Force<Spatial> {
       high = std::max(high, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
     }
     return 3.0 * weight_ * immersion_.volume(body) / (high - low);
+  }
+
+  /// Of heave, about: bodies that the surface cuts have a stiffness, others none.
+  std::optional<double> fastest_rate(const State<Spatial>& state) const override {
+    double fastest2 = 0;
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
+      const BlockMotion m = block_motion<false>(immersion_, state, block);
+      const Lanes volume = immersion_.of_block(state, block, m.u.z, m.q).volume;
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t b = immersion_.body_of(block, lane);
+        const double whole = immersion_.volume(static_cast<std::int32_t>(b));
+        if (volume[lane] > 0 && volume[lane] < whole)
+          fastest2 = std::max(fastest2, weight_ * std::cbrt(whole * whole) / part_.bodies.mass[b]);
+      }
+    }
+    return std::sqrt(fastest2);
   }
 
   /// Potential of the displaced water: rho g times int_V (-z) dV, the work to push the body down

@@ -19,7 +19,8 @@ namespace {
 class Drag final : public Force<Spatial> {
  public:
   Drag(const Part& part, const DragOptions& options)
-      : immersion_(with_shapes(part)),
+      : part_(part),
+        immersion_(with_shapes(part)),
         current_{options.current[0], options.current[1], options.current[2]},
         linear_(options.linear),
         coefficient_(0.5 * options.density * options.coefficient),
@@ -49,6 +50,26 @@ class Drag final : public Force<Spatial> {
     }
     lost_ -= 0.5 * (last_dt_ * power_ + dt * power);
     last_dt_ = dt;
+  }
+
+  double power(const State<Spatial>&) const override { return power_; }
+  void take_work(double work) override { lost_ -= work; }
+
+  /// Of the derivative of the force to the velocity, along the flow.
+  std::optional<double> fastest_rate(const State<Spatial>& state) const override {
+    using std::sqrt;
+    const Vec3<Lanes> current{current_.x, current_.y, current_.z};
+    double fastest = 0;
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
+      const BlockMotion m = block_motion<true>(immersion_, state, block);
+      const Vec3<Lanes> v = m.v - current;
+      const Lanes factor = linear_ + 2.0 * coefficient_ * sqrt(dot(v, v));
+      const Lanes volume = immersion_.of_block(state, block, m.u.z, m.q).volume;
+      const Lanes drag = factor * (volume * load(area_per_volume_[block].values.data()));
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        fastest = std::max(fastest, drag[lane] / mass_of(block, lane));
+    }
+    return fastest;
   }
 
   void remember(Memory& checkpoint) override {
@@ -84,6 +105,9 @@ class Drag final : public Force<Spatial> {
       }
     }
   }
+  double mass_of(std::size_t block, std::size_t lane) const {
+    return part_.bodies.mass[immersion_.body_of(block, lane)];
+  }
   struct alignas(64) Block {
     std::array<double, lanes> values;
   };
@@ -92,6 +116,7 @@ class Drag final : public Force<Spatial> {
       throw InputError("forces: drag needs bodies with a shape; the lattice file has no /shapes");
     return part;
   }
+  const Part& part_;
   Immersion immersion_;
   Vec3<double> current_;
   double linear_, coefficient_;  ///< c [N s/m^3] and rho_w C_d/2 [N s^2/m^4]

@@ -182,6 +182,15 @@ Boundary read_boundary(Options& options, const std::string& name) {
   return boundary;
 }
 
+/// Bodies with mass cannot be displaced at once.
+void require_motion(const Scene& scene, const Boundary& boundary) {
+  if (scene.integrator == Integrator::quasistatic || boundary.ramp.seconds > 0 ||
+      !boundary.displacement || *boundary.displacement == Point3{})
+    return;
+  throw InputError("boundary: " + boundary.name +
+                   ": displacement needs ramp > 0 in a run with time: at once would be a jump");
+}
+
 Load read_load(Options& options, const std::string& name) {
   Load load;
   load.name = name;
@@ -292,8 +301,10 @@ Scene read_scene(const std::string& path) {
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   check_floats(scene);
-  for (const std::string& name : options.names("boundary"))
+  for (const std::string& name : options.names("boundary")) {
     scene.boundaries.push_back(read_boundary(options, name));
+    require_motion(scene, scene.boundaries.back());
+  }
   for (const std::string& name : options.names("load"))
     scene.loads.push_back(read_load(options, name));
   read_time(options, scene);

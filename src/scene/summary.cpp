@@ -115,6 +115,7 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   json["steps"] = result.steps;
   json["dt"] = result.dt;
   if (stepped) {
+    json["stepper"] = result.stepper;
     json["stable_dt"] = result.stable_dt;
     json["dt_limited_by"] = result.limited_by;
     json["ns_per_beam_step"] = 1e9 * wall_seconds(Event::solve) /

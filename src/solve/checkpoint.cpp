@@ -13,7 +13,7 @@
 namespace floe {
 namespace {
 
-constexpr std::int64_t layout = 1;  // of the file; another one is refused
+constexpr std::int64_t layout = 2;  // of the file; another one is refused
 
 volatile std::sig_atomic_t signal_came = 0;  // NOLINT: a handler can reach nothing else
 

@@ -97,8 +97,23 @@ void Model<Space>::pin(const std::vector<Pin>& pins) {
 
 template <class Space>
 void Model<Space>::prescribe(double time, std::span<double> values) const {
+  spread(&Boundary::value, time, values);
+}
+
+template <class Space>
+void Model<Space>::prescribe_rates(double time, std::span<double> rates) const {
+  spread(&Boundary::rate, time, rates);
+}
+
+template <class Space>
+void Model<Space>::prescribe_accelerations(double time, std::span<double> accelerations) const {
+  spread(&Boundary::acceleration, time, accelerations);
+}
+
+template <class Space>
+void Model<Space>::spread(Prescription motion, double time, std::span<double> values) const {
   for (const PlacedBoundary& placed : boundaries_) {
-    const std::array<double, 6> value = placed.boundary.value(time);
+    const std::array<double, 6> value = (placed.boundary.*motion)(time);
     for (const std::int32_t body : placed.bodies) {
       for (std::size_t k = 0; k < 6; ++k) {
         if (placed.boundary.fixed[k]) values[static_cast<std::size_t>(body) * n + k] = value[k];

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
 #include <sstream>
 
@@ -23,15 +25,23 @@ class Operators {
       : model_(model),
         part_(model.part()),
         base_(state),
+        moving_(state),
         moved_(state),
-        at_base_(static_cast<std::size_t>(part_.local)),
-        forward_(at_base_),
-        backward_(at_base_) {
-    // Forces without the velocities of the moment: C is the derivative to them.
-    for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b)
-      std::fill_n(base_.record(b) + Spatial::velocity, 9, 0.0);
+        while_moving_(static_cast<std::size_t>(part_.local)),
+        forward_(while_moving_),
+        backward_(while_moving_) {
+    // Stiffness without the velocities of the moment, so that dashpots have no part in it.
+    double fastest2 = 0;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b) {
+      double* v = base_.record(b) + Spatial::velocity;
+      fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+      std::fill_n(v, 9, 0.0);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &fastest2, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+    speed_ = std::sqrt(fastest2);
+    if (speed_ < slow) moving_ = base_;
     moved_ = base_;
-    evaluate(base_, at_base_);
+    evaluate(moving_, while_moving_);
   }
 
   int evaluations() const { return evaluations_; }
@@ -77,9 +87,12 @@ class Operators {
     displace(z, -step, 0);
     evaluate(moved_, backward_);
     stiffness = weighted(forward_, backward_, step > 0 ? -0.5 / step : 0.0);
-    displace(z, 0, 1);
+    // Damping is linear but for quadratic drag: about the velocities of the moment, by 1 % of them.
+    const double change =
+        speed_ < slow || step == 0 ? 1.0 : 1e4 * step * speed_ / model_.length_scale();
+    displace(z, 0, change);
     evaluate(moved_, forward_);
-    damping = weighted(forward_, at_base_, -1.0);
+    damping = weighted(forward_, while_moving_, -1.0 / change);
   }
 
  private:
@@ -107,8 +120,9 @@ class Operators {
         q = product(exp_rotation(turn), q);
       }
       r[3] = q.w, r[4] = q.x, r[5] = q.y, r[6] = q.z;
+      constexpr auto at = static_cast<std::size_t>(Spatial::velocity);
       for (std::size_t k = 0; k < 6; ++k)
-        r[static_cast<std::size_t>(Spatial::velocity) + k] = velocity * x[k];
+        r[at + k] = velocity != 0 ? moving_.record(b)[at + k] + velocity * x[k] : 0.0;
     }
     part_.ghosts.update(moved_.records, Spatial::record);
   }
@@ -136,8 +150,10 @@ class Operators {
 
   const Model<Spatial>& model_;
   const Part& part_;
-  State<Spatial> base_, moved_;
-  Wrenches<Spatial> at_base_, forward_, backward_;
+  static constexpr double slow = 1e-6;  // [m/s]: no quadratic drag to speak of
+  State<Spatial> base_, moving_, moved_;
+  Wrenches<Spatial> while_moving_, forward_, backward_;
+  double speed_ = 0;
   int evaluations_ = 0;
 };
 
@@ -148,25 +164,65 @@ struct Trial {
   void add(double s, const Trial& other) { z += s * other.z, k += s * other.k, c += s * other.c; }
 };
 
-/// Largest eigenvalue of dt^2 K + 2 dt C in a small orthonormal space, with its vector.
-std::pair<double, Vector> largest(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c, double dt) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dt * dt * k + 2 * dt * c);
+/// Largest eigenvalue of w_k K + w_c C in a small orthonormal space, with its vector.
+std::pair<double, Vector> largest(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c,
+                                  const Weights& weights) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(weights.stiffness * k +
+                                                              weights.damping * c);
   return {solver.eigenvalues()[k.rows() - 1], solver.eigenvectors().col(k.rows() - 1)};
 }
 
-/// The dt at which that eigenvalue is 4, by bisection: it grows with dt.
-double critical(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c, double guess) {
-  double low = 0, high = guess;
-  while (largest(k, c, high).first < 4) {
-    low = high;
-    high *= 2;
+/// Leapfrog's search: the dt at which the largest eigenvalue of dt^2 K + 2 dt C is 4.
+class CriticalStep {
+ public:
+  /// From a vector with x.Kx and x.Cx; false if nothing acts on it.
+  bool begin(double k, double c) {
+    if (k <= 0 && c <= 0) return false;
+    value_ = k > 0 ? (std::sqrt(c * c + 4 * k) - c) / k : 2 / c;  // dt^2 k + 2 dt c = 4
+    return true;
   }
-  for (int it = 0; it < 60 && high - low > 1e-13 * high; ++it) {
-    const double middle = 0.5 * (low + high);
-    (largest(k, c, middle).first < 4 ? low : high) = middle;
+  double value() const { return value_; }
+  double size() const { return value_; }
+  Weights weights() const { return weights(value_); }
+  /// In a small space, by bisection: the eigenvalue grows with dt.
+  void improve(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c) {
+    double low = 0, high = value_;
+    while (largest(k, c, weights(high)).first < 4) {
+      low = high;
+      high *= 2;
+    }
+    for (int it = 0; it < 60 && high - low > 1e-13 * high; ++it) {
+      const double middle = 0.5 * (low + high);
+      (largest(k, c, weights(middle)).first < 4 ? low : high) = middle;
+    }
+    value_ = 0.5 * (low + high);
   }
-  return 0.5 * (low + high);
-}
+
+ private:
+  static Weights weights(double dt) { return {dt * dt, 2 * dt}; }
+  double value_ = 0;
+};
+
+/// The largest eigenvalue of given weights.
+class Extreme {
+ public:
+  explicit Extreme(const Weights& weights) : weights_(weights) {}
+  bool begin(double k, double c) {
+    value_ = weights_.stiffness * k + weights_.damping * c;
+    return true;
+  }
+  double value() const { return value_; }
+  double size() const { return std::max(std::abs(value_), smallest); }
+  Weights weights() const { return weights_; }
+  void improve(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c) {
+    value_ = largest(k, c, weights_).first;
+  }
+
+ private:
+  static constexpr double smallest = 1e-3;  // with weights that make sizes of about 1
+  Weights weights_;
+  double value_ = 0;
+};
 
 /// The body that moves most in a mode, and whether it moves or turns.
 std::string describe(const Operators& a, const Model<Spatial>& model, const Vector& z) {
@@ -200,43 +256,35 @@ std::string describe(const Operators& a, const Model<Spatial>& model, const Vect
   return text.str();
 }
 
-}  // namespace
-
-StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state) {
-  Operators a(model, state);
-  const auto make = [&](Vector z) {
-    Trial t{std::move(z), {}, {}};
-    a.apply(t.z, t.k, t.c);
-    return t;
-  };
-  // The same start on any number of ranks: by global index.
+/// The same vector on any number of ranks: by global index.
+Vector random_vector(const Operators& a, const Part& part) {
   Vector start(a.size());
-  for (std::int32_t b = 0; b < model.part().owned; ++b) {
-    std::minstd_rand random(
-        static_cast<unsigned>(model.part().global[static_cast<std::size_t>(b)]) + 1U);
+  for (std::int32_t b = 0; b < part.owned; ++b) {
+    std::minstd_rand random(static_cast<unsigned>(part.global[static_cast<std::size_t>(b)]) + 1U);
     random.discard(3);
     for (int k = 0; k < Operators::n; ++k)
       start[b * Operators::n + k] =
           static_cast<double>(random()) / static_cast<double>(std::minstd_rand::max()) - 0.5;
   }
+  return start;
+}
+
+/// Locally optimal conjugate gradients for the top mode of what `search` weights; empty if nothing
+/// acts.
+std::optional<Trial> top_mode(Operators& a, Vector start, auto& search) {
+  const auto make = [&](Vector z) {
+    Trial t{std::move(z), {}, {}};
+    a.apply(t.z, t.k, t.c);
+    return t;
+  };
   start /= std::sqrt(a.dot(start, start));
   Trial x = make(std::move(start));
   Trial direction;
-  StableStep result;
-  double dt = 0;
   constexpr int most = 400;
-  constexpr double converged = 1e-6;  // relative change of dt, three times in a row
+  constexpr double converged = 1e-6;  // relative change of the value, three times in a row
   int quiet = 0;
   for (int it = 0; it < most && quiet < 3; ++it) {
-    const double kx = a.dot(x.z, x.k), cx = a.dot(x.z, x.c);
-    if (it == 0) {
-      if (kx <= 0 && cx <= 0) {
-        result.dt = std::numeric_limits<double>::infinity();  // nothing acts
-        return result;
-      }
-      // dt^2 k + 2 dt c = 4
-      dt = kx > 0 ? (std::sqrt(cx * cx + 4 * kx) - cx) / kx : 2 / cx;
-    }
+    if (it == 0 && !search.begin(a.dot(x.z, x.k), a.dot(x.z, x.c))) return {};
     std::vector<Trial> space;
     space.push_back(x);
     const auto orthonormal = [&](Trial t) {
@@ -248,7 +296,8 @@ StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state)
       }
       space.push_back(std::move(t));
     };
-    Vector residual = dt * dt * x.k + 2 * dt * x.c;
+    const Weights weights = search.weights();
+    Vector residual = weights.stiffness * x.k + weights.damping * x.c;
     residual -= a.dot(x.z, residual) * x.z;
     const double norm = std::sqrt(a.dot(residual, residual));
     if (norm < 1e-12) break;
@@ -266,8 +315,9 @@ StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state)
         c(r, s) = c(s, r) = 0.5 * (a.dot(u.z, v.c) + a.dot(v.z, u.c));
       }
     }
-    const double next = critical(k, c, dt);
-    const Vector y = largest(k, c, next).second;
+    const double before = search.value();
+    search.improve(k, c);
+    const Vector y = largest(k, c, search.weights()).second;
     direction = space[1];
     direction.scale(y[1]);
     if (m > 2) direction.add(y[2], space[2]);
@@ -276,15 +326,41 @@ StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state)
     x.add(1, direction);
     const double size = std::sqrt(a.dot(x.z, x.z));
     x.scale(1 / size);
-    quiet = std::abs(next - dt) < converged * dt ? quiet + 1 : 0;
-    dt = next;
+    quiet = std::abs(search.value() - before) < converged * search.size() ? quiet + 1 : 0;
   }
-  result.dt = dt;
-  result.omega = std::sqrt(std::max(0.0, a.dot(x.z, x.k)));
-  result.decay = a.dot(x.z, x.c);
+  return x;
+}
+
+}  // namespace
+
+StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state) {
+  Operators a(model, state);
+  CriticalStep search;
+  StableStep result;
+  const auto mode = top_mode(a, random_vector(a, model.part()), search);
+  if (!mode) {
+    result.dt = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  result.dt = search.value();
+  result.omega = std::sqrt(std::max(0.0, a.dot(mode->z, mode->k)));
+  result.decay = a.dot(mode->z, mode->c);
   result.evaluations = a.evaluations();
-  result.limit = describe(a, model, x.z);
+  result.limit = describe(a, model, mode->z);
   return result;
+}
+
+VibrationMode extreme_mode(const Model<Spatial>& model, const State<Spatial>& state,
+                           const Weights& weights, const VibrationMode* start) {
+  Operators a(model, state);
+  Extreme search(weights);
+  // A little of everything beside the mode to start from, which may be another's.
+  Vector first = random_vector(a, model.part());
+  first *= 0.1 / std::sqrt(a.dot(first, first));
+  if (start) first += start->shape;
+  const auto mode = top_mode(a, std::move(first), search);
+  return {search.value(),  a.dot(mode->z, mode->k),     a.dot(mode->z, mode->c),
+          a.evaluations(), describe(a, model, mode->z), mode->z};
 }
 
 }  // namespace floe

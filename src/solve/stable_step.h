@@ -3,6 +3,8 @@
 /// "Stable step").
 #pragma once
 
+#include <Eigen/Core>
+
 #include <string>
 
 #include "floe/solve/model.h"
@@ -23,5 +25,24 @@ struct StableStep {
 /// the three-dimensional trial space of each iteration; dt falls towards the limit. K and C act
 /// through differences of the forces at the given state, so all forces count. Collective.
 StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state);
+
+/// Of a stiffness [1/s^2] and a damping [1/s], both per mass.
+struct Weights {
+  double stiffness = 0, damping = 0;
+};
+
+struct VibrationMode {
+  double value = 0;  ///< the eigenvalue
+  double stiffness = 0,
+         damping = 0;     ///< phi^T K phi [1/s^2] and phi^T C phi [1/s], phi^T M phi = 1
+  int evaluations = 0;    ///< of all forces, to find it
+  std::string where;      ///< the body that moves most in it, and how
+  Eigen::VectorXd shape;  ///< M^1/2 phi, this rank's share
+};
+
+/// Mode of the largest eigenvalue of M^-1 (w_k K + w_c C), by the same iteration to 1e-6 of it, or
+/// of 1e-3 if that is larger. \param start  where to search from; null: anywhere. Collective.
+VibrationMode extreme_mode(const Model<Spatial>& model, const State<Spatial>& state,
+                           const Weights& weights, const VibrationMode* start = nullptr);
 
 }  // namespace floe

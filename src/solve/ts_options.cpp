@@ -1,7 +1,10 @@
 #include "solve/ts_options.h"
 
+#include <petscts.h>
+
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "floe/base/log.h"
@@ -35,8 +38,7 @@ std::string reason_against(const std::string& type) {
        "each of its halves sees its conjugate half only: no damping, no rotation that depends on "
        "the angular momentum"},
       {"euler", "it is unstable for vibrations at any step"},
-      {"ssp", "it is made for upwind fluxes and steps vectors, not rotations"},
-      {"rk", "it steps vectors, and rotations as state of its own are not built in yet"},
+      {"ssp", "it is made for upwind fluxes; rk has the same orders at a wider stability region"},
       {"alpha2", "it is implicit, and restarts whenever rotations are renormalised"}};
   static constexpr std::array implicit{"beuler",  "cn",    "theta",  "alpha", "bdf",      "rosw",
                                        "arkimex", "dirk",  "irk",    "glle",  "sundials", "gl",
@@ -48,21 +50,53 @@ std::string reason_against(const std::string& type) {
   return "no such type is known here";
 }
 
-void refuse_types() {
-  std::array<char, 64> type{};
+/// Value of an option of PETSc's; empty if it is not given.
+std::optional<std::string> value_of(const char* option) {
+  std::array<char, 64> value{};
   PetscBool given = PETSC_FALSE;
-  check(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type.data(), type.size(), &given));
-  const std::string name = type.data();
-  if (given && name != ts_leapfrog)
-    throw InputError("ts_type: '" + name + "' cannot step this scene: " + reason_against(name) +
-                     " (integrator: explicit steps with " + ts_leapfrog + ")");
+  check(PetscOptionsGetString(nullptr, nullptr, option, value.data(), value.size(), &given));
+  return given ? std::optional<std::string>(value.data()) : std::nullopt;
+}
+
+std::string chosen_type() {
+  const std::string type = value_of("-ts_type").value_or(ts_leapfrog);
+  if (type != ts_leapfrog && type != TSRK)
+    throw InputError("ts_type: '" + type + "' cannot step this scene: " + reason_against(type) +
+                     " (integrator: explicit steps with " + ts_leapfrog + " or rk)");
+  return type;
+}
+
+void refuse(const char* option, const std::string& why) {
+  if (value_of(option))
+    throw InputError(std::string(option + 1) + ": integrator: explicit does not take it: " + why);
+}
+
+/// Options that TS would read without effect, or that would upset samples and checkpoints.
+void refuse_without_effect(const std::string& type) {
+  for (const char* option : {"-ts_init_time", "-ts_time_span"})
+    refuse(option, "runs start at time 0 or from a checkpoint, samples are output: history");
+  refuse("-ts_exact_final_time", "equal steps end at the end, and the last of others is cut");
+  for (const char* option : {"-ts_rk_multirate", "-ts_rk_dtratio", "-ts_use_splitrhsfunction"})
+    refuse(option, "all bodies take the same step");
+  const std::string adaptivity = value_of("-ts_adapt_type").value_or(TSADAPTNONE);
+  if (type != TSRK && adaptivity != TSADAPTNONE)
+    throw InputError("ts_adapt_type: '" + adaptivity + "' is for -ts_type rk; the step of " + type +
+                     " is fixed");
+  if (adaptivity != TSADAPTNONE) return;
+  for (const char* option :
+       {"-ts_rtol", "-ts_atol", "-ts_max_reject", "-ts_adapt_safety", "-ts_adapt_reject_safety",
+        "-ts_adapt_clip", "-ts_adapt_dt_min", "-ts_adapt_dt_max", "-ts_adapt_always_accept",
+        "-ts_adapt_wnormtype", "-ts_adapt_max_ignore"})
+    refuse(option, "the step is fixed (-ts_type rk -ts_adapt_type basic adapts it)");
 }
 
 }  // namespace
 
-void refuse_options_of_others() {
+std::string explicit_type() {
   refuse_solvers();
-  refuse_types();
+  const std::string type = chosen_type();
+  refuse_without_effect(type);
+  return type;
 }
 
 }  // namespace floe

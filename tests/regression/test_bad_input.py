@@ -110,6 +110,9 @@ SCENES = {
     "value for a free component": (held("fix: x, velocity: [0, 1, 0]"), "'y'"),
     "component fixed twice": (held("fix: x x"), "x x"),
     "velocity and displacement": (held("fix: x, velocity: [1, 0, 0], displacement: [1, 0, 0]"), "not both"),
+    "displacement at once, with time":
+        ("integrator: explicit\n" + held("fix: x, displacement: [1, 0, 0]") + "time: {end: 1}\n",
+         "boundary: a: displacement needs ramp > 0"),
     "nothing holds the sheet against its load":
         ("forces: [beam]\n" + SHEET + "load: {names: [p], p: {set: right, force: [1, 0, 0]}}\n", "hold"),
     "two boundaries that disagree":

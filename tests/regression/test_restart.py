@@ -68,10 +68,10 @@ class RestartTest(unittest.TestCase):
         self.folder = Path(temporary.name)
         (self.folder / "scene.yaml").write_text(SCENE)
 
-    def begin(self, *options, dir="out/scene", ranks=1, **how):
+    def begin(self, *options, dir="out/scene", ranks=1, scene="scene.yaml", **how):
         """A started process."""
         mpi = ["mpiexec", "-q", "-n", str(ranks)] if ranks > 1 else []
-        return subprocess.Popen([*mpi, str(FLOE), "scene.yaml", *options, "-output_dir", dir], cwd=self.folder,
+        return subprocess.Popen([*mpi, str(FLOE), scene, *options, "-output_dir", dir], cwd=self.folder,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                 env={**os.environ, **ENVIRONMENT}, **how)
 

@@ -175,6 +175,54 @@ def check_free_top(test, run):
     test.assertLess(np.ptp(kinetic), 1e-6 * kinetic[0])
 
 
+def rotations(vectors):
+    """Matrices of rotation vectors, n x 3 x 3 (Rodrigues)."""
+    angle = np.linalg.norm(vectors, axis=1)[:, None, None] + 1e-300
+    cross = np.zeros((len(vectors), 3, 3))
+    for (i, j, k), sign in (((2, 1, 0), 1), ((0, 2, 1), 1), ((1, 0, 2), 1), ((1, 2, 0), -1), ((2, 0, 1), -1),
+                            ((0, 1, 2), -1)):
+        cross[:, i, j] = sign * vectors[:, k]
+    cross /= angle
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def check_rk_top(test, run):
+    output = run()
+    inertia, omega = np.array([1.25, 4.25, 5]), np.array([0.3, 3, 0.1])
+    momentum, energy2 = inertia * omega, inertia @ omega**2
+    i1, i2, i3 = inertia
+    first = momentum @ momentum - energy2 * i1
+    rate = np.sqrt((i3 - i2) * first / (i1 * i2 * i3))
+    parameter = (i2 - i1) * (energy2 * i3 - momentum @ momentum) / ((i3 - i2) * first)
+    if parameter > 1:
+        rate, parameter = rate * np.sqrt(parameter), 1 / parameter
+    a, b = 1.0, np.sqrt(1 - parameter)  # K = pi/(2 M(1, sqrt(1 - m))), M the arithmetic-geometric mean
+    while abs(a - b) > 1e-15:
+        a, b = (a + b) / 2, np.sqrt(a * b)
+    half_period = np.pi / a / rate
+    turned = rotations(np.array([output.field("bodies_rotation", t)[0] for t in output.times]))
+    along = np.einsum("nij,i->nj", turned, momentum)[:, 1]
+    k = np.flatnonzero(along[:-1] * along[1:] < 0)
+    passages = output.times[k] + (output.times[k + 1] - output.times[k]) * along[k] / (along[k] - along[k + 1])
+    test.assertGreater(len(passages), 4)
+    test.assertAlmostEqual((passages[-1] - passages[0]) / (len(passages) - 1) / half_period, 1, delta=1e-4)
+    kinetic = column(output, "energy_kinetic")
+    test.assertLess(np.ptp(kinetic), 1e-9 * kinetic[0])
+
+
+def check_rk_drag(test, run):
+    r, k = 500 / 920, 0.5 * 1010 * 1.2 / 920
+    ways = ((), (1 - np.exp(-4 * r)) / r), (("-water_drag_linear", "0", "-water_drag_coefficient", "1.2"),
+                                           np.log(1 + 4 * k) / k)
+    adaptive = ("-ts_rk_type", "5dp", "-ts_adapt_type", "basic", "-ts_atol", "1e-8", "-ts_rtol", "0")
+    for options, way in ways:
+        for how in ((), adaptive):
+            output = run(*options, *how)
+            test.assertAlmostEqual(output.field("bodies_displacement", 4)[0, 0] / way, 1, delta=1e-6)
+            row = last_row(output)
+            test.assertAlmostEqual((row["energy_drag"] + row["energy_kinetic"]) / 7360, 1, delta=2e-6)
+
+
 def check_free_flight(test, run):
     output = run()
     with h5py.File(output.folder / "lattice.h5") as file:
@@ -247,6 +295,8 @@ EXPECTED = {
     "tension_explicit.yaml": check_tension_explicit,
     "bending_explicit.yaml": check_bending_explicit,
     "verify/free_top.yaml": check_free_top,
+    "verify/rk_top.yaml": check_rk_top,
+    "verify/rk_drag.yaml": check_rk_drag,
     "verify/free_flight.yaml": check_free_flight,
     "verify/vibrating.yaml": check_vibrating,
     "verify/wave.yaml": check_wave,

@@ -18,8 +18,7 @@ namespace floe::test {
 class Dynamics {
  public:
   Dynamics(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
-      : model_(lattice, comm, scene.boundaries), motion_(model_) {
-    add_forces(scene, place_loads(scene, lattice), model_);
+      : model_(lattice, comm, scene.boundaries), motion_(with_forces(scene, lattice, model_)) {
     const auto local = static_cast<std::size_t>(model_.part().local);
     state_ = State<Spatial>(local);
     wrenches_ = Wrenches<Spatial>(local);
@@ -65,6 +64,13 @@ class Dynamics {
   }
 
  private:
+  /// Forces first: water that bodies take along adds to what Motion moves.
+  static const Model<Spatial>& with_forces(const Scene& scene, const Lattice& lattice,
+                                           Model<Spatial>& model) {
+    add_forces(scene, place_loads(scene, lattice), model);
+    return model;
+  }
+
   Model<Spatial> model_;
   Motion motion_;
   State<Spatial> state_;
@@ -87,6 +93,16 @@ inline void give_mass(Lattice& frame, const FrameSection& section, double densit
     bodies.inertia[b] = {line * (section.inertia_y + section.inertia_z), line * section.inertia_y,
                          line * section.inertia_z};
   }
+}
+
+/// A scene of beams and nothing else.
+inline Scene beams_only(Shear shear, double damping = 0, DampingModes modes = DampingModes::all) {
+  Scene scene;
+  scene.forces.beam = true;
+  scene.beam.shear = shear;
+  scene.beam.damping_ratio = damping;
+  scene.beam.damping_modes = modes;
+  return scene;
 }
 
 }  // namespace floe::test

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -19,12 +18,6 @@ namespace floe::test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-std::string text(const char* format, auto... values) {
-  char line[120];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 /// Clamped at its root, a dead force and moment at its tip that reach their full size at time 1.
 Scene cantilever(Shear shear, const Point3& force, const Point3& moment, double dt = 0) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "floe/forces/moduli.h"
@@ -16,12 +15,6 @@ namespace {
 
 constexpr const char* section_name = "Bending of a floating sheet";
 constexpr double load = 1e4;  // [N], downwards
-
-std::string text(const char* format, auto... values) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 /// A sheet on water, nothing prescribed, with a point load at the plan's centre that comes after
 /// time 0.

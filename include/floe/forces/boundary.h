@@ -15,6 +15,7 @@ struct Ramp {
   double seconds = 0;
   double value(double time) const;     ///< factor at `time`
   double integral(double time) const;  ///< its integral from 0 to `time` [s]
+  double slope(double time) const;     ///< its rate [1/s], from the right; 0 if it rises at once
 };
 
 /// Prescribed components of the motion of a set of bodies: x y z rx ry rz.
@@ -30,6 +31,9 @@ struct Boundary {
 
   /// Prescribed displacement and rotation [m, rad] at `time`; entries that are not fixed are 0.
   std::array<double, 6> value(double time) const;
+  /// Their rates [m/s, rad/s] and accelerations, from the right; what happens at once has none.
+  std::array<double, 6> rate(double time) const;
+  std::array<double, 6> acceleration(double time) const;
 };
 
 /// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in

@@ -90,11 +90,17 @@ class Model {
   /// Prescribed values at a time [m, rad] into n entries per local body; those that are free or
   /// pinned are left as they are.
   void prescribe(double time, std::span<double> values) const;
+  /// Their rates [m/s, rad/s] and accelerations in the same form.
+  void prescribe_rates(double time, std::span<double> rates) const;
+  void prescribe_accelerations(double time, std::span<double> accelerations) const;
 
   /// Sums over all ranks of what the forces report.
   std::vector<std::pair<std::string, double>> report(const State<Space>& state) const;
 
  private:
+  using Prescription = std::array<double, 6> (Boundary::*)(double) const;
+  void spread(Prescription motion, double time, std::span<double> values) const;
+
   Part part_;
   double length_scale_ = 1;
   std::vector<double> inertial_mass_;

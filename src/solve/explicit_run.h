@@ -1,0 +1,51 @@
+/// \file
+/// What the types of explicit dynamics share beside DynamicRun: a step below the stable one, also
+/// where that falls in the course of the run.
+#pragma once
+
+#include "solve/dynamic_run.h"
+#include "solve/stable_step.h"
+
+namespace floe {
+
+/// The stable step is found at the beginning and again, as often as that costs 1 % of the steps, or
+/// sooner once a force says that it has become faster (Force::fastest_rate). Where it has
+/// fallen so far that half of what `safety` leaves is used up, `dt: auto` takes shorter steps from
+/// there on; a given step ends the run when it is no longer stable. A run whose stable step does
+/// not fall so far goes on as if nobody had looked, to the last bit.
+class ExplicitRun : public DynamicRun<Spatial> {
+ public:
+  ExplicitRun(std::string_view type, Model<Spatial>& model, const ExplicitOptions& options,
+              const Observer<Spatial>& observer);
+
+ protected:
+  /// At the state, whose wrenches must be known afterwards as they were before.
+  virtual StableStep find_stable_step() = 0;
+  /// Takes over that the next step is another than `before`; the state's wrenches are known.
+  virtual void step_changed(TS ts, double before) = 0;
+  void remember_own(Memory& memory) override;
+
+  /// The given step, or from the stable one. \throws InputError for a given one above it that was
+  /// not asked for all the same, and if there is neither
+  void choose_step();
+  /// Between two steps: looks at the stable step if that is due. False: the run ends here.
+  bool keep_step_stable(TS ts);
+
+  const ExplicitOptions& explicit_options() const { return explicit_options_; }
+
+ private:
+  StableStep look();
+  bool look_is_due();
+  bool is_faster();
+
+  const ExplicitOptions& explicit_options_;
+  std::int64_t last_look_ = 0, evaluations_ = 0;
+  std::vector<double> rates_;  // the largest at a look, of each force; below 0: it has none [1/s]
+};
+
+/// Newton's equations by PETSc's explicit Runge-Kutta methods, all of their -ts_rk_type, on bodies'
+/// records as vectors; the step fixed, or PETSc's -ts_adapt_type basic. \throws InputError
+RunResult run_rk(Model<Spatial>& model, const ExplicitOptions& options,
+                 const Observer<Spatial>& observer);
+
+}  // namespace floe
