@@ -82,6 +82,9 @@ class SpatialBeams final : public BeamForce<Spatial> {
     }
   }
 
+  double power(const State<Spatial>&) const override { return -power_lost_; }
+  void take_work(double work) override { lost_ -= work; }
+
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {

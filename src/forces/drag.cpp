@@ -51,6 +51,9 @@ class Drag final : public Force<Spatial> {
     last_dt_ = dt;
   }
 
+  double power(const State<Spatial>&) const override { return power_; }
+  void take_work(double work) override { lost_ -= work; }
+
   void remember(Memory& checkpoint) override {
     checkpoint.share("energy_drag", lost_);
     checkpoint.common("last_dt", last_dt_);

@@ -78,6 +78,22 @@ class DeadLoad final : public Force<Spatial> {
     last_moment_ = m;
   }
 
+  double power(const State<Spatial>& state) const override {
+    const Vec3<double> f = force(state.time), m = moment(state.time);
+    double sum = 0;
+    for (const std::int32_t body : bodies_) {
+      const auto b = static_cast<std::size_t>(body);
+      const double* r = state.record(b);
+      const double* v = r + Spatial::velocity;
+      const double* w = r + Spatial::angular_velocity;
+      const Vec3<double> spin{w[0], w[1], w[2]};
+      const Vec3<double> arm = linear_ ? arm_ : turned_arm(state, b);
+      sum += dot(f, Vec3<double>{v[0], v[1], v[2]} + cross(spin, arm)) + dot(m, spin);
+    }
+    return sum;
+  }
+  void take_work(double work) override { work_ += work; }
+
   void remember(Memory& checkpoint) override {
     checkpoint.share("work", work_);
     std::vector<double> last{last_force_.x,  last_force_.y,  last_force_.z,

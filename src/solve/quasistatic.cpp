@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <sstream>
 
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
+#include "solve/text.h"
 
 namespace floe {
 namespace {
@@ -11,12 +11,6 @@ namespace {
 constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, before a run is given up
 constexpr double pin_tolerance =
     1e-6;  // of the forces in balance: more means a free motion is loaded
-
-std::string text(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
 
 }  // namespace
 

@@ -43,8 +43,19 @@ class Force {
   virtual bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const = 0;
   /// An upper bound of the force's stiffness against a unit displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
-  /// Takes over what an accepted step changes (damage, slip, dissipated energy). \param dt step [s]
+  /// Takes over what an accepted step changes (damage, slip, dissipated energy; the latter as for
+  /// leapfrog, whose velocities lag half a step). \param dt step [s]
   virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}
+  /// Whether wrenches depend on what commit() took over: then only integrators that evaluate once a
+  /// step, and never take one back, can use the force.
+  virtual bool has_history() const { return false; }
+
+  /// Power on this rank's bodies of what no potential of the force accounts for, in its last
+  /// evaluation, which was at `state` [W]; negative where bodies lose energy.
+  virtual double power(const State<Space>& /*state*/) const { return 0; }
+  /// Takes over the integral of power() over a step, from integrators that find it themselves
+  /// instead of calling commit() [J].
+  virtual void take_work(double /*work*/) {}
   /// Energies and counts of this rank's share.
   virtual void report(const State<Space>& state, Columns& columns) const = 0;
   /// History to and from a checkpoint; a force without history has nothing to keep.

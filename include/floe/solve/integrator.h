@@ -55,17 +55,21 @@ using Observer = std::function<void(const Accepted<Space>&)>;
 RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
                           const Observer<Spatial>& observer);
 
-/// What explicit dynamics is told.
-struct ExplicitOptions {
+/// What an integrator that moves bodies is told.
+struct DynamicOptions {
   double end = 1;
-  double dt = 0;  ///< 0: safety times the stable step
-  double safety = 0.9;
-  bool allow_unstable = false;   ///< take a given dt above the stable step
+  double dt = 0;                 ///< 0: the integrator's own choice
   double velocity_limit = 1000;  ///< of any body [m/s]
   double energy_limit = 0.1;     ///< of the energy balance's error over the energies that move
   double history = 0;            ///< time between samples [s]; 0: 200 over the run
   double fields = 0;             ///< further samples, for frames [s]; 0: none
   CheckpointOptions checkpoint;
+};
+
+/// What explicit dynamics is told.
+struct ExplicitOptions : DynamicOptions {
+  double safety = 0.9;          ///< dt = 0: this part of the stable step
+  bool allow_unstable = false;  ///< take a given dt above the stable step
 };
 
 /// Newton's equations by PETSc's TS: own type `leapfrog`, velocities half a step behind. Every

@@ -1,0 +1,247 @@
+#include "solve/dynamic_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "solve/text.h"
+
+namespace floe {
+
+template <class Space>
+DynamicRun<Space>::DynamicRun(std::string_view what, Model<Space>& model,
+                              const DynamicOptions& options, const Observer<Space>& observer)
+    : model_(model),
+      options_(options),
+      observer_(observer),
+      state_(static_cast<std::size_t>(model.part().local)),
+      wrenches_(static_cast<std::size_t>(model.part().local)),
+      checkpoints_(options_.checkpoint, model.part()),
+      what_(what) {
+  // What strains of 1e-12 everywhere would store.
+  double mine = 0, all = 0;
+  const double strain = 1e-12 * model.length_scale();
+  for (std::int32_t b = 0; b < model.part().owned; ++b) {
+    for (const auto& force : model.forces()) mine += force->stiffness_bound(b) * strain * strain;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
+  ledger_.set_floor(std::max(all, std::numeric_limits<double>::min()));
+}
+
+template <class Space>
+void DynamicRun<Space>::read_options(TS ts) {
+  check(TSSetTimeStep(ts, options_.dt > 0 ? options_.dt : -1.0));
+  check(TSSetMaxTime(ts, options_.end));
+  check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
+  check(TSSetMaxSteps(ts, std::numeric_limits<PetscInt>::max()));
+  check(TSSetFromOptions(ts));
+  check(TSGetTimeStep(ts, &options_.dt));
+  check(TSGetMaxTime(ts, &options_.end));
+  check(TSGetMaxSteps(ts, &most_steps_));
+}
+
+template <class Space>
+void DynamicRun<Space>::plan(double wanted) {
+  steps_ = static_cast<std::int64_t>(std::ceil(options_.end / wanted * (1 - 1e-12)));
+  steps_ = std::max<std::int64_t>(steps_, 1);
+  dt_ = options_.end / static_cast<double>(steps_);
+  result_.dt = dt_;
+  set_sampling();
+}
+
+/// All that a run goes on from. Collective.
+template <class Space>
+void DynamicRun<Space>::remember(Memory& memory) {
+  const double mine = largest_;
+  MPI_Allreduce(&mine, &largest_, 1, MPI_DOUBLE, MPI_MAX, model_.part().comm);
+  memory.enter("run");
+  memory.common("step", done_);
+  memory.common("steps", steps_);
+  memory.common("time", state_.time);
+  memory.common("dt", dt_);
+  memory.common("stable_dt", result_.stable_dt);
+  memory.common("limited_by", result_.limited_by);
+  memory.common("next_sample", next_sample_);
+  memory.common("sampled_step", sampled_);
+  memory.common("largest_velocity2", largest_);
+  remember_own(memory);
+  memory.enter("ledger");
+  ledger_.remember(memory);
+  memory.enter("bodies");
+  std::vector<std::int32_t> owned(static_cast<std::size_t>(model_.part().owned));
+  std::iota(owned.begin(), owned.end(), 0);
+  memory.rows("records", owned, std::span(state_.records).first(owned.size() * Space::record),
+              Space::record);
+  for (std::size_t k = 0; k < model_.forces().size(); ++k) {
+    memory.enter("force_" + std::to_string(k) + "_" + std::string(model_.forces()[k]->name()));
+    model_.forces()[k]->remember(memory);
+  }
+}
+
+/// The checkpoint's step is kept, the end may lie further on.
+template <class Space>
+bool DynamicRun<Space>::restart() {
+  if (options_.checkpoint.restart.empty()) return false;
+  checkpoints_.load([&](Memory& memory) { remember(memory); });
+  result_.dt = dt_;
+  steps_ = static_cast<std::int64_t>(std::ceil(options_.end / dt_ * (1 - 1e-12)));
+  if (steps_ < done_)
+    throw InputError("time: end: " + text(options_.end) + " must be >= " + text(state_.time) +
+                     " [s], the time of the checkpoint");
+  set_sampling();
+  model_.part().ghosts.update(state_.records, Space::record);
+  before_ = done_;
+  return true;
+}
+
+template <class Space>
+RunResult DynamicRun<Space>::solve(TS ts) {
+  check(TSSetStepNumber(ts, static_cast<PetscInt>(done_)));
+  check(TSSetTime(ts, state_.time));
+  check(TSSetTimeStep(ts, dt_));
+  check(TSSetMaxSteps(ts, static_cast<PetscInt>(std::min<std::int64_t>(steps_, most_steps_))));
+  check(TSSetMaxTime(ts, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
+  check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
+  progress_.emplace(what_, options_.end);
+  {
+    const Timed timed(Event::solve);
+    check(TSSolve(ts, nullptr));
+    if (error_) std::rethrow_exception(error_);
+    TSConvergedReason reason = TS_CONVERGED_ITERATING;
+    check(TSGetConvergedReason(ts, &reason));
+    result_.done = reason > 0 && finish();
+  }
+  if (result_.done && options_.checkpoint.at_end)
+    checkpoints_.save([&](Memory& memory) { remember(memory); });
+  result_.steps = done_;
+  result_.steps_now = done_ - before_;
+  result_.message = why_;
+  if (result_.stopped)
+    result_.message = "stopped on request at time " + text(state_.time) + " s, step " +
+                      std::to_string(done_) + " of " + std::to_string(steps_);
+  return result_;
+}
+
+template <class Space>
+void DynamicRun<Space>::evaluate() {
+  model_.part().ghosts.update(state_.records, Space::record);
+  model_.evaluate(state_, wrenches_);
+}
+
+template <class Space>
+bool DynamicRun<Space>::moved(double time, double speed2) {
+  ++done_;
+  state_.time = time;
+  largest_ = std::isfinite(speed2) ? std::max(largest_, speed2) : speed2;
+  return done_ % check_every != 0 || within_limits();
+}
+
+template <class Space>
+bool DynamicRun<Space>::look_around() {
+  constexpr std::int64_t now_and_then = 50;
+  if (done_ % now_and_then == 0)
+    progress_->update(state_.time,
+                      "step " + std::to_string(done_) + " of " + std::to_string(steps_));
+  const auto wish = checkpoints_.wish(done_);
+  if (wish == Checkpoints::Wish::none) return true;
+  if (!within_limits()) return false;  // no checkpoint of a state that is lost already
+  checkpoints_.save([&](Memory& memory) { remember(memory); });
+  result_.stopped = wish == Checkpoints::Wish::stop;
+  return !result_.stopped;
+}
+
+/// The last state, whose forces no step has asked for.
+template <class Space>
+bool DynamicRun<Space>::finish() {
+  if (sampled_ == done_) return true;  // as a checkpoint at the end of a run leaves it
+  evaluate();
+  return sample(true);
+}
+
+/// Collective: all ranks agree.
+template <class Space>
+bool DynamicRun<Space>::within_limits() {
+  double mine = std::isfinite(largest_) ? largest_ : std::numeric_limits<double>::infinity(),
+         all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, model_.part().comm);
+  if (std::sqrt(all) <= options_.velocity_limit) return true;
+  why_ = (std::isfinite(all) ? "a velocity of " + text(std::sqrt(all)) + " m/s"
+                             : std::string("a velocity that is not finite")) +
+         " at time " + text(state_.time) + " s, " + where() + " (limit: velocity " +
+         text(options_.velocity_limit) + " m/s)";
+  return false;
+}
+
+template <class Space>
+void DynamicRun<Space>::set_sampling() {
+  sample_every_ = {options_.history > 0 ? options_.history : options_.end / 200, options_.fields};
+}
+
+/// The first state at or after the time, rounding aside: as the output counts too.
+template <class Space>
+bool DynamicRun<Space>::due() const {
+  return state_.time >= next_sample_ - early * dt_;
+}
+
+/// Hands the state out, if it is good.
+template <class Space>
+bool DynamicRun<Space>::sample(bool last) {
+  if (!within_limits()) return false;
+  const auto [kinetic, boundary] = energies();
+  const std::array<double, 2> mine{kinetic, boundary};
+  std::array<double, 2> all{};
+  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+  const auto reported = model_.report(state_);
+  ledger_.take(reported, all[0], all[1]);
+  if (!(ledger_.relative_error() <= options_.energy_limit)) {
+    why_ = "the energy balance is off by " + text(ledger_.relative_error()) +
+           " of the energies at time " + text(state_.time) + " s (limit: energy_error " +
+           text(options_.energy_limit) + ")";
+    return false;
+  }
+  observer_({state_, wrenches_, done_, ledger_.columns(), last, reported});
+  sampled_ = done_;
+  next_sample_ = std::numeric_limits<double>::infinity();
+  for (const double every : sample_every_) {
+    if (every > 0)
+      next_sample_ =
+          std::min(next_sample_, every * (std::floor((state_.time + early * dt_) / every) + 1));
+  }
+  return true;
+}
+
+/// The body that is fastest now.
+template <class Space>
+std::string DynamicRun<Space>::where() const {
+  struct {
+    double speed2 = -1;
+    int rank = 0;
+  } mine, best;
+  std::size_t at = 0;
+  const Part& part = model_.part();
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
+    const double* v = state_.record(b) + Space::velocity;
+    double speed2 = 0;
+    for (int k = 0; k < Space::translations; ++k) speed2 += v[k] * v[k];
+    if (!std::isfinite(speed2)) speed2 = std::numeric_limits<double>::max();
+    if (speed2 > mine.speed2) {
+      mine.speed2 = speed2;
+      at = b;
+    }
+  }
+  mine.rank = rank(part.comm);
+  MPI_Allreduce(&mine, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, part.comm);
+  std::array<double, 4> facts{};
+  if (best.rank == mine.rank) {
+    const Point3& x = part.bodies.position[at];
+    facts = {static_cast<double>(part.global[at]), x[0], x[1], x[2]};
+  }
+  MPI_Bcast(facts.data(), 4, MPI_DOUBLE, best.rank, part.comm);
+  return "body " + text(facts[0]) + " at (" + text(facts[1]) + ", " + text(facts[2]) + ", " +
+         text(facts[3]) + ")";
+}
+
+template class DynamicRun<Spatial>;
+
+}  // namespace floe
