@@ -84,7 +84,10 @@ class Operators {
 
  private:
   void evaluate(const State<Spatial>& state, Wrenches<Spatial>& wrenches) {
-    model_.evaluate(state, wrenches);
+    std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
+    for (const auto& force : model_.forces()) {
+      if (std::isinf(force->own_stable_dt())) force->add(state, wrenches);
+    }
     ++evaluations_;
   }
   Triad<double> axes(std::size_t b) const {
@@ -202,7 +205,9 @@ std::string describe(const Operators& a, const Model<Spatial>& model, const Vect
 
 }  // namespace
 
-StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state) {
+namespace {
+
+StableStep step_of_differences(const Model<Spatial>& model, const State<Spatial>& state) {
   Operators a(model, state);
   const auto make = [&](Vector z) {
     Trial t{std::move(z), {}, {}};
@@ -284,6 +289,21 @@ StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state)
   result.decay = a.dot(x.z, x.c);
   result.evaluations = a.evaluations();
   result.limit = describe(a, model, x.z);
+  return result;
+}
+
+}  // namespace
+
+/// 2 dt C + dt^2 K <= 4 M for each of two parts alone: their steps combine like resistances in
+/// parallel, since a step of s times the one takes at most the part s of 4 M.
+StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state) {
+  StableStep result = step_of_differences(model, state);
+  for (const auto& force : model.forces()) {
+    const double own = force->own_stable_dt();
+    if (std::isinf(own)) continue;
+    if (own < result.dt) result.limit = "force '" + std::string(force->name()) + "'";
+    result.dt = std::isinf(result.dt) ? own : 1 / (1 / result.dt + 1 / own);
+  }
   return result;
 }
 

@@ -20,6 +20,7 @@ class Dynamics {
   Dynamics(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
       : model_(lattice, comm, scene.boundaries), motion_(model_) {
     add_forces(scene, place_loads(scene, lattice), model_);
+    add_contact(scene, lattice, model_);
     const auto local = static_cast<std::size_t>(model_.part().local);
     state_ = State<Spatial>(local);
     wrenches_ = Wrenches<Spatial>(local);
@@ -35,11 +36,18 @@ class Dynamics {
     motion_.stagger(state_, wrenches_, dt_);
     evaluate();
   }
+  /// The state is that of another run after set_step(dt).
+  void go_on(double dt) { dt_ = dt; }
   /// Returns the square of the largest speed [m^2/s^2].
   double step() {
+    const double largest = step_without_evaluation();
+    evaluate();
+    return largest;
+  }
+  /// As a checkpoint finds the forces: the next evaluation is yet to come.
+  double step_without_evaluation() {
     const double largest = motion_.step(state_, wrenches_, dt_);
     for (const auto& force : model_.forces()) force->commit(state_, dt_);
-    evaluate();
     return largest;
   }
   void steps(long count) {
