@@ -46,6 +46,10 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);
 /// \throws InputError if the lattice cannot carry one (buoyancy without shapes)
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model);
 
+/// Adds contacts, if the scene names them. \param lattice  whole
+/// \throws InputError if bodies have no shapes or are not convex
+void add_contact(const Scene& scene, const Lattice& lattice, Model<Spatial>& model);
+
 /// Takes free rigid motions out of a static problem.
 /// \throws InputError if a load pushes one of them: the scene has no equilibrium
 void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model);

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "floe/contact/law.h"
+#include "floe/contact/obstacle.h"
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/drag.h"
@@ -39,7 +41,7 @@ struct Scene {
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
   struct {
-    bool beam = false, gravity = false, buoyancy = false, drag = false;
+    bool beam = false, gravity = false, buoyancy = false, drag = false, contact = false;
   } forces;
   bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
@@ -56,6 +58,8 @@ struct Scene {
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;
   double added_mass = 0;  ///< of the water that a body displaces at rest
+  ContactOptions contact;
+  std::vector<Obstacle> obstacles;
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {

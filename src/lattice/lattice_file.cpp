@@ -5,6 +5,7 @@
 #include "floe/base/hdf5.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
+#include "floe/geometry/overlap.h"
 #include "floe/lattice/lattice.h"
 
 namespace floe {
@@ -13,10 +14,11 @@ namespace {
 /// Names the file and the dataset in whatever is wrong with it.
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), file_(Hdf5File::open(path)) {}
+  explicit Reader(const std::string& path, std::string key = "lattice_file")
+      : path_(path), key_(std::move(key)), file_(Hdf5File::open(path, key_)) {}
 
   [[noreturn]] void refuse(const std::string& dataset, const std::string& why) const {
-    throw InputError("lattice_file: '" + path_ + "': " + dataset + ": " + why);
+    throw InputError(key_ + ": '" + path_ + "': " + dataset + ": " + why);
   }
   const Hdf5File& file() const { return file_; }
 
@@ -61,7 +63,7 @@ class Reader {
     if (actual != count)
       refuse(name, "has " + std::to_string(actual) + " rows, must have " + std::to_string(count));
   }
-  std::string path_;
+  std::string path_, key_;
   Hdf5File file_;
 };
 
@@ -153,7 +155,7 @@ void check_offsets(const Reader& in, const std::string& name,
 }
 
 /// Faces that close around the body's centroid, seen counter-clockwise from outside.
-void check_solids(const Reader& in, const Shapes& s) {
+void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
     const std::string name = "body " + std::to_string(b);
@@ -167,13 +169,14 @@ void check_solids(const Reader& in, const Shapes& s) {
     const VolumeProperties p = volume_properties(s, b);
     if (!(p.volume > 0))
       in.refuse("/shapes/corners", name + ": faces must be counter-clockwise seen from outside");
+    if (!centred_at_origin) continue;
     constexpr double centred = 1e-6;  // of the body's size
     if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
       in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
   }
 }
 
-Shapes read_shapes(const Reader& in, std::size_t bodies) {
+Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin = true) {
   Shapes s;
   if (!in.file().has("/shapes")) return s;
   s.vertices = in.rows<3>("/shapes/vertices",
@@ -195,7 +198,7 @@ Shapes read_shapes(const Reader& in, std::size_t bodies) {
                   "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
     }
   }
-  check_solids(in, s);
+  check_solids(in, s, centred_at_origin);
   return s;
 }
 
@@ -234,6 +237,16 @@ Lattice read_lattice(const std::string& file) {
   all.resize(n);
   for (std::size_t k = 0; k < n; ++k) all[k] = static_cast<std::int32_t>(k);
   return lattice;
+}
+
+Shapes read_polyhedron(const std::string& file, const std::string& key) {
+  const Reader in(file, key);
+  Shapes shapes = read_shapes(in, 1, false);
+  if (shapes.empty()) in.refuse("/shapes", "is not there");
+  const double size = std::cbrt(volume_properties(shapes, 0).volume);
+  constexpr double rounding = 1e-6;
+  if (concavity(shapes, 0) > rounding * size) in.refuse("/shapes", "the polyhedron is not convex");
+  return shapes;
 }
 
 void write_lattice(const Lattice& lattice, const std::string& path) {

@@ -7,6 +7,7 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/forces/buoyancy.h"
+#include "floe/forces/contact.h"
 #include "floe/forces/drag.h"
 #include "floe/forces/gravity.h"
 #include "mesh_file.h"
@@ -154,6 +155,11 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
     model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));
   for (const PlacedLoad& load : loads)
     model.add_force(make_load<Spatial>(part, load, scene.beam.kinematics));
+}
+
+void add_contact(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {
+  if (scene.forces.contact)
+    model.add_force(make_contact(model.part(), lattice, scene.contact, scene.obstacles));
 }
 
 void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {

@@ -29,17 +29,23 @@ void read_forces(Options& options, Scene& scene) {
   const auto named = [&](std::string_view force) {
     return std::find(forces.begin(), forces.end(), force) != forces.end();
   };
-  scene.forces = {named("beam"), named("gravity"), named("buoyancy"), named("drag")};
+  scene.forces = {named("beam"), named("gravity"), named("buoyancy"), named("drag"),
+                  named("contact")};
   if (scene.forces.buoyancy && !scene.forces.gravity)
     throw InputError("forces: buoyancy needs gravity");
   if (scene.forces.drag && scene.integrator == Integrator::quasistatic)
     throw InputError(
         "forces: drag would have no effect: 'integrator' is quasistatic, nothing moves");
+  if (scene.forces.contact && scene.integrator == Integrator::quasistatic)
+    throw InputError(
+        "forces: contact needs 'integrator: explicit': contacts have a memory and no tangent");
   const auto without = [](std::string_view force) {
     return "would have no effect: '" + std::string(force) + "' is not in 'forces'";
   };
   if (!scene.forces.beam) options.refuse("beam", without("beam"));
   if (!scene.forces.gravity) options.refuse("gravity", without("gravity"));
+  for (const auto* section : {"contact", "obstacle"})
+    if (!scene.forces.contact) options.refuse(section, without("contact"));
   if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("water", without("buoyancy"));
   if (!scene.forces.drag) {
     for (const auto* key : {"water: drag_linear", "water: drag_coefficient", "water: current"})
@@ -67,6 +73,64 @@ void read_water(Options& options, Scene& scene) {
     options.refuse("water: density", "would have no effect on linear drag");
   }
   scene.drag.density = scene.water_density;
+}
+
+Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
+
+Obstacle read_shape(Options& options, const std::string& name) {
+  enum class Shape { halfspace, box, cone, cylinder, file };
+  const auto of = [&](const char* key) {
+    return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
+  };
+  const auto shape = options.choice<Shape>("obstacle: NAME: shape", name);
+  if (shape == Shape::halfspace) {
+    const Vec3<double> point = of("point"), normal = of("normal");
+    if (dot(normal, normal) == 0)
+      throw InputError("obstacle: " + name + ": normal: 0 0 0 is no direction");
+    return half_space(point, normal);
+  }
+  if (shape == Shape::box) {
+    const Vec3<double> centre = of("centre"), size = of("size"), rotation = of("rotation");
+    if (!(size.x > 0 && size.y > 0 && size.z > 0))
+      throw InputError("obstacle: " + name + ": size: must be three numbers > 0 [m]");
+    return box(centre, size, rotation);
+  }
+  if (shape == Shape::file) {
+    const std::string file = options.text("obstacle: NAME: file", name);
+    return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
+  }
+  const Vec3<double> base = of("base");
+  const double radius = options.number("obstacle: NAME: radius", name),
+               height = options.number("obstacle: NAME: height", name);
+  const double top =
+      shape == Shape::cone ? options.number("obstacle: NAME: top_radius", name) : radius;
+  const std::int64_t facets = options.integer("obstacle: NAME: facets", name);
+  if (facets < 3 || facets > 1000)
+    throw InputError("obstacle: " + name + ": facets: " + std::to_string(facets) +
+                     " must be between 3 and 1000");
+  return cone(base, radius, top, height, static_cast<int>(facets));
+}
+
+void read_contact(Options& options, Scene& scene) {
+  ContactOptions& contact = scene.contact;
+  contact.law = options.choice<ContactLaw>("contact: law");
+  if (!scene.has_sheet && !options.given("contact: young"))
+    throw InputError("contact: young: is required with lattice_file [Pa]");
+  contact.young = options.number("contact: young", {}, scene.ice.young);
+  contact.friction = options.number("contact: friction");
+  if (options.given("contact: plastic_limit"))
+    contact.plastic_limit = options.number("contact: plastic_limit");
+  const double restitution = options.number("contact: restitution");
+  if (restitution > 1)
+    throw InputError("contact: restitution: " + text_of(restitution) + " must be <= 1");
+  contact.damping_ratio = damping_ratio_of(restitution);
+  for (const std::string& name : options.names("obstacle")) {
+    Obstacle obstacle = read_shape(options, name);
+    obstacle.name = name;
+    obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
+    obstacle.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
+    scene.obstacles.push_back(std::move(obstacle));
+  }
 }
 
 void read_sheet(Options& options, Scene& scene) {
@@ -300,6 +364,7 @@ Scene read_scene(const std::string& path) {
   }
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
+  if (scene.forces.contact) read_contact(options, scene);
   check_floats(scene);
   for (const std::string& name : options.names("boundary")) {
     scene.boundaries.push_back(read_boundary(options, name));

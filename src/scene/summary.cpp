@@ -73,6 +73,24 @@ void add_bending(const Scene& scene, const Sample& first, const Sample& last, Js
                deflection / wyman, wyman, characteristic);
 }
 
+/// Number of contacts at the end, and the largest and the mean force on each obstacle.
+void add_contacts(const Scene& scene, const Sample& last, Json& json) {
+  const auto value = [&](const std::string& name) {
+    const auto found = std::find_if(last.forces.begin(), last.forces.end(),
+                                    [&](const auto& column) { return column.first == name; });
+    return found == last.forces.end() ? 0.0 : found->second;
+  };
+  json["contacts"] = static_cast<std::int64_t>(value("contacts"));
+  for (const char* what : {"peak_force", "mean_force"}) {
+    Json all = Json::object();
+    for (const Obstacle& o : scene.obstacles) {
+      const std::string column = o.name + "_" + what;
+      all[o.name] = {value(column + "_x"), value(column + "_y"), value(column + "_z")};
+    }
+    if (!all.empty()) json[what] = all;
+  }
+}
+
 }  // namespace
 
 void check_reports(const Scene& scene) {
@@ -146,6 +164,7 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
     if (name.rfind("energy_", 0) == 0) energy[name.substr(7)] = value;
   }
   json["energy"] = energy;
+  if (scene.forces.contact) add_contacts(scene, last, json);
   json["wall_s"] = wall;
   json["mesh_s"] = wall_seconds(Event::mesh);
   json["lattice_s"] = wall_seconds(Event::lattice);

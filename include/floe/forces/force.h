@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,6 +45,9 @@ class Force {
   virtual bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const = 0;
   /// An upper bound of the force's stiffness against a unit displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
+  /// A step that is stable with this force alone, of one that says so itself because differences of
+  /// its wrenches at a state would not tell (contacts that are yet to come) [s].
+  virtual double own_stable_dt() const { return std::numeric_limits<double>::infinity(); }
   /// Takes over what an accepted step changes (damage, slip, dissipated energy; the latter as for
   /// leapfrog, whose velocities lag half a step). \param dt step [s]
   virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}

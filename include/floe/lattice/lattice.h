@@ -89,6 +89,9 @@ void add_region(Lattice& lattice, const std::string& name, const std::array<doub
 /// then renamed. \throws InputError naming the file and the dataset if it is missing, has a wrong
 /// shape, or a value out of range.
 Lattice read_lattice(const std::string& file);
+/// Reads the one convex polyhedron of a file's /shapes, wherever its origin is.
+/// \param key  the option that named the file, for messages   \throws InputError
+Shapes read_polyhedron(const std::string& file, const std::string& key);
 void write_lattice(const Lattice& lattice, const std::string& file);
 
 }  // namespace floe
