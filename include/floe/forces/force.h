@@ -45,6 +45,10 @@ class Force {
   virtual double stiffness_bound(std::int32_t body) const = 0;
   /// Takes over what an accepted step changes (damage, slip, dissipated energy). \param dt step [s]
   virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}
+  /// Whether wrenches depend on what commit() took over: then only integrators that evaluate once a
+  /// step, and never take one back, can use the force.
+  virtual bool has_history() const { return false; }
+
   /// Energies and counts of this rank's share.
   virtual void report(const State<Space>& state, Columns& columns) const = 0;
   /// History to and from a checkpoint; a force without history has nothing to keep.
