@@ -13,6 +13,7 @@
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/drag.h"
+#include "floe/forces/fracture.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
 
@@ -41,7 +42,8 @@ struct Scene {
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
   struct {
-    bool beam = false, gravity = false, buoyancy = false, drag = false, contact = false;
+    bool beam = false, fracture = false, gravity = false, buoyancy = false, drag = false,
+         contact = false;
   } forces;
   bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
@@ -54,6 +56,7 @@ struct Scene {
   std::vector<Region> regions;
   std::vector<Cut> cuts;
   BeamOptions beam;
+  FractureOptions fracture;
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;

@@ -145,8 +145,13 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
 
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model) {
   const Part& part = model.part();
-  if (scene.forces.beam)
+  if (scene.forces.fracture) {
+    BreakableForce breakable = make_breakable_beams(part, scene.beam, scene.fracture);
+    model.set_fracture(breakable.fracture);
+    model.set_beams(std::move(breakable.force), scene.beam.kinematics);
+  } else if (scene.forces.beam) {
     model.set_beams(make_beam_force<Spatial>(part, scene.beam), scene.beam.kinematics);
+  }
   if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
   if (scene.forces.buoyancy)
     model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));

@@ -29,8 +29,10 @@ void read_forces(Options& options, Scene& scene) {
   const auto named = [&](std::string_view force) {
     return std::find(forces.begin(), forces.end(), force) != forces.end();
   };
-  scene.forces = {named("beam"), named("gravity"), named("buoyancy"), named("drag"),
-                  named("contact")};
+  scene.forces = {named("beam"),     named("fracture"), named("gravity"),
+                  named("buoyancy"), named("drag"),     named("contact")};
+  if (scene.forces.fracture && !scene.forces.beam)
+    throw InputError("forces: fracture needs beam: it is beams that break");
   if (scene.forces.buoyancy && !scene.forces.gravity)
     throw InputError("forces: buoyancy needs gravity");
   if (scene.forces.drag && scene.integrator == Integrator::quasistatic)
@@ -43,6 +45,7 @@ void read_forces(Options& options, Scene& scene) {
     return "would have no effect: '" + std::string(force) + "' is not in 'forces'";
   };
   if (!scene.forces.beam) options.refuse("beam", without("beam"));
+  if (!scene.forces.fracture) options.refuse("fracture", without("fracture"));
   if (!scene.forces.gravity) options.refuse("gravity", without("gravity"));
   for (const auto* section : {"contact", "obstacle"})
     if (!scene.forces.contact) options.refuse(section, without("contact"));
@@ -50,6 +53,25 @@ void read_forces(Options& options, Scene& scene) {
   if (!scene.forces.drag) {
     for (const auto* key : {"water: drag_linear", "water: drag_coefficient", "water: current"})
       options.refuse(key, without("drag"));
+  }
+}
+
+void read_fracture(Options& options, Scene& scene) {
+  FractureOptions& fracture = scene.fracture;
+  fracture.tensile_strength = options.number("fracture: tensile_strength");
+  fracture.shear_strength =
+      options.number("fracture: shear_strength", {}, fracture.tensile_strength);
+  fracture.energy = options.number("fracture: energy");
+  fracture.energy_shear = options.number("fracture: energy_shear", {}, fracture.energy);
+  fracture.dynamic = scene.integrator != Integrator::quasistatic;
+  if (options.given("fracture: weibull_modulus")) {
+    fracture.weibull_modulus = options.number("fracture: weibull_modulus");
+    if (options.given("fracture: weibull_area"))
+      fracture.weibull_area = options.number("fracture: weibull_area");
+    fracture.seed = static_cast<std::uint64_t>(options.integer("fracture: seed"));
+  } else {
+    for (const auto* key : {"fracture: weibull_area", "fracture: seed"})
+      options.refuse(key, "would have no effect without 'fracture: weibull_modulus'");
   }
 }
 
@@ -362,6 +384,7 @@ Scene read_scene(const std::string& path) {
     scene.beam.shear = options.choice<Shear>("beam: shear");
     scene.beam.kinematics = options.choice<Kinematics>("beam: kinematics");
   }
+  if (scene.forces.fracture) read_fracture(options, scene);
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   if (scene.forces.contact) read_contact(options, scene);

@@ -165,6 +165,10 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   }
   json["energy"] = energy;
   if (scene.forces.contact) add_contacts(scene, last, json);
+  for (const auto& [name, value] : last.forces) {
+    if (name.rfind("beams_", 0) == 0 || name == "fragments")
+      json[name] = static_cast<std::int64_t>(std::llround(value));
+  }
   json["wall_s"] = wall;
   json["mesh_s"] = wall_seconds(Event::mesh);
   json["lattice_s"] = wall_seconds(Event::lattice);

@@ -394,13 +394,46 @@ void Equilibrium::restore(const Saved& saved) {
   fill_residual(f_);
 }
 
-bool Equilibrium::solve(double time) {
+bool Equilibrium::solve(double time, double overload_limit) {
   const Saved before = save();
   why_.clear();
-  if (!predict(time)) {
+  collapsed_ = false;
+  if (!balance(time) || (model_.fracture() != nullptr && !let_break(time, overload_limit))) {
     restore(before);
     return false;
   }
+  fill_residual(f_);
+  for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
+  return true;
+}
+
+/// Beams break one at a time, the most overloaded first, and others soften, each time to a new
+/// balance: states that are in balance but for the beams that break, as slow loading passes
+/// through them.
+bool Equilibrium::let_break(double time, double overload_limit) {
+  Fracture& fracture = *model_.fracture();
+  if (const double overload = fracture.overload(state_); overload > overload_limit) {
+    why_ = "a beam would be loaded to " + std::to_string(overload) + " times its strength";
+    return false;
+  }
+  constexpr int most_rounds = 1000;  // of softening without a break
+  int rounds = 0;
+  for (Advance done = fracture.advance(state_); done != Advance::none;
+       done = fracture.advance(state_)) {
+    rounds = done == Advance::broke ? 0 : rounds + 1;
+    if (rounds <= most_rounds && balance(time)) continue;
+    if (why_.empty()) why_ = "damage does not come to rest";
+    collapsed_ = true;
+    fracture.retreat();
+    return false;
+  }
+  return true;
+}
+
+/// Newton's method from the present state to equilibrium at `time`; leaves the state anywhere if it
+/// fails.
+bool Equilibrium::balance(double time) {
+  if (!predict(time)) return false;
   const Timed timed(Event::solve);
   check(SNESSolve(snes_, nullptr, x_));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
@@ -413,17 +446,13 @@ bool Equilibrium::solve(double time) {
                ? "nothing holds the bodies within 100 times the lattice's extent (does it sink?)"
                : std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
                      std::to_string(taken) + " iterations)";
-    restore(before);
     return false;
   }
   take(x_);
   if (const std::int64_t folded = count_folded(); folded > 0) {
     why_ = std::to_string(folded) + " beams folded over";
-    restore(before);
     return false;
   }
-  fill_residual(f_);
-  for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
   return true;
 }
 
