@@ -42,6 +42,14 @@ def loaded(rest):
 
 PULLED = loaded("set: right, force: [1e5, 0, 0]")  # what a solver has work with
 
+TOUCHING = "integrator: explicit\nforces: [beam, contact]\n" + SHEET
+FLOOR = "obstacle: {names: [o], o: {shape: halfspace, normal: [0, 0, 1]}}\n"
+
+
+def obstacle(rest):
+    return TOUCHING + "obstacle: {names: [o], o: {" + rest + "}}\n"
+
+
 COMMAND_LINE = {
     "stray word": (GOOD, ["stray"], "stray"),
     "stray word after a flag with a value": (GOOD, ["-check", "no", "stray"], "stray"),
@@ -121,6 +129,20 @@ SCENES = {
     "region without bodies": (GOOD + "region: {names: [r], r: {box: 90 91 0 1 0 1}}\n", "region: r"),
     "region upside down": (GOOD + "region: {names: [r], r: {box: 1 0 0 1 0 1}}\n", "region: r: box"),
     "cut beside the sheet": (GOOD + "cut: {names: [c], c: {from: [9, -9], to: [9, 9]}}\n", "cut: c"),
+    "contact in statics": (TOUCHING, "forces: contact", ["-integrator", "quasistatic"]),
+    "contact that does not act": (GOOD + "contact: {friction: 0.1}\n", "contact: friction"),
+    "obstacle that does not act": (GOOD + FLOOR, "obstacle"),
+    "restitution above 1": (TOUCHING + "contact: {restitution: 1.1}\n", "contact: restitution"),
+    "negative friction": (TOUCHING + "contact: {friction: -0.1}\n", "contact: friction"),
+    "obstacle of no known shape": (obstacle("shape: sphere"), "sphere"),
+    "obstacle without a shape": (obstacle("friction: 0.1"), "obstacle: o: shape"),
+    "half-space without a direction": (obstacle("shape: halfspace, normal: [0, 0, 0]"), "obstacle: o: normal"),
+    "flat box": (obstacle("shape: box, size: [1, 0, 1]"), "obstacle: o: size"),
+    "cylinder of two facets": (obstacle("shape: cylinder, facets: 2"), "obstacle: o: facets"),
+    "radius of a box": (obstacle("shape: box, radius: 1"), "obstacle: o: radius"),
+    "obstacle from a file that is not there": (obstacle("shape: file, file: none.h5"), "none.h5"),
+    "lattice file without a stiffness of contacts":
+        ("integrator: explicit\nforces: [contact]\nlattice_file: bad.h5\n", "contact: young"),
     "load step beyond the end": (GOOD + "time: {end: 1, dt: 2}\n", "time: dt"),
     "output below a regular file": (GOOD + "output: {dir: scene.yaml/out}\n", "output: dir"),
     "output in place of a regular file": (GOOD + "output: {dir: scene.yaml}\n", "output: dir"),
