@@ -46,6 +46,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
 
   bool has_history() const override { return true; }
 
+  /// Every beam goes through the same instructions, whatever its neighbours in a block: a block
+  /// that gives way is added again as what damage leaves of it.
   [[gnu::flatten]] void add(const State<Spatial>& state,
                             Wrenches<Spatial>& wrenches) const override {
     growing_.clear();
@@ -57,11 +59,24 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       prefetch(blocks_[soon]);
       prefetch(strengths_[soon]);
       if constexpr (damped) prefetch(dashpots_[soon]);
-      const auto one_by_one = [&] { return add_softened(b, state, values); };
-      lost += damaged_[b] != 0 ? one_by_one()
-                               : add_block<kinematics, damped>(
-                                     blocks_[b], damped ? &dashpots_[b] : nullptr, records, values,
-                                     BreakableBlock{strengths_[b], one_by_one});
+      const BeamBlock<Frame>* block = &blocks_[b];
+      const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
+      const StrengthBlock* strength = &strengths_[b];
+      const auto take_softened = [&] {
+        soften(b, state);
+        block = &soft_block_, dashpots = &soft_dashpots_, strength = &unbreakable_;
+      };
+      if (damaged_[b] != 0) take_softened();
+      bool again = false;
+      do {
+        again = false;
+        lost += add_block<kinematics, damped>(*block, dashpots, records, values,
+                                              BreakableBlock{*strength, [&] {
+                                                               take_softened();
+                                                               again = true;
+                                                               return Lanes(0.0);
+                                                             }});
+      } while (again);
     }
     if constexpr (damped) this->power_lost_ = reduce(lost);
   }
@@ -252,6 +267,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     const Crack* c = crack(m);
     return c != nullptr ? c->kappa : 1.0;
   }
+  /// What decides; the loop of add() only asks whether it is worth asking.
   Lanes criterion_of(std::size_t b, const State<Spatial>& state) const {
     return block_criterion<kinematics>(blocks_[b], strengths_[b], state.records.data());
   }
@@ -360,11 +376,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     return 0.25 * dt_ * (gone.axial * axial + gone.rest * rest);
   }
 
-  /// A block with a beam that is damaged or becomes so: damage of this state, then as any other.
-  [[gnu::noinline, gnu::cold, gnu::flatten]] Lanes add_softened(std::size_t b,
-                                                                const State<Spatial>& state,
-                                                                double* values) const {
-    // Lanes decide, so that a beam fares the same whatever its neighbours in the block.
+  /// A block with a beam that is damaged or may become so: what this state's damage leaves of it.
+  [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
+                                                         const State<Spatial>& state) const {
     const Lanes s2 = criterion_of(b, state);
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -379,13 +393,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       }
       if (c != nullptr) left[lane] = softening(c->damage, strains(m, state).delta > 0, c->broken());
     }
-    const BeamBlock<Frame> soft = softened(blocks_[b], left);
-    if constexpr (damped) {
-      const DashpotBlock dashpots = softened(dashpots_[b], left);
-      return add_block<kinematics, damped>(soft, &dashpots, state.records.data(), values);
-    } else {
-      return add_block<kinematics, damped>(soft, nullptr, state.records.data(), values);
-    }
+    soft_block_ = softened(blocks_[b], left);
+    if constexpr (damped) soft_dashpots_ = softened(dashpots_[b], left);
   }
 
   void take(const Growth& g) {
@@ -457,6 +466,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       kept_;  ///< in the order of their initiation; statics: at the last commit
   std::vector<std::int32_t> newly_broken_;  ///< since the last commit, local
   std::vector<std::array<std::int32_t, 2>> released_;
+  const StrengthBlock unbreakable_{};
+  mutable BeamBlock<Frame> soft_block_;  ///< work space of soften()
+  mutable DashpotBlock soft_dashpots_;
   mutable std::vector<Growth> growing_;      ///< a by-product of the last evaluation, no history
   double dissipated_ = 0, kept_energy_ = 0;  ///< by the beams that this rank counts [J]
   double dt_ = 0;                            ///< the last step [s]

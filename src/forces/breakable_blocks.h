@@ -1,6 +1,6 @@
 /// \file
 /// Strengths of beams in blocks of lanes. The loop over an intact sheet pays for one test per
-/// block; blocks with a beam that gives way, or is damaged, go through their beams one by one.
+/// block; blocks with a beam that gives way, or is damaged, are looked at beam by beam.
 #pragma once
 
 #include "forces/beam_blocks.h"
@@ -35,9 +35,10 @@ Lanes block_criterion(const BeamBlock<Frame>& block, const StrengthBlock& streng
 template <class Add>
 struct BreakableBlock {
   const StrengthBlock& strength;
-  Add add;  ///< adds the block beam by beam; returns the power lost
+  Add add;  ///< what happens instead; returns the power lost
   bool gives_way(const BeamStress<Lanes>& elastic) const {
-    return any_of(criterion(strength.get(), elastic) > 1.0);
+    constexpr double nearly = 1 - 1e-9;
+    return any_of(criterion(strength.get(), elastic) > nearly);
   }
 };
 template <class Add>
