@@ -1,5 +1,6 @@
 #include "solve/turning.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <cmath>
