@@ -102,6 +102,8 @@ class ImplicitRun final : public DynamicRun<Space> {
            contraction_ <= a_digit;
   }
 
+  static constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, as in statics
+
   Equations equations_;
   LieAlphaProblem problem_;
   Handle<Vec> x_, v_, x_before_, v_before_;
@@ -257,6 +259,11 @@ bool ImplicitRun<Space>::stepped() {
   // The last state is the run's to sample.
   if (reason == TS_CONVERGED_ITERATING && !this->sample_if_due()) return false;
   plan_next_step(h);
+  if (fixed_ && planned_ < smallest_fraction * given_) {
+    give_up("Newton wants ever smaller steps: " + text(planned_) + " s at time " + text(now) +
+            " s, where " + text(given_) + " s was given");
+    return false;
+  }
   land();
   return this->look_around();
 }

@@ -16,23 +16,15 @@
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
 #include "solve/liealpha.h"
+#include "support/implicit_run.h"
 #include "support/record.h"
 #include "support/second_order.h"
-#include "support/static_solution.h"
 
 namespace floe::test {
 namespace {
 
 constexpr const char* section_name = "Implicit dynamics";
 constexpr std::array radii{1.0, 0.8, 0.5, 0.0};
-
-std::string text(const char* format, auto... values) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
-
-PetscOption radius(double value) { return {"-ts_liealpha_radius", std::to_string(value)}; }
 
 /// Two masses, linear and cubic springs, dashpots of both, driven.
 System oscillator(double cubic = 4, double drive = 1) {
