@@ -19,7 +19,7 @@
 
 namespace floe {
 
-enum class Integrator { quasistatic, leapfrog };
+enum class Integrator { quasistatic, leapfrog, implicit };
 
 struct Region {
   std::string name;
@@ -67,7 +67,7 @@ struct Scene {
   std::vector<Load> loads;
   struct {
     double end = 1;
-    double dt = 0;  ///< 0: one step, or from the stable step
+    double dt = 0;  ///< 0: one step, from the stable step, or from the error
     double safety = 0.9;
     bool allow_unstable = false;
   } time;

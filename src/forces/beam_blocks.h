@@ -68,6 +68,11 @@ struct alignas(64) BeamBlock {
 struct alignas(64) DashpotBlock {
   std::array<std::array<double, lanes>, 6> values;
   std::array<double, lanes> counts;
+  BeamDashpots get(std::size_t lane) const {
+    BeamDashpots c{};
+    for (std::size_t k = 0; k < 6; ++k) c[k] = values[k][lane];
+    return c;
+  }
 };
 
 /// A block's bodies, one per lane.

@@ -67,11 +67,41 @@ class SpatialBeams : public BeamForce<Spatial> {
   bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
     Tangent<Spatial>::PairBlock block;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
-      Pointwise::tangent(constants(m), record(state, i), record(state, j), tangent.symmetric(),
-                         block);
+      // Without symmetry the dashpots' force is followed as the beam turns, which is little.
+      const BeamDashpots c = damped ? dashpots(m) : BeamDashpots{};
+      const BeamDashpots* followed = damped && !tangent.symmetric() ? &c : nullptr;
+      Pointwise::tangent(constants(m), followed, record(state, i), record(state, j),
+                         tangent.symmetric(), block);
       tangent.add_pair(i, j, block);
     });
     return true;
+  }
+
+  void add_damping(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    if constexpr (damped) {
+      Tangent<Spatial>::PairBlock block;
+      for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+        Pointwise::damping(constants(m), dashpots(m), record(state, i), record(state, j), block);
+        tangent.add_pair(i, j, block);
+      });
+    }
+  }
+
+  bool add_losses(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+    if constexpr (damped) {
+      for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+        const BeamGradient<double> g =
+            Pointwise::damping_force(constants(m), dashpots(m), record(state, i), record(state, j));
+        const auto put = [&](std::int32_t body, double sign, const Vec3<double>& moment) {
+          double* w = wrenches.of(static_cast<std::size_t>(body));
+          w[0] += sign * g.force.x, w[1] += sign * g.force.y, w[2] += sign * g.force.z;
+          w[3] -= moment.x, w[4] -= moment.y, w[5] -= moment.z;
+        };
+        put(i, 1, g.moment_i);
+        put(j, -1, g.moment_j);
+      });
+    }
+    return damped;
   }
 
   double stiffness_bound(std::int32_t body) const override {
@@ -156,6 +186,9 @@ class SpatialBeams : public BeamForce<Spatial> {
   }
   BeamConstants<double> constants(std::int32_t m) const {
     return blocks_[static_cast<std::size_t>(m) / lanes].get(static_cast<std::size_t>(m) % lanes);
+  }
+  BeamDashpots dashpots(std::int32_t m) const {
+    return dashpots_[static_cast<std::size_t>(m) / lanes].get(static_cast<std::size_t>(m) % lanes);
   }
   static const double* record(const State<Spatial>& state, std::int32_t body) {
     return state.record(static_cast<std::size_t>(body));

@@ -113,8 +113,6 @@ RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = scene.time.dt;
-  options.safety = scene.time.safety;
-  options.allow_unstable = scene.time.allow_unstable;
   options.velocity_limit = scene.limit.velocity;
   options.energy_limit = scene.limit.energy_error;
   options.history = scene.output.history;
@@ -128,6 +126,9 @@ RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string
                         scene.options_yaml,
                         prepare,
                         others};
+  if (scene.integrator == Integrator::implicit) return run_implicit(model, options, observer);
+  options.safety = scene.time.safety;
+  options.allow_unstable = scene.time.allow_unstable;
   return run_explicit(model, options, observer);
 }
 

@@ -10,8 +10,10 @@ using enum Kind;
 // A new key is one line here and one where scene.cpp reads it. Words of a choice stand in the order
 // of their enum. Columns: key, kind, default, unit, allowed, doc, count.
 constexpr std::array table{
-    OptionSpec{"integrator", choice, "quasistatic", "", "quasistatic | explicit",
-               "how the state moves on: static equilibrium at each load step, or leapfrog in time"},
+    OptionSpec{
+        "integrator", choice, "quasistatic", "", "quasistatic | explicit | implicit",
+        "how the state moves on: static equilibrium at each load step, or in time by leapfrog "
+        "or by the generalised-alpha method"},
     OptionSpec{"forces", choices, "(required)", "",
                "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},
@@ -67,10 +69,10 @@ constexpr std::array table{
 
     OptionSpec{
         "beam: damping_ratio", number, "0", "", ">= 0",
-        "explicit: zeta of every dashpot, c = 2 zeta sqrt(m k) with the harmonic mean of the "
+        "dynamics: zeta of every dashpot, c = 2 zeta sqrt(m k) with the harmonic mean of the "
         "bodies' masses"},
     OptionSpec{"beam: damping_modes", choice, "all", "", "all | axial",
-               "explicit: dashpots on all six strains, or on the elongation only"},
+               "dynamics: dashpots on all six strains, or on the elongation only"},
 
     OptionSpec{"fracture: tensile_strength", number, "6e5", "Pa", "> 0",
                "sigma_t: a beam cracks where its largest tensile stress, with shear, reaches it"},
@@ -94,7 +96,7 @@ constexpr std::array table{
                "drag: C_d in the force -density C_d A |v| v/2 on the submerged part"},
     OptionSpec{"water: current", numbers, "0 0 0", "m/s", "", "drag: velocity of the water", 3},
     OptionSpec{"water: added_mass", number, "0", "", ">= 0",
-               "explicit: a body takes along this part of the water that it displaces at rest"},
+               "dynamics: a body takes along this part of the water that it displaces at rest"},
 
     OptionSpec{"contact: law", choice, "overlap", "", "overlap | potential",
                "force by the overlap's volume, or the gradient of an energy of it (Feng 2021)"},
@@ -158,7 +160,7 @@ constexpr std::array table{
                "the load rises linearly over this time"},
 
     OptionSpec{"initial: names", names, "(none)", "", "",
-               "explicit: initial motions, one section each; they override the lattice file's"},
+               "dynamics: initial motions, one section each; they override the lattice file's"},
     OptionSpec{"initial: NAME: set", text, "(required)", "", "", "the set of bodies"},
     OptionSpec{"initial: NAME: velocity", numbers, "0 0 0", "m/s", "", "of each body", 3},
     OptionSpec{"initial: NAME: angular_velocity", numbers, "0 0 0", "rad/s", "", "of each body", 3},
@@ -167,31 +169,34 @@ constexpr std::array table{
         "time: end", number, "1", "s", "> 0",
         "end of the run, from 0 (quasistatic: of the pseudo-time; what has no ramp acts fully)"},
     OptionSpec{"time: dt", number, "(auto)", "s", "> 0",
-               "step; auto: safety times the stable step (quasistatic: one load step)"},
+               "step; auto: safety times the stable step (implicit: from the error of each step; "
+               "quasistatic: one load step)"},
     OptionSpec{"time: safety", number, "0.9", "", "in (0, 1)",
                "explicit: dt auto is this times the stable step"},
     OptionSpec{"time: allow_unstable", flag, "false", "", "",
                "explicit: take a dt above the stable step all the same"},
 
     OptionSpec{"limit: velocity", number, "1000", "m/s", "> 0",
-               "explicit: a body faster than this stops the run"},
+               "dynamics: a body faster than this stops the run"},
     OptionSpec{
         "limit: energy_error", number, "0.1", "", "> 0",
-        "explicit: an error of the energy balance above this part of the energies that moved "
+        "dynamics: an error of the energy balance above this part of the energies that moved "
         "stops the run"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
-    OptionSpec{"output: history", number, "(auto)", "s", "> 0",
-               "between rows of history.csv; auto: every load step, explicit: 200 rows"},
+    OptionSpec{
+        "output: history", number, "(auto)", "s", "> 0",
+        "between rows of history.csv, where steps of implicit end too; auto: every load step, "
+        "dynamics: 200 rows at the most"},
     OptionSpec{"output: fields", number, "(first and last state)", "s", "> 0",
-               "between frames of fields.h5"},
+               "between frames of fields.h5, where steps of implicit end too"},
 
     OptionSpec{"checkpoint: every", number, "600", "s", "> 0",
-               "explicit: run time (by the clock) between checkpoints; with a section checkpoint "
+               "dynamics: run time (by the clock) between checkpoints; with a section checkpoint "
                "there is one at the end of the run too"},
     OptionSpec{
         "checkpoint: restart", text, "(none: from t = 0)", "", "",
-        "explicit: the checkpoint.h5 to go on from, in the same output folder; its step dt is "
+        "dynamics: the checkpoint.h5 to go on from, in the same output folder; its step dt is "
         "kept, time: end may be later"},
 };
 

@@ -313,8 +313,13 @@ void read_dynamics(Options& options, Scene& scene) {
       options.refuse(key, why);
     return;
   }
-  scene.time.safety = options.number("time: safety");
-  scene.time.allow_unstable = options.flag("time: allow_unstable");
+  if (scene.integrator == Integrator::implicit) {
+    for (const auto* key : {"time: safety", "time: allow_unstable"})
+      options.refuse(key, "would have no effect: 'integrator' is implicit, any step is stable");
+  } else {
+    scene.time.safety = options.number("time: safety");
+    scene.time.allow_unstable = options.flag("time: allow_unstable");
+  }
   scene.checkpoint.every = options.number("checkpoint: every");
   scene.checkpoint.at_end = options.given_section("checkpoint");
   scene.limit.velocity = options.number("limit: velocity");

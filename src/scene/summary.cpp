@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -128,7 +129,8 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   json["beams"] = model.part().global_beams;
   json["ranks"] = size();
   const bool stepped = scene.integrator == Integrator::leapfrog;
-  json["integrator"] = stepped ? "explicit" : "quasistatic";
+  constexpr std::array names{"quasistatic", "explicit", "implicit"};
+  json["integrator"] = names[static_cast<std::size_t>(scene.integrator)];
   json["time"] = last.time;
   json["steps"] = result.steps;
   json["dt"] = result.dt;
@@ -151,9 +153,10 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
     json["degenerate_facets"] = mesh.degenerate;
   }
   text +=
-      line("%d bodies, %lld beams, %lld load steps, %lld Newton iterations",
-           model.part().global_bodies, static_cast<long long>(model.part().global_beams),
-           static_cast<long long>(result.steps), static_cast<long long>(result.newton_iterations));
+      line("%d bodies, %lld beams, %lld %s, %lld Newton iterations", model.part().global_bodies,
+           static_cast<long long>(model.part().global_beams), static_cast<long long>(result.steps),
+           scene.integrator == Integrator::quasistatic ? "load steps" : "steps",
+           static_cast<long long>(result.newton_iterations));
   if (scene.has_sheet)
     text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations",
                  mesh.energy_ratio, mesh.largest_move, mesh.iterations);

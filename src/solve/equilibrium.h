@@ -67,7 +67,6 @@ class Equilibrium {
                                   SNESConvergedReason*, void* self) noexcept;
 
   void set_defaults();
-  void attach_rigid_modes();
   void take(Vec x);    ///< state of the unknowns, ghosts included
   void rebase(Vec x);  ///< moves the reference of the rotations to the present state
   void fill_residual(Vec f);

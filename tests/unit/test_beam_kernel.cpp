@@ -82,7 +82,7 @@ Vector12 wrenches(const BeamConstants<double>& beam, const Pair& p) {
 template <class Beam>
 Matrix12 tangent(const BeamConstants<double>& beam, const Pair& p, bool symmetric) {
   std::array<double, 144> k;
-  Beam::tangent(beam, p.i(), p.j(), symmetric, k);
+  Beam::tangent(beam, nullptr, p.i(), p.j(), symmetric, k);
   return Eigen::Map<const Matrix12>(k.data());
 }
 template <class Beam>

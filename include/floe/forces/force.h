@@ -43,6 +43,13 @@ class Force {
   virtual void add(const State<Space>& state, Wrenches<Space>& wrenches) const = 0;
   /// Adds minus the derivative of the wrenches; false if the force has none.
   virtual bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const = 0;
+  /// Adds minus the derivative of the wrenches to the velocities, if they depend on them.
+  virtual void add_damping(const State<Space>& /*state*/, Tangent<Space>& /*tangent*/) const {}
+  /// Adds the wrenches that take energy by the bodies' velocities, which no potential accounts for;
+  /// false if there are none.
+  virtual bool add_losses(const State<Space>& /*state*/, Wrenches<Space>& /*wrenches*/) const {
+    return false;
+  }
   /// An upper bound of the force's stiffness against a unit displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
   /// A step that is stable with this force alone, of one that says so itself because differences of

@@ -87,6 +87,11 @@ class Model {
   /// All wrenches at a state whose ghosts are up to date.
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const;
 
+  /// The same, by way of `share`; returns the sum over this rank's bodies and over the forces but
+  /// beams of each one's wrenches squared, moments divided by the length scale [N^2].
+  double evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
+                        Wrenches<Space>& share) const;
+
   /// Prescribed unknowns, n bits per local body; held() includes the pins.
   std::span<const std::uint8_t> prescribed() const { return prescribed_; }
   std::span<const std::uint8_t> held() const { return held_; }
