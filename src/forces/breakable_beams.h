@@ -86,8 +86,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     Tangent<Spatial>::PairBlock block;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
       if (broken(m)) return;
-      Pointwise::tangent(present(m, state), record(state, i), record(state, j), tangent.symmetric(),
-                         block);
+      Pointwise::tangent(present(m, state), nullptr, record(state, i), record(state, j),
+                         tangent.symmetric(), block);
       tangent.add_pair(i, j, block);
     });
     return true;
