@@ -1,5 +1,5 @@
 /// \file
-/// The law of fracture for one beam (model.md section 10), on any scalar where loops need it.
+/// The law of fracture for one beam (model.md section 11), on any scalar where loops need it.
 ///
 ///     sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),  tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2)
 ///     s^2 = (<sigma>/sigma_t)^2 + (tau/tau_c)^2         of what the undamaged beam would carry

@@ -28,6 +28,7 @@ ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_bi
 SHEET = "sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}\n"
 HELD = "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
 GOOD = "forces: [beam]\n" + SHEET + HELD
+BREAKABLE = "forces: [beam, fracture]\n" + SHEET + HELD
 FLOATING = "forces: [beam, gravity, buoyancy]\n" + SHEET
 FILE = "forces: [beam]\nlattice_file: bad.h5\nboundary: {names: [a], a: {set: root, fix: x y z rx ry rz}}\n"
 
@@ -95,6 +96,10 @@ SCENES = {
     "negative seed": (GOOD, "sheet: seed: -1", ["-sheet_seed", "-1"]),
     "Poisson's ratio": (GOOD + "ice: {poisson: 0.5}\n", "ice: poisson"),
     "a sheet that sinks": (FLOATING + "ice: {density: 1100}\n", "ice: density"),
+    "fracture without beams": ("forces: [fracture, gravity, buoyancy]\n" + SHEET, "needs beam"),
+    "fracture that is not named": (GOOD + "fracture: {energy: 15}\n", "'fracture' is not in 'forces'"),
+    "strength that does not scatter": (BREAKABLE + "fracture: {seed: 3}\n", "weibull_modulus"),
+    "no strength": (BREAKABLE + "fracture: {tensile_strength: 0}\n", "fracture: tensile_strength: 0"),
     "buoyancy without gravity": ("forces: [beam, buoyancy]\n" + SHEET, "gravity"),
     "section of a force that is not named": (GOOD + "water: {density: 1000}\n", "water: density"),
     "gravity that does not act": (GOOD + "gravity: 9.81\n", "gravity"),
@@ -227,6 +232,12 @@ class BadInput(unittest.TestCase):
                 with h5py.File(folder / "bad.h5", "r+") as file:
                     change(file)
             self.on_ranks(name, ["scene.yaml"], part, prepare)
+        def without_sides(folder):
+            (folder / "scene.yaml").write_text(FILE.replace("[beam]", "[beam, fracture]"))
+            frame.write(folder / "bad.h5")
+            with h5py.File(folder / "bad.h5", "r+") as file:
+                del file["beams/width"], file["beams/height"]
+        self.on_ranks("fracture of sections without sides", ["scene.yaml"], "/beams/width", without_sides)
         self.on_ranks("not HDF5", ["scene.yaml"], "bad.h5",
                       lambda folder: [(folder / "scene.yaml").write_text(FILE),
                                       (folder / "bad.h5").write_text("no")])

@@ -336,6 +336,74 @@ EXPECTED = {
     "floes_collide.yaml": check_floes_collide,
     "rubble_pile.yaml": check_rubble_pile,
     "verify/stopping.yaml": check_stopping,
+
+
+def largest(output, name):
+    """Largest size in a column of history.csv."""
+    return np.max(np.abs(column(output, name)))
+
+
+def check_break_strip(test, run):
+    output = run()
+    test.assertAlmostEqual(largest(output, "right_moment_y") / 200e3, 1, delta=0.01)
+    test.assertEqual((output.summary["beams_broken"], output.summary["fragments"]), (1, 2))
+    test.assertLess(abs(last_row(output)["right_moment_y"]), 1)
+
+
+def breaks(output, name):
+    with h5py.File(output.folder / "breaks.h5") as file:
+        return file[name][:]
+
+
+def check_in_situ_cantilever(test, run):
+    output = run()
+    test.assertGreaterEqual(output.summary["fragments"], 2)
+    bodies = breaks(output, "fragments/bodies")
+    test.assertGreater(bodies[1], 35)  # most of the cantilever, 46 bodies
+    test.assertLess(bodies[1], 60)
+    root = breaks(output, "place")[:, 0] < -1
+    test.assertGreaterEqual(root.sum(), 4)
+    test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 1.2, delta=0.25)
+
+
+def check_edge_uplift(test, run):
+    output = run()
+    force = largest(output, "edge_force_z") / 8
+    test.assertAlmostEqual(force / 5672, 1, delta=0.07)
+    place = breaks(output, "place")[:, 0] + 30
+    far = place[place > 4]
+    test.assertAlmostEqual(np.median(far), 8.94, delta=1)
+
+
+def check_point_breakthrough(test, run):
+    output = run()
+    time, place, pairs = (breaks(output, name) for name in ("time", "place", "bodies"))
+    chord = output.position[pairs[:, 1]] - output.position[pairs[:, 0]]
+    chord /= np.linalg.norm(chord, axis=1)[:, None]
+    radius = np.hypot(*place[:, :2].T)
+    along = np.abs(np.sum(chord[:, :2] * place[:, :2], axis=1)) / radius  # 1: the crack runs around the load
+    early, late = time <= np.quantile(time, 0.25), time >= np.quantile(time, 0.6)
+    test.assertGreater(np.mean(along[early] < 0.5), 2 * np.mean(along[early] > 0.8))
+    test.assertGreater(np.mean(along[late] > 0.8), 1.5 * np.mean(along[late] < 0.5))
+    around = radius[late & (along > 0.8)]
+    test.assertTrue(0.7 < np.median(around) / 8.245 < 1.5, np.median(around))
+
+
+def check_notch(test, run):
+    output = run()
+    test.assertEqual(output.summary["fragments"], 2)
+    place = breaks(output, "place")
+    test.assertLess(np.max(np.abs(place[:, 0])), 3)  # ahead of the notch, all the way
+    test.assertTrue(place[:, 1].min() > -5.5 and place[:, 1].max() > 9)
+    test.assertLess(abs(last_row(output)["right_force_x"]), 1)
+
+
+EXPECTED = {
+    "break_strip.yaml": check_break_strip,
+    "in_situ_cantilever.yaml": check_in_situ_cantilever,
+    "edge_uplift.yaml": check_edge_uplift,
+    "point_breakthrough.yaml": check_point_breakthrough,
+    "notch.yaml": check_notch,
     "tension.yaml": check_tension,
     "bending.yaml": check_bending,
     "tension_explicit.yaml": check_tension_explicit,

@@ -8,6 +8,7 @@
 
 #include "support/dynamics.h"
 #include "support/lattices.h"
+#include "support/random.h"
 #include "support/record.h"
 #include "support/static_solution.h"
 
@@ -176,6 +177,35 @@ Pulled pull(double damping, double safety) {
   EXPECT_TRUE(run.done) << run.message;
   EXPECT_GT(result.broken, 10);
   return result;
+}
+
+TEST(FractureOfSheets, IntactBreakableBeamsAreBeams) {
+  const Lattice lattice = test::sheet(12, 9, 1);
+  const Part part = partition(lattice, PETSC_COMM_SELF);
+  BeamOptions beams;
+  beams.damping_ratio = 0.3;
+  const auto plain = make_beam_force<Spatial>(part, beams);
+  const auto breakable =
+      make_breakable_beams(part, beams, {.tensile_strength = 1e12, .shear_strength = 1e12});
+  State<Spatial> state(static_cast<std::size_t>(part.local));
+  test::Random random(3);
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
+    double* r = state.record(b);
+    for (int k = 0; k < 3; ++k) r[k] = random.uniform(-1e-3, 1e-3);
+    const Quat<double> q = random.rotation(1e-3);
+    r[3] = q.w, r[4] = q.x, r[5] = q.y, r[6] = q.z;
+    for (int k = 7; k < 13; ++k) r[k] = random.uniform(-1, 1);
+  }
+  Wrenches<Spatial> a(static_cast<std::size_t>(part.local)), b = a;
+  plain->add(state, a);
+  breakable.force->add(state, b);
+  double size = 0, difference = 0;
+  for (std::size_t k = 0; k < a.values.size(); ++k) {
+    size = std::max(size, std::abs(a.values[k]));
+    difference = std::max(difference, std::abs(a.values[k] - b.values[k]));
+  }
+  EXPECT_GT(size, 0);
+  EXPECT_LT(difference, 1e-14 * size);
 }
 
 TEST(FractureOfSheets, TheLedgerCloses) {

@@ -1,5 +1,5 @@
 /// \file
-/// Beams that crack (model.md section 10): strengths, one damage variable per beam with given
+/// Beams that crack (model.md section 11): strengths, one damage variable per beam with given
 /// fracture energies, and what a run may ask of the cracks.
 #pragma once
 
