@@ -239,9 +239,9 @@ void Contacts::restore(std::span<const double> rows, bool changed) {
   }
 }
 
-double Contacts::stable_dt() const {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  double smallest = obstacles_.empty() ? none : 0.0;  // L of the stiffest partner
+Contacts::Rates Contacts::rates() const {
+  // L of the stiffest partner.
+  double smallest = obstacles_.empty() ? std::numeric_limits<double>::max() : 0.0;
   for (const double v : volumes_) smallest = std::min(smallest, 0.5 * std::cbrt(v));
   double most = 0;
   for (std::size_t b = 0; b < masses_.size(); ++b) {
@@ -251,9 +251,7 @@ double Contacts::stable_dt() const {
         options_.law == ContactLaw::potential ? std::max(1.0, widest_[b] / reference) : 1.0;
     most = std::max(most, 2 * k * steeper * surface_[b] / masses_[b]);
   }
-  if (most == 0) return none;
-  const double zeta = 2 * options_.damping_ratio;
-  return 2 / std::sqrt(most) * (std::sqrt(1 + zeta * zeta) - zeta);
+  return {most, 4 * options_.damping_ratio * std::sqrt(most)};
 }
 
 }  // namespace floe

@@ -75,10 +75,10 @@ class ContactOfModel final : public Contact {
         exchange_(part),
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
-        impulse_(contacts_.obstacles().size()) {
+        impulse_(contacts_.obstacles().size()),
+        rates_(contacts_.rates()) {
     for (std::int32_t b = 0; b < part.owned; ++b)
       here_[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])] = 1;
-    stiffness_ = 4 / (contacts_.stable_dt() * contacts_.stable_dt());
   }
 
   std::string_view name() const override { return "contact"; }
@@ -100,9 +100,9 @@ class ContactOfModel final : public Contact {
   }
   bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
   double stiffness_bound(std::int32_t body) const override {
-    return stiffness_ * part_.bodies.mass[static_cast<std::size_t>(body)];
+    return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
   }
-  double own_stable_dt() const override { return contacts_.stable_dt(); }
+  Rates own_rates() const override { return {rates_.stiffness, rates_.damping}; }
 
   void commit(const State<Spatial>& state, double dt) override {
     exchange_.gather(state, bodies_);
@@ -183,7 +183,8 @@ class ContactOfModel final : public Contact {
   mutable std::vector<ContactWrench> mine_;
   std::vector<std::uint8_t> here_;
   std::vector<Vec3<double>> peak_, impulse_, forces_;
-  double dt_ = 0, time_ = 0, stiffness_ = 0;
+  Contacts::Rates rates_;
+  double dt_ = 0, time_ = 0;
 };
 
 /// The list of pairs is made anew from the state; what a pair remembers goes with it.

@@ -332,10 +332,16 @@ def check_rubble_pile(test, run):
     test.assertLess(z.max(), 1)                                       # and none is thrown out
 
 
-EXPECTED = {
-    "floes_collide.yaml": check_floes_collide,
-    "rubble_pile.yaml": check_rubble_pile,
-    "verify/stopping.yaml": check_stopping,
+def check_punch_through(test, run):
+    output = run()
+    time, load = column(output, "time"), column(output, "plate_force_z")
+    test.assertEqual(np.abs(load[time < 7.5]).max(), 0)
+    test.assertGreater(load[time > 14].mean(), 5 * 441)
+    test.assertGreater(output.summary["peak_force"]["plate"][2], load.max() - 1e-6 * load.max())
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 0.01 * energy["external"])
+    mean = output.summary["mean_force"]["plate"][2]  # over every step, where history.csv has samples
+    test.assertAlmostEqual(energy["external"] / (mean * 18 * 0.25), 1, delta=1e-3)
 
 
 def largest(output, name):
@@ -399,6 +405,10 @@ def check_notch(test, run):
 
 
 EXPECTED = {
+    "punch_through.yaml": check_punch_through,
+    "floes_collide.yaml": check_floes_collide,
+    "rubble_pile.yaml": check_rubble_pile,
+    "verify/stopping.yaml": check_stopping,
     "break_strip.yaml": check_break_strip,
     "in_situ_cantilever.yaml": check_in_situ_cantilever,
     "edge_uplift.yaml": check_edge_uplift,

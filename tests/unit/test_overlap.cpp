@@ -6,22 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <list>
 
 #include "floe/contact/separation.h"
 #include "support/polyhedra.h"
+#include "support/record.h"
 
 namespace floe {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
 using Exact = Kernel::FT;
-
-bool full_length() {
-  const char* full = std::getenv("FLOE_FULL");
-  return full != nullptr && std::string(full) == "1";
-}
 
 /// Facets of the exact intersection, and what is asked of it.
 struct Reference {
@@ -138,8 +133,7 @@ void expect_exact(const Pair& pair, Clipper& clipper, const std::string& what) {
 TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
   test::Random random(7);
   Clipper clipper;
-  const int count = full_length() ? 90000 : 1400;
-  int touching = 0;
+  const int count = test::full_form() ? 90000 : 1400;
   for (int k = 0; k < count; ++k) {
     Pair pair;
     for (int body = 0; body < 2; ++body)
@@ -149,16 +143,14 @@ TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
     pair.x = random.vector(1.2);
     expect_exact(pair, clipper, "pair " + std::to_string(k));
     if (HasFatalFailure()) return;
-    touching += 1;
   }
-  EXPECT_EQ(touching, count);
 }
 
 /// Boxes of which faces, edges or vertices fall together, all but so, or that hold each other.
 TEST(Overlap, DegeneratePositionsAgreeWithExactNumbers) {
   test::Random random(8);
   Clipper clipper;
-  const int count = full_length() ? 10000 : 600;
+  const int count = test::full_form() ? 10000 : 600;
   const std::array<double, 6> nearly{0, 1e-16, 1e-14, 1e-12, 1e-9, 1e-6};
   for (int k = 0; k < count; ++k) {
     Pair pair;

@@ -299,7 +299,7 @@ TEST(Contact, MovingObstacleDoesWork) {
   Lattice lattice;
   test::append_block(lattice, {1, 1, 1}, {0, 0, 0.5 - 920 * g / (2 * young)});
   test::Dynamics d(scene, lattice);
-  (void)start(d);
+  start(d);
   const auto run_to = [&](double time) {
     while (d.state().time < time) (void)d.step();
   };

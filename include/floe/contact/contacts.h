@@ -81,9 +81,13 @@ class Contacts {
   std::size_t listed() const { return pairs_.size(); }
   ContactEnergies energies() const;
 
-  /// A step that is stable with contacts alone, for any of them that may come [s]; see
-  /// docs/model.md, "Contact", for the estimate.
-  double stable_dt() const;
+  /// Bounds of M^-1 K and M^-1 C of any contacts that may come (docs/model.md, "Contact", has the
+  /// estimate).
+  struct Rates {
+    double stiffness = 0;  ///< [1/s^2]
+    double damping = 0;    ///< [1/s]
+  };
+  Rates rates() const;
 
   /// What goes to a checkpoint: rows of `width` numbers per pair with history that is counted here.
   static constexpr std::size_t width = 10;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,9 +51,13 @@ class Force {
   }
   /// An upper bound of the force's stiffness against a unit displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
-  /// A step that is stable with this force alone, of one that says so itself because differences of
-  /// its wrenches at a state would not tell (contacts that are yet to come) [s].
-  virtual double own_stable_dt() const { return std::numeric_limits<double>::infinity(); }
+  /// Upper bounds of M^-1 K [1/s^2] and M^-1 C [1/s] of a force that says so itself, because
+  /// differences of its wrenches at a state would not tell (contacts that are yet to come). Zeros:
+  /// they do.
+  struct Rates {
+    double stiffness = 0, damping = 0;
+  };
+  virtual Rates own_rates() const { return {}; }
   /// Takes over what an accepted step changes (damage, slip, dissipated energy; the latter as for
   /// leapfrog, whose velocities lag half a step). \param dt step [s]
   virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}
