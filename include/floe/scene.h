@@ -10,6 +10,7 @@
 
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
+#include "floe/forces/calibration.h"
 #include "floe/forces/drag.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
@@ -51,6 +52,7 @@ struct Scene {
   std::vector<Region> regions;
   std::vector<Cut> cuts;
   BeamOptions beam;
+  Calibrate calibrate = Calibrate::none;
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;
