@@ -68,7 +68,7 @@ void make_isotropic(Lattice& lattice, const Ice& ice, Calibration& c) {
                              torsion_wave = evened(c.ratios.torsion);
 
   // At a free edge an isotropic plate contracts freely, but the facets there are wider than inside.
-  const double edge = 1 - 0.7 * nu;
+  const double edge = 1 - 0.6 * nu;
   const std::vector<std::uint8_t> at_edge = edge_beams(lattice);
   Beams& b = lattice.beams;
   b.shear_factor_y.resize(at_edge.size());

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -19,6 +20,13 @@ namespace floe::test {
 inline bool full_form() {
   const char* full = std::getenv("FLOE_FULL");
   return full != nullptr && *full != '\0' && *full != '0';
+}
+
+/// As printf would put it.
+inline std::string text(const char* format, auto... values) {
+  char line[160];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
 }
 
 /// One number of the verification.

@@ -20,12 +20,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-std::string text(const char* format, auto... values) {
-  char line[120];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
-
 /// Clamped at its root, a dead force and moment at its tip that reach their full size at time 1.
 Scene cantilever(Shear shear, const Point3& force, const Point3& moment, double dt = 0) {
   Scene scene;
