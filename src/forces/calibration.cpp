@@ -101,6 +101,13 @@ Calibration calibrate(Lattice& lattice, const Ice& ice, Calibrate kind, Shear sh
   c.moduli = lattice_moduli(c.ratios, ice.poisson, shear);
   c.moduli.young *= c.scale, c.moduli.shear *= c.scale;
   c.moduli.bulk *= c.scale, c.moduli.bending *= c.scale;
+  // Measured on sheets of 462 to 7391 bodies, of 5 Lloyd iterations to 150 of quasi_newton.
+  const double formula = 0.001 * (1 + std::pow(c.ratios.irregularity / 0.15, 2));
+  const double bodies = lattice.bodies.size();
+  const auto scatter = [&](double of_one) {
+    return std::hypot(formula, of_one / std::sqrt(bodies));
+  };
+  c.scatter = {scatter(0.055), scatter(0.04), scatter(0.04), scatter(0.03)};
   return c;
 }
 

@@ -133,7 +133,7 @@ TEST_P(CalibratedInside, HasTheMaterialsConstants) {
   const double length = full_form() ? 80 : 40;
   const bool isotropic = given.kind == Calibrate::isotropic;
   std::array<std::vector<double>, 4> values;
-  LatticeModuli expected{};
+  Calibration expected;
   double anisotropy = 0;
   for (int seed = 1; seed <= meshes; ++seed) {
     Scene scene = sheet_scene(length, 1 / given.times, static_cast<std::uint64_t>(seed));
@@ -144,7 +144,7 @@ TEST_P(CalibratedInside, HasTheMaterialsConstants) {
     scene.calibrate = given.kind;
     MeshReport mesh;
     const Lattice lattice = make_lattice(scene, PETSC_COMM_SELF, mesh);
-    expected = mesh.calibration->moduli;
+    expected = *mesh.calibration;
     const Constants c = constants_of(scene, lattice, inner_window(lattice, scene, 6));
     const std::array<double, 4> of{c.young, c.poisson, c.bending, c.bending_poisson};
     for (std::size_t k = 0; k < 4; ++k) values[k].push_back(of[k]);
@@ -153,9 +153,15 @@ TEST_P(CalibratedInside, HasTheMaterialsConstants) {
   const std::array<const char*, 4> names{"E/Eb", "nu", "D/D(Eb, nu)", "nu_b"};
   const double nu = given.poisson;
   const std::array<double, 4> material{1, nu, 1, nu},
-      predicted{expected.young, expected.poisson, expected.bending, expected.bending_poisson},
-      // Of every sheet's inside, not of the mean alone. What is left by design is predicted.
-      tolerance = isotropic ? std::array{.005, .005, .01, .01} : std::array{.005, .01, .01, .01};
+      predicted{expected.moduli.young, expected.moduli.poisson, expected.moduli.bending,
+                expected.moduli.bending_poisson},
+      scatter{expected.scatter.young, expected.scatter.poisson, expected.scatter.bending,
+              expected.scatter.bending_poisson},
+      // Of every sheet's inside, not of the mean alone. What is left by design is predicted. After
+      // five Lloyd iterations cells are more irregular than calibration is meant for.
+      tolerance = given.iterations < 20 ? std::array{.01, .01, .01, .01}
+                  : isotropic           ? std::array{.005, .005, .01, .01}
+                                        : std::array{.005, .01, .01, .01};
   for (std::size_t k = 0; k < 4; ++k) {
     const double reference = isotropic || k == 0 ? material[k] : predicted[k];
     const Statistics s(values[k], reference);
@@ -169,6 +175,9 @@ TEST_P(CalibratedInside, HasTheMaterialsConstants) {
             .note = text("std %.4f over %d meshes; anisotropy up to %.4f", s.deviation, meshes,
                          anisotropy)});
     EXPECT_LE(s.worst, tolerance[k]) << names[k];
+    if (nu >= 0) {
+      EXPECT_LE(Statistics(values[k], predicted[k]).worst, 3 * scatter[k]) << names[k];
+    }
   }
 }
 
@@ -179,10 +188,6 @@ INSTANTIATE_TEST_SUITE_P(Cases, CalibratedInside, testing::ValuesIn(sheets));
 /// G/E_b and D(1 - nu_b) 12/(2 E_b h^3) of beams with the same k_s/k_n, or k_t/k_by, each, against
 /// the formulas that calibration inverts.
 TEST(Calibration, CorrectionsForIrregularCells) {
-  struct Ratio {
-    double value;
-    bool quick;
-  };
   const int meshes = full_form() ? 2 : 1;
   const double length = full_form() ? 80 : 40;
   for (const int iterations : {150, 20}) {
@@ -230,15 +235,16 @@ TEST(Calibration, CorrectionsForIrregularCells) {
               .note = text("%d meshes, chi = %.4f; the correction is %.1f %%", meshes, irregularity,
                            100 * departure)});
     };
-    for (const auto& [r, quick] :
-         {Ratio{0, false}, Ratio{.115, true}, Ratio{.32, true}, Ratio{1, false}, Ratio{4, false}}) {
-      if (quick || full_form())
+    const bool usual = iterations == 150;
+    for (const double r : {.05, .115, .32, 1., 4.}) {
+      if (r == .115 || (full_form() && (usual || r < 1)))
         check_one(text("G, k_s/k_n = %g", r), true, r, 2, r > 1 ? .015 : .006);
     }
     for (const double times : {0.5, 1.0, 2.0, 3.0, 10.0}) {
-      for (const auto& [g, quick] : {Ratio{.09, times == 2}, Ratio{.5, false}}) {
-        if (quick || full_form())
-          check_one(text("D(1 - nu_b), k_t/k_by = %g, l = %gh", g, times), false, g, times, .003);
+      for (const double g : {.09, .5}) {
+        const bool middle = times == 2 && g == .09;
+        if (middle || (full_form() && (usual ? g == .09 || times == 2 : times == 10 && g == .09)))
+          check_one(text("D(1 - nu_b), k_t/k_by = %g, l = %gh", g, times), false, g, times, .006);
       }
     }
   }

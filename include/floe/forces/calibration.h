@@ -18,10 +18,11 @@ struct Calibration {
   LatticeRatios ratios;  ///< of the calibrated lattice, away from its edges
   double scale = 1;      ///< E of the beams over the material's, away from the edges
   LatticeModuli moduli;  ///< expected of a large sheet
-  /// Standard deviation of E/E_b, nu, D*/D and nu_b* over meshes of as many bodies (measured).
+  /// Standard deviation of E*/E_b, nu*, D*/D and nu_b* about `moduli`, means over directions, over
+  /// meshes of as many bodies; inaccuracies of the formulas included (measured for nu >= 0).
   struct {
     double young, poisson, bending, bending_poisson;
-  } scatter;
+  } scatter{};
 };
 
 /// Largest Poisson's ratio that a lattice can be given without negative stiffnesses.
