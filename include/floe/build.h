@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,13 @@
 
 namespace floe {
 
-/// What the mesh stage says of itself.
+/// What mesh and calibration say of themselves.
 struct MeshReport {
   double energy_ratio = 0;
   double largest_move = 0;
   int iterations = 0;
   std::int64_t degenerate = 0;
+  std::optional<Calibration> calibration;
 };
 
 /// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective;

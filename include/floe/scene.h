@@ -12,6 +12,7 @@
 #include "floe/contact/obstacle.h"
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
+#include "floe/forces/calibration.h"
 #include "floe/forces/drag.h"
 #include "floe/forces/fracture.h"
 #include "floe/lattice/lattice.h"
@@ -57,6 +58,7 @@ struct Scene {
   std::vector<Cut> cuts;
   BeamOptions beam;
   FractureOptions fracture;
+  Calibrate calibrate = Calibrate::none;
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;

@@ -31,17 +31,18 @@ BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear) {
   const auto k = static_cast<std::size_t>(m);
   const double e = beams.young[k], l = beams.length[k], iy = beams.inertia_y[k],
                iz = beams.inertia_z[k];
-  const double one_point = beams.shear_factor[k] * beams.shear_modulus[k] * beams.area[k] / l;
+  const double ga = beams.shear_modulus[k] * beams.area[k] / l, factor_z = beams.shear_factor[k],
+               factor_y = beams.shear_factor_y.empty() ? factor_z : beams.shear_factor_y[k];
   // 12 E I/(l^3 (1 + Phi)) with Phi = 12 E I/(kappa G A l^2): bending and shear in series.
-  const auto transverse = [&](double inertia) {
-    const double bending = 12.0 * e * inertia / (l * l * l);
+  const auto transverse = [&](double inertia, double factor) {
+    const double bending = 12.0 * e * inertia / (l * l * l), one_point = factor * ga;
     if (shear == Shear::one_point) return one_point;
     if (shear == Shear::none) return bending;
     return bending * one_point / (bending + one_point);
   };
   return {e * beams.area[k] / l,
-          transverse(iz),
-          transverse(iy),
+          transverse(iz, factor_y),
+          transverse(iy, factor_z),
           beams.shear_modulus[k] * beams.torsion[k] / l,
           e * iy / l,
           e * iz / l};

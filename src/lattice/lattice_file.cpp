@@ -138,6 +138,8 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
   beams.young = in.scalars("/beams/young", m);
   beams.shear_modulus = in.scalars("/beams/shear_modulus", m);
   beams.shear_factor = in.scalars("/beams/shear_factor", m);
+  if (in.file().has("/beams/shear_factor_y"))
+    beams.shear_factor_y = in.scalars("/beams/shear_factor_y", m);
   if (in.file().has("/beams/width")) beams.width = in.scalars("/beams/width", m);
   if (in.file().has("/beams/height")) beams.height = in.scalars("/beams/height", m);
   read_axes(in, bodies, beams);
@@ -273,6 +275,7 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
     file.write("/beams/young", m.young);
     file.write("/beams/shear_modulus", m.shear_modulus);
     file.write("/beams/shear_factor", m.shear_factor);
+    if (!m.shear_factor_y.empty()) file.write("/beams/shear_factor_y", m.shear_factor_y);
     file.write("/beams/axis_y", flat(m.axis_y), 3);
     if (!m.width.empty()) file.write("/beams/width", m.width);
     if (!m.height.empty()) file.write("/beams/height", m.height);

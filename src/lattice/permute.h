@@ -26,10 +26,11 @@ inline Bodies pick(const Bodies& b, std::span<const std::int32_t> order) {
 }
 
 inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
-  return {pick(b.bodies, order),    pick(b.area, order),          pick(b.inertia_y, order),
-          pick(b.inertia_z, order), pick(b.torsion, order),       pick(b.length, order),
-          pick(b.young, order),     pick(b.shear_modulus, order), pick(b.shear_factor, order),
-          pick(b.axis_y, order),    pick(b.width, order),         pick(b.height, order)};
+  return {pick(b.bodies, order),         pick(b.area, order),          pick(b.inertia_y, order),
+          pick(b.inertia_z, order),      pick(b.torsion, order),       pick(b.length, order),
+          pick(b.young, order),          pick(b.shear_modulus, order), pick(b.shear_factor, order),
+          pick(b.shear_factor_y, order), pick(b.axis_y, order),        pick(b.width, order),
+          pick(b.height, order)};
 }
 
 /// The same in place, array by array: what is left of one is given back before the next is copied.

@@ -41,7 +41,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
                 ? tessellate(scene.sheet, comm, show)
                 : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show);
   }
-  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate};
+  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate, {}};
   const Timed timed(Event::lattice);
   return make_sheet(cells, section);
 }
@@ -76,6 +76,8 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
                          ? "sheet: element_size: the sheet has a single cell and no beam"
                          : "forces: beam: '" + scene.lattice_file + "' has no beams");
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
+  if (scene.calibrate != Calibrate::none)
+    report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
   for (const Cut& c : scene.cuts) {
     const std::int32_t before = lattice.beams.size();
     cut(lattice, c.from, c.to);

@@ -64,6 +64,10 @@ constexpr std::array table{
                "shear correction of the section, 5/6 for a rectangle"},
     OptionSpec{"beam: torsion", choice, "saint_venant", "", "saint_venant | polar",
                "torsion constant of the section: Saint-Venant's series, or Iy + Iz"},
+    OptionSpec{"beam: calibrate", choice, "none", "", "none | young | isotropic",
+               "stiffnesses of a sheet's beams: of its ice; such that a large sheet has the ice's "
+               "Young's modulus; or its Young's modulus and Poisson's ratio in stretching and in "
+               "bending"},
     OptionSpec{"beam: kinematics", choice, "corotational", "", "corotational | linear",
                "any rotation (Crisfield 1990), or small displacements and rotations"},
 

@@ -187,7 +187,16 @@ void read_ice(Options& options, Scene& scene) {
   scene.ice.density = options.number("ice: density");
   if (!scene.forces.beam) return;
   scene.shear_factor = options.number("beam: shear_factor");
-  scene.torsion = options.choice<Torsion>("beam: torsion");
+  scene.calibrate = options.choice<Calibrate>("beam: calibrate");
+  if (scene.calibrate != Calibrate::isotropic) {
+    scene.torsion = options.choice<Torsion>("beam: torsion");
+    return;
+  }
+  if (scene.ice.poisson > largest_isotropic_poisson)
+    throw InputError("ice: poisson: " + text_of(scene.ice.poisson) +
+                     " must be <= 1/3 for beam: calibrate: isotropic, or stiffnesses are negative");
+  for (const auto* key : {"beam: shear", "beam: torsion"})
+    options.refuse(key, "would have no effect: 'beam: calibrate' is isotropic");
 }
 
 void read_lattice_source(Options& options, Scene& scene) {
@@ -204,7 +213,7 @@ void read_lattice_source(Options& options, Scene& scene) {
   } else {
     scene.lattice_file = options.text("lattice_file");
     constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
-    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion"})
+    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);
   }
 }
@@ -386,7 +395,8 @@ Scene read_scene(const std::string& path) {
   read_lattice_source(options, scene);
   read_regions_and_cuts(options, scene);
   if (scene.forces.beam) {
-    scene.beam.shear = options.choice<Shear>("beam: shear");
+    if (scene.calibrate != Calibrate::isotropic)
+      scene.beam.shear = options.choice<Shear>("beam: shear");
     scene.beam.kinematics = options.choice<Kinematics>("beam: kinematics");
   }
   if (scene.forces.fracture) read_fracture(options, scene);

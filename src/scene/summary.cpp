@@ -33,25 +33,51 @@ std::string line(const char* format, auto... values) {
   return std::string(text) + "\n";
 }
 
+/// Mean x at rest of a boundary's bodies [m]. Collective.
+double mean_x(const Model<Spatial>& model, const Boundary& boundary) {
+  std::array<double, 2> mine{}, all{};  // sum and number
+  for (const PlacedBoundary& placed : model.boundaries()) {
+    if (placed.boundary.name != boundary.name) continue;
+    for (const std::int32_t body : placed.bodies) {
+      if (body >= model.part().owned) continue;
+      mine[0] += model.part().bodies.position[static_cast<std::size_t>(body)][0];
+      mine[1] += 1;
+    }
+  }
+  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model.part().comm);
+  return all[0] / all[1];
+}
+
 /// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width
-/// h (paper).
-void add_tension(const Scene& scene, const Sample& last, Json& json, std::string& text) {
+/// h (paper). The same with the gauge length, between the edge cells' centroids that u acts on,
+/// for L, is what tends to the modulus of a large sheet.
+void add_tension(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
+                 const Sample& last, Json& json, std::string& text) {
   const BoundarySample& left = last.boundaries.at(boundary_on(scene, "left")->name);
   const BoundarySample& right = last.boundaries.at(boundary_on(scene, "right")->name);
   const double strain = (right.displacement[0] - left.displacement[0]) / scene.sheet.length;
   const double young = -left.force[0] / (scene.sheet.width * scene.thickness * strain);
-  const LatticeModuli lattice = lattice_moduli(scene.sheet.element_size, scene.thickness, scene.ice,
-                                               scene.shear_factor, scene.beam.shear, scene.torsion);
+  const double gauge =
+      mean_x(model, *boundary_on(scene, "right")) - mean_x(model, *boundary_on(scene, "left"));
+  const double gauged = young * gauge / scene.sheet.length;
+  const LatticeModuli lattice =
+      mesh.calibration ? mesh.calibration->moduli
+                       : lattice_moduli(scene.sheet.element_size, scene.thickness, scene.ice,
+                                        scene.shear_factor, scene.beam.shear, scene.torsion);
   const double reference = lattice.young * scene.ice.young;
   json["E"] = young;
   json["E_over_Eb"] = young / scene.ice.young;
   json["E_star"] = reference;
   json["E_over_Estar"] = young / reference;
+  json["gauge_length"] = gauge;
+  json["E_gauge_over_Eb"] = gauged / scene.ice.young;
   text += line("E      = %.6g Pa (effective Young's modulus of the sheet)", young);
   text +=
       line("E/Eb   = %.6f (Eb = %.4g Pa, of the beams)", young / scene.ice.young, scene.ice.young);
-  text += line("E/E*   = %.6f (E* = %.6g Pa, of the infinite regular lattice)", young / reference,
-               reference);
+  text += line("E/E*   = %.6f (E* = %.6g Pa, of the %s)", young / reference, reference,
+               mesh.calibration ? "calibrated lattice" : "infinite regular lattice");
+  text += line("E/Eb   = %.6f with the strain over the gauge length %.6g m between edge cells",
+               gauged / scene.ice.young, gauge);
 }
 
 /// Deflection of the load's point from the floating equilibrium at time 0, against the infinite
@@ -90,6 +116,32 @@ void add_contacts(const Scene& scene, const Sample& last, Json& json) {
     }
     if (!all.empty()) json[what] = all;
   }
+}
+
+/// What a large sheet of this lattice has, less the material's constants.
+void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::string& text) {
+  const double nu = scene.ice.poisson;
+  Json j;
+  j["kind"] = scene.calibrate == Calibrate::isotropic ? "isotropic" : "young";
+  j["irregularity"] = c.ratios.irregularity;
+  j["texture"] = std::abs(c.ratios.texture);
+  j["scale"] = c.scale;
+  j["shear_ratio"] = c.ratios.shear;
+  j["torsion_ratio"] = c.ratios.torsion;
+  j["young_error"] = c.moduli.young - 1;
+  j["poisson_error"] = c.moduli.poisson - nu;
+  j["bending_error"] = c.moduli.bending - 1;
+  j["bending_poisson_error"] = c.moduli.bending_poisson - nu;
+  j["young_scatter"] = c.scatter.young;
+  j["poisson_scatter"] = c.scatter.poisson;
+  j["bending_scatter"] = c.scatter.bending;
+  j["bending_poisson_scatter"] = c.scatter.bending_poisson;
+  json["calibration"] = j;
+  text += line(
+      "calibrated: large sheet has E/Eb = %.4f +- %.4f, nu = %.4f +- %.4f, D/D(Eb, nu) = %.4f +- "
+      "%.4f, nu_b = %.4f +- %.4f",
+      c.moduli.young, c.scatter.young, c.moduli.poisson, c.scatter.poisson, c.moduli.bending,
+      c.scatter.bending, c.moduli.bending_poisson, c.scatter.bending_poisson);
 }
 
 }  // namespace
@@ -160,7 +212,8 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   if (scene.has_sheet)
     text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations",
                  mesh.energy_ratio, mesh.largest_move, mesh.iterations);
-  if (result.done && scene.report.tension) add_tension(scene, last, json, text);
+  if (mesh.calibration) add_calibration(scene, *mesh.calibration, json, text);
+  if (result.done && scene.report.tension) add_tension(scene, model, mesh, last, json, text);
   if (result.done && scene.report.bending) add_bending(scene, first, last, json, text);
   Json energy = Json::object();
   for (const auto& [name, value] : last.forces) {

@@ -110,6 +110,12 @@ SCENES = {
     "unknown set of a load": (loaded("set: rihgt, force: [1, 0, 0]"), "rihgt"),
     "four numbers for a vector": (loaded("set: right, force: [1, 2, 3, 4]"), "load: p: force: 1,2,3,4"),
     "two numbers for a vector": (loaded("set: right, force: [1, 2]"), "load: p: force: 1,2"),
+    "Poisson's ratio that no lattice has":
+        (GOOD + "ice: {poisson: 0.4}\nbeam: {calibrate: isotropic}\n", "ice: poisson: 0.4 must be <= 1/3"),
+    "shear of a calibrated sheet": (GOOD + "beam: {calibrate: isotropic, shear: exact}\n", "beam: shear"),
+    "torsion of a calibrated sheet": (GOOD + "beam: {calibrate: isotropic, torsion: polar}\n", "beam: torsion"),
+    "unknown calibration": (GOOD + "beam: {calibrate: bending}\n", "none | young | isotropic"),
+    "calibration of a file": (FILE + "beam: {calibrate: young}\n", "beam: calibrate"),
     "load on a set and at a point": (loaded("set: right, point: [0, 0], force: [1, 0, 0]"), "not both"),
     "load nowhere": (loaded("force: [1, 0, 0]"), "set or point"),
     "load beside the sheet": (loaded("point: [6, 0], force: [0, 0, 1]"), "load: p: point"),
@@ -157,7 +163,8 @@ SCENES = {
 def spoil(name, value):
     """Puts another value in place of a dataset, or removes it if the value is None."""
     def change(file):
-        del file[name]
+        if name in file:
+            del file[name]
         if value is not None:
             file[name] = value
     return change
@@ -178,6 +185,7 @@ LATTICE_FILES = {
         (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 3]], np.int32)), "/beams/bodies"),
     "beams with three columns": (spoil("beams/bodies", np.ones((4, 3), np.int32)), "/beams/bodies"),
     "wrong length": (spoil("beams/length", np.full(4, 7.0)), "/beams/length"),
+    "factors of shear in the plane, one too few": (spoil("beams/shear_factor_y", np.ones(3)), "/beams/shear_factor_y"),
     "set of a body that is not there": (spoil("sets/root", np.array([5], np.int32)), "/sets/root"),
 }
 

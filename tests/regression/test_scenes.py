@@ -71,6 +71,36 @@ def check_bending(test, run):
     test.assertAlmostEqual(output.summary["deflection_over_wyman"], 1.06, delta=0.03)
 
 
+def expect_calibration(test, calibration):
+    test.assertEqual(calibration["kind"], "isotropic")
+    test.assertAlmostEqual(calibration["scale"], 1 / 0.7, delta=1e-12)
+    for constant in ("young", "poisson", "bending", "bending_poisson"):
+        test.assertAlmostEqual(calibration[f"{constant}_error"], 0, delta=1e-8)
+        test.assertLess(calibration[f"{constant}_scatter"], 3e-3)
+
+
+def check_tension_calibrated(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 7391)
+    test.assertAlmostEqual(output.summary["gauge_length"], 79.1, delta=0.1)
+    test.assertAlmostEqual(output.summary["E_gauge_over_Eb"], 1, delta=0.005)
+    test.assertAlmostEqual(output.summary["E_over_Estar"], output.summary["E_over_Eb"], delta=1e-8)
+    expect_calibration(test, output.summary["calibration"])
+    young = run("-beam_calibrate", "young").summary
+    test.assertAlmostEqual(young["E_gauge_over_Eb"], 1, delta=0.012)  # edges are stiff by half a cell
+    test.assertAlmostEqual(young["calibration"]["poisson_error"], 0.211 - 0.3, delta=0.005)
+    none = run("-beam_calibrate", "none").summary
+    test.assertAlmostEqual(none["E_over_Eb"] * young["calibration"]["scale"] / young["E_over_Eb"], 1, delta=1e-9)
+    test.assertNotIn("calibration", none)
+
+
+def check_bending_calibrated(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 3285)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"], 1.01, delta=0.025)
+    expect_calibration(test, output.summary["calibration"])
+
+
 def check_bend45(test, run):
     output = run()
     for time, expected in ((0.5, (-11.9318, -7.0447, 40.1925)), (1, (-23.5606, -13.6047, 53.4755))):
@@ -416,6 +446,8 @@ EXPECTED = {
     "notch.yaml": check_notch,
     "tension.yaml": check_tension,
     "bending.yaml": check_bending,
+    "tension_calibrated.yaml": check_tension_calibrated,
+    "bending_calibrated.yaml": check_bending_calibrated,
     "tension_explicit.yaml": check_tension_explicit,
     "bending_explicit.yaml": check_bending_explicit,
     "verify/free_top.yaml": check_free_top,

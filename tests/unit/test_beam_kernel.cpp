@@ -494,5 +494,19 @@ TEST(BeamStiffness, ShearVariantsByTheirFormulas) {
   }
 }
 
+TEST(BeamStiffness, ShearAlongAxis2MayHaveAFactorOfItsOwn) {
+  Beams b;
+  b.bodies = {{0, 1}};
+  const double e = 4e9, g = 1.5e9, along_2 = 0.3, along_3 = 0.8, area = 0.6, iz = 0.04, l = 1.9;
+  b.area = {area}, b.inertia_y = {0.07}, b.inertia_z = {iz}, b.torsion = {0.05}, b.length = {l};
+  b.young = {e}, b.shear_modulus = {g}, b.shear_factor = {along_3};
+  b.shear_factor_y = {along_2};
+  const BeamStiffness k = beam_stiffness(b, 0, Shear::one_point);
+  EXPECT_NEAR(k.ksz / (along_2 * g * area / l), 1, 1e-14);
+  EXPECT_NEAR(k.ksy / (along_3 * g * area / l), 1, 1e-14);
+  const double bending = 12 * e * iz / (l * l * l), shear = along_2 * g * area / l;
+  EXPECT_NEAR(beam_stiffness(b, 0, Shear::exact).ksz * (1 / bending + 1 / shear), 1, 1e-14);
+}
+
 }  // namespace
 }  // namespace floe
