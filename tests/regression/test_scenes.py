@@ -92,6 +92,12 @@ def check_tension_calibrated(test, run):
     none = run("-beam_calibrate", "none").summary
     test.assertAlmostEqual(none["E_over_Eb"] * young["calibration"]["scale"] / young["E_over_Eb"], 1, delta=1e-9)
     test.assertNotIn("calibration", none)
+    small = ("-sheet_length", "20", "-sheet_width", "20", "-boundary_right_displacement", "0.02,0,0")
+    static = run(*small).summary["E_over_Eb"]
+    moving = run(*small, "-integrator", "explicit", "-beam_damping_ratio", "1", "-boundary_right_ramp", "0.2",
+                 "-time_end", "0.4").summary
+    test.assertAlmostEqual(moving["E_over_Eb"] / static, 1, delta=1e-4)  # the same stiffnesses, at rest again
+    test.assertLess(abs(moving["energy"]["balance_error"]), 1e-3 * moving["energy"]["boundary"])
 
 
 def check_bending_calibrated(test, run):
