@@ -8,14 +8,14 @@ import numpy as np
 
 from floe_plate import plate, profile
 
-INTEGRATORS = ["quasistatic", "explicit", "implicit"]
+INTEGRATORS = ["quasistatic", "explicit"]
 LENGTHS = [10, 20, 40, 80, 160]        # L [m] (paper, "Mesh Creation")
 THICKNESSES = [0.5, 1, 1.5]            # h [m]
 FACTORS = [2, 3]                       # l/h
 STRAIN = 0.001                         # u/L (paper, "Effective Young's Modulus")
 SPEED = 0.1                            # of the right edge [m/s]
-TENSION = {"quasistatic": "input/tension.yaml", "explicit": "input/tension_explicit.yaml", "implicit": "input/tension_implicit.yaml"}
-BENDING = {"quasistatic": "input/bending.yaml", "explicit": "input/bending_explicit.yaml", "implicit": "input/bending_implicit.yaml"}
+TENSION = {"quasistatic": "input/tension.yaml", "explicit": "input/tension_explicit.yaml"}
+BENDING = {"quasistatic": "input/bending.yaml", "explicit": "input/bending_explicit.yaml"}
 
 
 @dataclass(frozen=True)
