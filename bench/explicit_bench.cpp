@@ -1,5 +1,5 @@
 // One explicit step and what it is made of, ns per beam: build/release/bench/explicit_bench.
-//   step      forces, update of the bodies, nothing else
+//   step      forces, update of the bodies, nothing else; `breakable`: beams with strengths, intact
 //   zero      wrenches set to zero
 //   gather    records of the beams' bodies into lanes
 //   kernel    arithmetic of a beam on one block that stays in the nearest cache: the floor
@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "floe/solve/model.h"
 #include "forces/beam_blocks.h"
@@ -27,8 +28,10 @@ using Blocks = std::vector<BeamBlock<FlatFrame>>;
 /// A meshed sheet of about `bodies` bodies with a smooth deformation and motion.
 class Case {
  public:
-  Case(std::int64_t bodies, double damping)
-      : lattice_(mesh(bodies)), model(lattice_, PETSC_COMM_SELF, {}), motion(start(damping)) {
+  Case(std::int64_t bodies, double damping, bool breakable)
+      : lattice_(mesh(bodies)),
+        model(lattice_, PETSC_COMM_SELF, {}),
+        motion(start(damping, breakable)) {
     const Part& part = model.part();
     blocks.resize((part.beams.bodies.size() + lanes - 1) / lanes);
     for (std::int32_t m = 0; m < part.beams.size(); ++m) {
@@ -40,10 +43,10 @@ class Case {
     }
     lattice_ = {};
   }
-  static Case& of(std::int64_t bodies, double damping) {
-    static std::map<std::pair<std::int64_t, double>, std::unique_ptr<Case>> cases;
-    auto& found = cases[{bodies, damping}];
-    if (!found) found = std::make_unique<Case>(bodies, damping);
+  static Case& of(std::int64_t bodies, double damping, bool breakable = false) {
+    static std::map<std::tuple<std::int64_t, double, bool>, std::unique_ptr<Case>> cases;
+    auto& found = cases[{bodies, damping, breakable}];
+    if (!found) found = std::make_unique<Case>(bodies, damping, breakable);
     return *found;
   }
   /// Sets the counter that tools/bench prints.
@@ -66,10 +69,12 @@ class Case {
     section.thickness = 0.5;
     return bench::meshed_sheet(bodies, section);
   }
-  Motion start(double damping) {
+  Motion start(double damping, bool breakable) {
     BeamOptions options;
     options.damping_ratio = damping;
-    model.set_beams(make_beam_force<Spatial>(model.part(), options), Kinematics::corotational);
+    model.set_beams(breakable ? make_breakable_beams(model.part(), options, strong()).force
+                              : make_beam_force<Spatial>(model.part(), options),
+                    Kinematics::corotational);
     const Part& part = model.part();
     const auto local = static_cast<std::size_t>(part.local);
     state = State<Spatial>(local);
@@ -87,6 +92,13 @@ class Case {
     return made;
   }
 
+  /// Strengths that nothing here reaches: an intact sheet.
+  static FractureOptions strong() {
+    FractureOptions options;
+    options.tensile_strength = options.shear_strength = 1e12;
+    return options;
+  }
+
   Lattice lattice_;
 
  public:
@@ -97,8 +109,8 @@ class Case {
   Blocks blocks;
 };
 
-void step(benchmark::State& bench, double damping) {
-  Case& c = Case::of(bench.range(0), damping);
+void step(benchmark::State& bench, double damping, bool breakable) {
+  Case& c = Case::of(bench.range(0), damping, breakable);
   for (auto _ : bench) c.step();
   c.count(bench);
 }
@@ -205,8 +217,10 @@ void ts(benchmark::State& bench) {
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->Arg(1460)->Arg(29561)->Arg(1000000)->Unit(benchmark::kMicrosecond);
 }
-BENCHMARK_CAPTURE(step, undamped, 0.0)->Apply(sizes);
-BENCHMARK_CAPTURE(step, damped, 1.0)->Apply(sizes);
+BENCHMARK_CAPTURE(step, undamped, 0.0, false)->Apply(sizes);
+BENCHMARK_CAPTURE(step, damped, 1.0, false)->Apply(sizes);
+BENCHMARK_CAPTURE(step, breakable_undamped, 0.0, true)->Apply(sizes);
+BENCHMARK_CAPTURE(step, breakable_damped, 1.0, true)->Apply(sizes);
 BENCHMARK_CAPTURE(beams, undamped, 0.0)->Apply(sizes);
 BENCHMARK_CAPTURE(beams, damped, 1.0)->Apply(sizes);
 BENCHMARK(gather)->Apply(sizes);

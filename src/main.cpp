@@ -51,6 +51,7 @@ int run(const std::string& path) {
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
   Model<Spatial> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
   add_forces(scene, loads, model);
+  add_contact(scene, lattice, model);
   if (scene.integrator == Integrator::quasistatic) hold_free_motions(scene, lattice, model);
   if (scene.check_only) {
     if (scene.integrator == Integrator::quasistatic) check_solver_options(model);

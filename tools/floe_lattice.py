@@ -292,6 +292,21 @@ def stack(count, size, gap=0.0, density=920.0):
     return lattice
 
 
+def rubble(columns, size, spacing, depth, seed=1, density=920.0):
+    """Loose equal boxes, turned at random, on a grid; the highest centroids lie at z = -depth.
+
+    columns 3, number along x, y, z; size 3 [m]; spacing of the grid [m], more than the box's diagonal.
+    """
+    if spacing <= np.linalg.norm(size):
+        raise ValueError("rubble: spacing must be more than the box's diagonal")
+    x, y, z = np.meshgrid(*(spacing * (np.arange(n) - (n - 1) / 2) for n in columns), indexing="ij")
+    position = np.column_stack([x.ravel(), y.ravel(), z.ravel() - z.max() - depth])
+    lattice = blocks(np.tile(size, (len(position), 1)), position, density)
+    turn = np.random.default_rng(seed).normal(size=(len(position), 4))  # uniform on the sphere of quaternions
+    lattice.orientation = turn / np.linalg.norm(turn, axis=1)[:, None]
+    return lattice
+
+
 def block(size, height=0.0, density=920.0):
     """One upright box with its centroid at (0, 0, height); size 3 [m], height [m]."""
     return blocks([size], [[0, 0, height]], density)
@@ -344,6 +359,8 @@ def _arguments():
          density=(920.0, "kg/m3"))
     kind("stack", "loose boxes above each other, no beams", count=(5, "n"), size=((1.0, 1.0, 0.5), "m"),
          gap=(0.0, "m"), density=(920.0, "kg/m3"))
+    kind("rubble", "loose boxes turned at random, on a grid under water", columns=((10, 10, 10), "n"),
+         size=((1.0, 1.0, 0.5), "m"), spacing=(1.6, "m"), depth=(1.0, "m"), seed=(1, "-"), density=(920.0, "kg/m3"))
     return parser, parser.parse_args()
 
 
@@ -351,7 +368,8 @@ def main():
     parser, given = _arguments()
     options = vars(given)
     kind, file = options.pop("kind"), options.pop("file")
-    makers = {"bend45": bend45, "rollup": rollup, "elastica": elastica, "triangles": triangles, "block": block, "stack": stack}
+    makers = {"bend45": bend45, "rollup": rollup, "elastica": elastica, "triangles": triangles, "block": block, "stack": stack,
+              "rubble": rubble}
     try:
         if kind == "cantilever":
             length, elements = options.pop("length"), options.pop("elements")

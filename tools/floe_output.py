@@ -33,18 +33,40 @@ def matrices(quaternions):
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-class Output:
-    """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
+class Lattice:
+    """A lattice.h5."""
 
-    def __init__(self, folder):
-        self.folder = Path(folder)
-        self.summary = json.loads((self.folder / "summary.json").read_text())
-        with h5py.File(self.folder / "lattice.h5") as file:
+    def __init__(self, path):
+        with h5py.File(path) as file:
             self.position = file["bodies/position"][:]      # n x 3 [m]
             self.orientation = file["bodies/orientation"][:]  # n x 4
             self.beams = {name: data[:] for name, data in file.get("beams", {}).items()}
             self.sets = {name: data[:] for name, data in file.get("sets", {}).items()}
             self.shapes = {name: data[:] for name, data in file.get("shapes", {}).items()}
+
+    def plans(self):
+        """Per body the corners k x 2 [m], seen from above, of its most upward face, in the reference state."""
+        body_of = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["vertex_of"]))
+        placed = np.einsum("vij,vj->vi", matrices(self.orientation)[body_of], self.shapes["vertices"])
+        placed += self.position[body_of]
+        first, corners = self.shapes["corner_of"][:-1], self.shapes["corners"]
+        a, b, c = (placed[corners[first + k]] for k in range(3))
+        normal = np.cross(b - a, c - a)
+        upward = normal[:, 2] / np.linalg.norm(normal, axis=1)
+        of_body = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["face_of"]))
+        order = np.lexsort((upward, of_body))
+        top = order[self.shapes["face_of"][1:] - 1]
+        ends = self.shapes["corner_of"]
+        return [placed[corners[ends[f]:ends[f + 1]], :2] for f in top]
+
+
+class Output(Lattice):
+    """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.summary = json.loads((self.folder / "summary.json").read_text())
+        super().__init__(self.folder / "lattice.h5")
         with h5py.File(self.folder / "fields.h5") as file:
             frames = {name: float(group.attrs["time"]) for name, group in file.items() if "time" in group.attrs}
         self._groups = sorted(frames, key=frames.get)
@@ -66,21 +88,6 @@ class Output:
         if name == "axial":
             return self.field("beams_force", time)[:, 0] / self.beams["area"], BEAM_STRESSES[name]
         return self.field("beams_stress", time)[:, {"tensile": 0, "shear": 1}[name]], BEAM_STRESSES[name]
-
-    def plans(self):
-        """Per body the corners k x 2 [m], seen from above, of its most upward face, in the reference state."""
-        body_of = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["vertex_of"]))
-        placed = np.einsum("vij,vj->vi", matrices(self.orientation)[body_of], self.shapes["vertices"])
-        placed += self.position[body_of]
-        first, corners = self.shapes["corner_of"][:-1], self.shapes["corners"]
-        a, b, c = (placed[corners[first + k]] for k in range(3))
-        normal = np.cross(b - a, c - a)
-        upward = normal[:, 2] / np.linalg.norm(normal, axis=1)
-        of_body = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["face_of"]))
-        order = np.lexsort((upward, of_body))
-        top = order[self.shapes["face_of"][1:] - 1]
-        ends = self.shapes["corner_of"]
-        return [placed[corners[ends[f]:ends[f + 1]], :2] for f in top]
 
     def options(self):
         """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,13 @@
 
 namespace floe {
 
-/// What the mesh stage says of itself.
+/// What mesh and calibration say of themselves.
 struct MeshReport {
   double energy_ratio = 0;
   double largest_move = 0;
   int iterations = 0;
   std::int64_t degenerate = 0;
+  std::optional<Calibration> calibration;
 };
 
 /// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective;
@@ -45,6 +47,10 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);
 /// Adds the forces that the scene names to the model, and its loads.
 /// \throws InputError if the lattice cannot carry one (buoyancy without shapes)
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model);
+
+/// Adds contacts, if the scene names them. \param lattice  whole
+/// \throws InputError if bodies have no shapes or are not convex
+void add_contact(const Scene& scene, const Lattice& lattice, Model<Spatial>& model);
 
 /// Takes free rigid motions out of a static problem.
 /// \throws InputError if a load pushes one of them: the scene has no equilibrium

@@ -8,15 +8,19 @@
 #include <string_view>
 #include <vector>
 
+#include "floe/contact/law.h"
+#include "floe/contact/obstacle.h"
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
+#include "floe/forces/calibration.h"
 #include "floe/forces/drag.h"
+#include "floe/forces/fracture.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
 
 namespace floe {
 
-enum class Integrator { quasistatic, leapfrog };
+enum class Integrator { quasistatic, leapfrog, implicit };
 
 struct Region {
   std::string name;
@@ -39,11 +43,13 @@ struct Scene {
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
   struct {
-    bool beam = false, gravity = false, buoyancy = false, drag = false;
+    bool beam = false, fracture = false, gravity = false, buoyancy = false, drag = false,
+         contact = false;
   } forces;
   bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
-  double thickness = 1;  ///< of the sheet [m]
+  std::string mesh_file;  ///< where the sheet's relaxed generators are kept; empty: nowhere
+  double thickness = 1;   ///< of the sheet [m]
   Ice ice;
   double shear_factor = 5.0 / 6.0;
   Torsion torsion = Torsion::saint_venant;
@@ -51,15 +57,19 @@ struct Scene {
   std::vector<Region> regions;
   std::vector<Cut> cuts;
   BeamOptions beam;
+  FractureOptions fracture;
+  Calibrate calibrate = Calibrate::none;
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;
   double added_mass = 0;  ///< of the water that a body displaces at rest
+  ContactOptions contact;
+  std::vector<Obstacle> obstacles;
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {
     double end = 1;
-    double dt = 0;  ///< 0: one step, or from the stable step
+    double dt = 0;  ///< 0: one step, from the stable step, or from the error
     double safety = 0.9;
     bool allow_unstable = false;
   } time;

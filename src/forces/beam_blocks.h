@@ -68,6 +68,11 @@ struct alignas(64) BeamBlock {
 struct alignas(64) DashpotBlock {
   std::array<std::array<double, lanes>, 6> values;
   std::array<double, lanes> counts;
+  BeamDashpots get(std::size_t lane) const {
+    BeamDashpots c{};
+    for (std::size_t k = 0; k < 6; ++k) c[k] = values[k][lane];
+    return c;
+  }
 };
 
 /// A block's bodies, one per lane.
@@ -115,16 +120,27 @@ inline void scatter(const std::array<std::int32_t, lanes>& i,
   }
 }
 
+/// Beams that carry whatever comes.
+struct Unbreakable {};
+
 /// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
-template <Kinematics kinematics, bool damped, template <class> class Frame>
+/// \param strength  has a say on the elastic forces: where strength.gives_way(forces), the block is
+/// left to strength.add()
+template <Kinematics kinematics, bool damped, template <class> class Frame,
+          class Strength = Unbreakable>
 [[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block,
                                               const DashpotBlock* dashpots, const double* records,
-                                              double* wrenches) {
+                                              double* wrenches,
+                                              const Strength& strength = Strength{}) {
   using Kernel = BeamKernel<kinematics>;
   const BeamConstants<Lanes, Frame> beam = block.get();
   const LaneBodies i = gather<damped>(records, block.i), j = gather<damped>(records, block.j);
   const BeamStrains<Lanes> s = Kernel::strains(beam, j.u - i.u, i.q, j.q);
   BeamStress<Lanes> stress = elastic_stress(beam, s);
+  if constexpr (!std::is_same_v<Strength, Unbreakable>) {
+    if (strength.gives_way(stress)) [[unlikely]]
+      return strength.add();
+  }
   Lanes lost(0.0);
   if constexpr (damped) {
     const BeamStress<Lanes> rate = Kernel::rates(beam, s, j.v - i.v, i.w, j.w);

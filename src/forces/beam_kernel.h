@@ -20,6 +20,7 @@
 /// With g = asin|v|/|v| = (phi/2)/sin(phi/2), phi = |psi|:  psi = 2 g v.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "floe/base/rotation.h"
@@ -227,6 +228,23 @@ BeamStress<T> elastic_stress(const Constants& beam, const BeamStrains<T>& s) {
           T(beam.ksz * s.gamma_y),
           T(beam.ksy * s.gamma_z),
           {T(beam.kt * s.psi.x), T(beam.kby * s.psi.y), T(beam.kbz * s.psi.z)}};
+}
+
+template <class T>
+BeamStress<T> operator+(const BeamStress<T>& a, const BeamStress<T>& b) {
+  return {T(a.n + b.n), T(a.qy + b.qy), T(a.qz + b.qz), a.c + b.c};
+}
+
+/// Dashpots on the six strains [N s/m, N m s].
+using BeamDashpots = std::array<double, 6>;
+
+/// What dashpots put on the strains at their rates.
+template <class T>
+BeamStress<T> viscous_stress(const BeamDashpots& c, const BeamStress<T>& rate) {
+  return {T(c[0] * rate.n),
+          T(c[1] * rate.qy),
+          T(c[2] * rate.qz),
+          {T(c[3] * rate.c.x), T(c[4] * rate.c.y), T(c[5] * rate.c.z)}};
 }
 
 /// Exact gradient B^T stress of co-rotational strains (formula: model.md section 2, "Exact

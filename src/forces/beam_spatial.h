@@ -67,16 +67,51 @@ struct SpatialBeam {
             c.kt * s.psi.x, c.kby * s.psi.y,   c.kbz * s.psi.z};
   }
 
+  /// Minus what the dashpots add to the wrenches.
+  static BeamGradient<double> damping_force(const Constants& c, const BeamDashpots& dashpots,
+                                            const double* i, const double* j) {
+    const BeamStrains<double> s = strains(c, i, j);
+    return Kernel::gradient(c, s, viscous_stress(dashpots, rates<double>(c, s, i, j)));
+  }
+
+  /// 12 x 12 damping matrix B^T c B on the velocities (v_i, w_i, v_j, w_j): B by its columns, the
+  /// strain rates of a unit velocity of j against i and of unit spins.
+  static void damping(const Constants& c, const BeamDashpots& dashpots, const double* i,
+                      const double* j, std::array<double, 4 * n * n>& k) {
+    const BeamStrains<double> s = strains(c, i, j);
+    std::array<std::array<double, 6>, 9> b{};
+    for (std::size_t a = 0; a < 9; ++a) {
+      std::array<Vec3<double>, 3> unit{};
+      (a % 3 == 0 ? unit[a / 3].x : a % 3 == 1 ? unit[a / 3].y : unit[a / 3].z) = 1;
+      const BeamStress<double> r = Kernel::rates(c, s, unit[0], unit[1], unit[2]);
+      b[a] = {r.n, r.qy, r.qz, r.c.x, r.c.y, r.c.z};
+    }
+    // Which of them moves an unknown, and which way.
+    constexpr std::array<std::size_t, 12> column{0, 1, 2, 3, 4, 5, 0, 1, 2, 6, 7, 8};
+    const auto sign = [](std::size_t unknown) { return unknown < 3 ? -1.0 : 1.0; };
+    for (std::size_t row = 0; row < 12; ++row) {
+      for (std::size_t col = 0; col < 12; ++col) {
+        double sum = 0;
+        for (std::size_t m = 0; m < 6; ++m)
+          sum += dashpots[m] * b[column[row]][m] * b[column[col]][m];
+        k[row * 12 + col] = sign(row) * sign(col) * sum;
+      }
+    }
+  }
+
   /// 12 x 12 tangent on (u_i, theta_i, u_j, theta_j), by forward differentiation of the gradient in
   /// nine directions: the relative displacement and the two spins. \param symmetric  H = K +
-  /// skew(m)/2 instead of K
-  static void tangent(const Constants& c, const double* i, const double* j, bool symmetric,
-                      std::array<double, 4 * n * n>& k) {
+  /// skew(m)/2 instead of K   \param dashpots  their force goes with the motion too; may be null
+  static void tangent(const Constants& c, const BeamDashpots* dashpots, const double* i,
+                      const double* j, bool symmetric, std::array<double, 4 * n * n>& k) {
     using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
     const Vec3<double> d0 = relative(i, j);
     const Vec3<Dual> d{Dual(d0.x, 9, 0), Dual(d0.y, 9, 1), Dual(d0.z, 9, 2)};
-    const BeamGradient<Dual> g = Kernel::gradient(
-        c, Kernel::strains(c, d, spun<Dual>(rotation_of(i), 3), spun<Dual>(rotation_of(j), 6)));
+    const BeamStrains<Dual> s =
+        Kernel::strains(c, d, spun<Dual>(rotation_of(i), 3), spun<Dual>(rotation_of(j), 6));
+    BeamStress<Dual> stress = elastic_stress(c, s);
+    if (dashpots != nullptr) stress = stress + viscous_stress(*dashpots, rates<Dual>(c, s, i, j));
+    const BeamGradient<Dual> g = Kernel::gradient(c, s, stress);
     k.fill(0);
     const std::array<const Dual*, 3> force{&g.force.x, &g.force.y, &g.force.z};
     const std::array<const Dual*, 3> mi{&g.moment_i.x, &g.moment_i.y, &g.moment_i.z};
@@ -109,6 +144,18 @@ struct SpatialBeam {
  private:
   static Vec3<double> relative(const double* i, const double* j) {
     return {j[0] - i[0], j[1] - i[1], j[2] - i[2]};
+  }
+  template <class T>
+  static Vec3<T> vector_at(const double* r, int offset) {
+    return {T(r[offset]), T(r[offset + 1]), T(r[offset + 2])};
+  }
+  /// Strain rates of the bodies' velocities.
+  template <class T>
+  static BeamStress<T> rates(const Constants& c, const BeamStrains<T>& s, const double* i,
+                             const double* j) {
+    return Kernel::rates(c, s, vector_at<T>(j, Space::velocity) - vector_at<T>(i, Space::velocity),
+                         vector_at<T>(i, Space::angular_velocity),
+                         vector_at<T>(j, Space::angular_velocity));
   }
   static Quat<double> rotation_of(const double* r) {
     return {r[Space::rotation], r[Space::rotation + 1], r[Space::rotation + 2],

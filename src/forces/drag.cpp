@@ -39,7 +39,48 @@ class Drag final : public Force<Spatial> {
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
     quadratic_ ? add<true>(state, wrenches) : add<false>(state, wrenches);
   }
-  bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
+  /// F goes with the submerged volume: -dF = -(F/V) dV, dV = -(W u_z + W_y t_x - W_x t_y) with the
+  /// waterplane W and its moments. Nothing symmetric, and little beside buoyancy's.
+  bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    if (tangent.symmetric()) return false;
+    for (std::size_t b = 0; b < forces_.size(); ++b) {
+      const auto body = static_cast<std::int32_t>(b);
+      const Submerged s = immersion_.of(state, body);
+      if (s.volume == 0) continue;
+      const Vec3<double> per_volume = (-factor(state, b)) * speed(state, b);
+      const std::array<double, 3> f{per_volume.x, per_volume.y, per_volume.z};
+      Tangent<Spatial>::Block k{};
+      for (std::size_t r = 0; r < 3; ++r) {
+        k[r * 6 + 2] = f[r] * s.waterplane;
+        k[r * 6 + 3] = f[r] * s.wy;
+        k[r * 6 + 4] = -f[r] * s.wx;
+      }
+      tangent.add_body(body, k);
+    }
+    return true;
+  }
+  void add_damping(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    for (std::size_t b = 0; b < forces_.size(); ++b) {
+      const auto body = static_cast<std::int32_t>(b);
+      const double volume = immersion_.of(state, body).volume;
+      const Vec3<double> v = speed(state, b);
+      const std::array<double, 3> along{v.x, v.y, v.z};
+      const double size = std::sqrt(dot(v, v));
+      const double rise =
+          size > 0 ? coefficient_ / size * volume * area_per_volume_[b / lanes].values[b % lanes]
+                   : 0;
+      Tangent<Spatial>::Block c{};
+      for (std::size_t r = 0; r < 3; ++r) {
+        c[r * 6 + r] = volume * factor(state, b);
+        for (std::size_t k = 0; k < 3; ++k) c[r * 6 + k] += rise * along[r] * along[k];
+      }
+      tangent.add_body(body, c);
+    }
+  }
+  bool add_losses(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+    add(state, wrenches);
+    return true;
+  }
   double stiffness_bound(std::int32_t) const override { return 0; }
 
   void commit(const State<Spatial>& state, double dt) override {
@@ -111,6 +152,16 @@ class Drag final : public Force<Spatial> {
   struct alignas(64) Block {
     std::array<double, lanes> values;
   };
+  /// Velocity of an owned body against the water, and the drag over it and over V [N s/m^4].
+  Vec3<double> speed(const State<Spatial>& state, std::size_t b) const {
+    const double* v = state.record(b) + Spatial::velocity;
+    return Vec3<double>{v[0], v[1], v[2]} - current_;
+  }
+  double factor(const State<Spatial>& state, std::size_t b) const {
+    const Vec3<double> v = speed(state, b);
+    return (linear_ + coefficient_ * std::sqrt(dot(v, v))) *
+           area_per_volume_[b / lanes].values[b % lanes];
+  }
   static const Part& with_shapes(const Part& part) {
     if (part.shapes.empty() && part.owned > 0)
       throw InputError("forces: drag needs bodies with a shape; the lattice file has no /shapes");

@@ -64,14 +64,56 @@ template <class Space>
 void Tangent<Space>::begin(std::span<const double> increments) {
   check(MatZeroEntries(matrix_));
   increments_ = increments;
+  weigh(1, {});
   lift_.assign(static_cast<std::size_t>(part_.owned * n), 0.0);
+}
+
+template <class Space>
+void Tangent<Space>::weigh(double factor, std::span<const TurnFrame> frames) {
+  factor_ = factor;
+  frames_ = frames;
+}
+
+/// Rotations of a planar body are the same in all frames.
+template <class Space>
+void Tangent<Space>::turn_rows(std::int32_t body, std::span<double> rows, int columns) const {
+  if constexpr (n - Space::translations == 3) {
+    const auto& by = frames_[static_cast<std::size_t>(body)].rows;
+    for (int c = 0; c < columns; ++c) {
+      const auto at = [&](int k) -> double& {
+        return rows[static_cast<std::size_t>((Space::translations + k) * columns + c)];
+      };
+      const std::array<double, 3> old{at(0), at(1), at(2)};
+      for (int k = 0; k < 3; ++k) {
+        const auto r = static_cast<std::size_t>(3 * k);
+        at(k) = by[r] * old[0] + by[r + 1] * old[1] + by[r + 2] * old[2];
+      }
+    }
+  }
+}
+
+/// \param first  column of the body's first unknown   \param columns  of the block
+template <class Space>
+void Tangent<Space>::turn_columns(std::int32_t body, std::span<double> block, int first,
+                                  int columns) const {
+  if constexpr (n - Space::translations == 3) {
+    const auto& by = frames_[static_cast<std::size_t>(body)].columns;
+    const int rows = static_cast<int>(block.size()) / columns;
+    for (int r = 0; r < rows; ++r) {
+      double* row = &block[static_cast<std::size_t>(r * columns + first + Space::translations)];
+      const std::array<double, 3> old{row[0], row[1], row[2]};
+      for (std::size_t k = 0; k < 3; ++k)
+        row[k] = old[0] * by[k] + old[1] * by[3 + k] + old[2] * by[6 + k];
+    }
+  }
 }
 
 /// Scales rows of one body, gives up rows that are prescribed.
 template <class Space>
 void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int columns) {
+  if (!frames_.empty()) turn_rows(body, rows, columns);
   for (int k = 0; k < n; ++k) {
-    const double factor = is_held(body, k) ? 0.0 : scale_[static_cast<std::size_t>(k)];
+    const double factor = is_held(body, k) ? 0.0 : factor_ * scale_[static_cast<std::size_t>(k)];
     for (int c = 0; c < columns; ++c) rows[static_cast<std::size_t>(k * columns + c)] *= factor;
   }
 }
@@ -80,6 +122,7 @@ template <class Space>
 void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
   if (body >= part_.owned) return;
   Block a = block;
+  if (!frames_.empty()) turn_columns(body, a, 0, n);
   prepare_rows(body, a, n);
   for (int c = 0; c < n; ++c) {
     const bool held = is_held(body, c);
@@ -102,6 +145,10 @@ template <class Space>
 void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& block) {
   PairBlock a = block;
   const std::array<std::int32_t, 2> body{i, j};
+  if (!frames_.empty()) {
+    turn_columns(i, a, 0, 2 * n);
+    turn_columns(j, a, n, 2 * n);
+  }
   constexpr std::size_t half = static_cast<std::size_t>(2 * n * n);
   prepare_rows(i, std::span(a).first(half), 2 * n);
   prepare_rows(j, std::span(a).subspan(half), 2 * n);
@@ -133,6 +180,7 @@ void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& b
 
 template <class Space>
 void Tangent<Space>::end() {
+  weigh(1, {});
   Block diagonal{};
   for (std::int32_t body = 0; body < part_.owned; ++body) {
     for (int k = 0; k < n; ++k)

@@ -5,6 +5,7 @@
 #include "floe/base/hdf5.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
+#include "floe/geometry/overlap.h"
 #include "floe/lattice/lattice.h"
 
 namespace floe {
@@ -13,10 +14,11 @@ namespace {
 /// Names the file and the dataset in whatever is wrong with it.
 class Reader {
  public:
-  explicit Reader(const std::string& path) : path_(path), file_(Hdf5File::open(path)) {}
+  explicit Reader(const std::string& path, std::string key = "lattice_file")
+      : path_(path), key_(std::move(key)), file_(Hdf5File::open(path, key_)) {}
 
   [[noreturn]] void refuse(const std::string& dataset, const std::string& why) const {
-    throw InputError("lattice_file: '" + path_ + "': " + dataset + ": " + why);
+    throw InputError(key_ + ": '" + path_ + "': " + dataset + ": " + why);
   }
   const Hdf5File& file() const { return file_; }
 
@@ -61,7 +63,7 @@ class Reader {
     if (actual != count)
       refuse(name, "has " + std::to_string(actual) + " rows, must have " + std::to_string(count));
   }
-  std::string path_;
+  std::string path_, key_;
   Hdf5File file_;
 };
 
@@ -136,6 +138,8 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
   beams.young = in.scalars("/beams/young", m);
   beams.shear_modulus = in.scalars("/beams/shear_modulus", m);
   beams.shear_factor = in.scalars("/beams/shear_factor", m);
+  if (in.file().has("/beams/shear_factor_y"))
+    beams.shear_factor_y = in.scalars("/beams/shear_factor_y", m);
   if (in.file().has("/beams/width")) beams.width = in.scalars("/beams/width", m);
   if (in.file().has("/beams/height")) beams.height = in.scalars("/beams/height", m);
   read_axes(in, bodies, beams);
@@ -153,7 +157,7 @@ void check_offsets(const Reader& in, const std::string& name,
 }
 
 /// Faces that close around the body's centroid, seen counter-clockwise from outside.
-void check_solids(const Reader& in, const Shapes& s) {
+void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
     const std::string name = "body " + std::to_string(b);
@@ -167,13 +171,14 @@ void check_solids(const Reader& in, const Shapes& s) {
     const VolumeProperties p = volume_properties(s, b);
     if (!(p.volume > 0))
       in.refuse("/shapes/corners", name + ": faces must be counter-clockwise seen from outside");
+    if (!centred_at_origin) continue;
     constexpr double centred = 1e-6;  // of the body's size
     if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
       in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
   }
 }
 
-Shapes read_shapes(const Reader& in, std::size_t bodies) {
+Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin = true) {
   Shapes s;
   if (!in.file().has("/shapes")) return s;
   s.vertices = in.rows<3>("/shapes/vertices",
@@ -195,7 +200,7 @@ Shapes read_shapes(const Reader& in, std::size_t bodies) {
                   "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
     }
   }
-  check_solids(in, s);
+  check_solids(in, s, centred_at_origin);
   return s;
 }
 
@@ -236,6 +241,16 @@ Lattice read_lattice(const std::string& file) {
   return lattice;
 }
 
+Shapes read_polyhedron(const std::string& file, const std::string& key) {
+  const Reader in(file, key);
+  Shapes shapes = read_shapes(in, 1, false);
+  if (shapes.empty()) in.refuse("/shapes", "is not there");
+  const double size = std::cbrt(volume_properties(shapes, 0).volume);
+  constexpr double rounding = 1e-6;
+  if (concavity(shapes, 0) > rounding * size) in.refuse("/shapes", "the polyhedron is not convex");
+  return shapes;
+}
+
 void write_lattice(const Lattice& lattice, const std::string& path) {
   Hdf5File file = Hdf5File::create(path);
   const Bodies& b = lattice.bodies;
@@ -260,6 +275,7 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
     file.write("/beams/young", m.young);
     file.write("/beams/shear_modulus", m.shear_modulus);
     file.write("/beams/shear_factor", m.shear_factor);
+    if (!m.shear_factor_y.empty()) file.write("/beams/shear_factor_y", m.shear_factor_y);
     file.write("/beams/axis_y", flat(m.axis_y), 3);
     if (!m.width.empty()) file.write("/beams/width", m.width);
     if (!m.height.empty()) file.write("/beams/height", m.height);

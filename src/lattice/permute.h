@@ -26,21 +26,25 @@ inline Bodies pick(const Bodies& b, std::span<const std::int32_t> order) {
 }
 
 inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
-  return {pick(b.bodies, order),    pick(b.area, order),          pick(b.inertia_y, order),
-          pick(b.inertia_z, order), pick(b.torsion, order),       pick(b.length, order),
-          pick(b.young, order),     pick(b.shear_modulus, order), pick(b.shear_factor, order),
-          pick(b.axis_y, order),    pick(b.width, order),         pick(b.height, order)};
+  return {pick(b.bodies, order),         pick(b.area, order),          pick(b.inertia_y, order),
+          pick(b.inertia_z, order),      pick(b.torsion, order),       pick(b.length, order),
+          pick(b.young, order),          pick(b.shear_modulus, order), pick(b.shear_factor, order),
+          pick(b.shear_factor_y, order), pick(b.axis_y, order),        pick(b.width, order),
+          pick(b.height, order)};
 }
 
 /// The same in place, array by array: what is left of one is given back before the next is copied.
+/// The structured bindings name every member, so that none is forgotten.
 inline void permute(Bodies& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
-  each(b.position, b.orientation, b.mass, b.inertia, b.velocity, b.angular_velocity);
+  auto& [position, orientation, mass, inertia, velocity, spin] = b;
+  each(position, orientation, mass, inertia, velocity, spin);
 }
 inline void permute(Beams& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
-  each(b.bodies, b.area, b.inertia_y, b.inertia_z, b.torsion, b.length, b.young, b.shear_modulus,
-       b.shear_factor, b.axis_y, b.width, b.height);
+  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width,
+         height] = b;
+  each(bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height);
 }
 
 inline Shapes pick(const Shapes& s, std::span<const std::int32_t> order) {

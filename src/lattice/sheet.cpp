@@ -151,14 +151,14 @@ void cut(Lattice& lattice, const Point2& a, const Point2& b) {
     if (!crosses(m)) kept.push_back(m);
 
   const auto keep = [&kept](auto& column) {
-    if (column.empty()) return;  // width and height may be absent
+    if (column.empty()) return;  // some may be absent
     for (std::size_t k = 0; k < kept.size(); ++k) column[k] = column[kept[k]];
     column.resize(kept.size());
   };
-  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, axis, width, height] =
-      lattice.beams;
-  keep(bodies), keep(area), keep(iy), keep(iz), keep(torsion), keep(length);
-  keep(young), keep(shear), keep(factor), keep(axis), keep(width), keep(height);
+  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width,
+         height] = lattice.beams;
+  keep(bodies), keep(area), keep(iy), keep(iz), keep(torsion), keep(length), keep(young);
+  keep(shear), keep(factor), keep(factor_y), keep(axis), keep(width), keep(height);
 }
 
 void add_region(Lattice& lattice, const std::string& name, const std::array<double, 6>& box,

@@ -99,6 +99,9 @@ void Fields::cut_back(std::size_t keep) {
         throw InputError(key + ": '" + path + "' has " + std::to_string(k) +
                          " frames, the checkpoint knows of " + std::to_string(keep));
       times_.push_back(old.read_attribute(group_name(k), "time"));
+      breakable_ = old.has(group_name(k) + "/damage");
+      const std::string cracks = group_name(k) + "/cracks";
+      cracks_.push_back(old.has(cracks) ? static_cast<std::size_t>(old.shape(cracks).first) : 0);
     }
     as_it_is = !old.has(group_name(keep));
     if (!as_it_is) {
@@ -119,6 +122,9 @@ void Fields::write(const Frame& frame) {
   file_->stage(group);
   write_bodies(group, frame);
   if (lattice_.beams.size() > 0) write_beams(group, frame);
+  cracks_.push_back(0);
+  breakable_ = !frame.damage.empty();
+  if (breakable_) write_cracks(group, frame);
   file_->attribute(group, "time", frame.time);
   file_->publish();
   times_.push_back(frame.time);
@@ -195,7 +201,59 @@ void Fields::write_beams(const std::string& group, const Frame& frame) {
   file_->write(group + "/shear_stress", tau);
 }
 
-/// The two grids of one time: bodies as polygons, beams as lines.
+/// A broken section lay halfway between its bodies' centroids; each body has carried its side
+/// along.
+void Fields::write_cracks(const std::string& group, const Frame& frame) {
+  const Beams& beams = lattice_.beams;
+  std::vector<double> points;
+  std::vector<std::int32_t> corners, beam;
+  for (std::size_t m = 0; m < frame.damage.size(); ++m) {
+    if (frame.damage[m] < 1) continue;
+    const auto [i, j] = beams.bodies[m];
+    const auto at = [&](std::int32_t b) {
+      const Point3& x = lattice_.bodies.position[static_cast<std::size_t>(b)];
+      return Vec3<double>{x[0], x[1], x[2]};
+    };
+    const Vec3<double> chord = at(j) - at(i);
+    const Vec3<double> e1 = (1 / std::sqrt(dot(chord, chord))) * chord;
+    Vec3<double> e2{beams.axis_y[m][0], beams.axis_y[m][1], beams.axis_y[m][2]};
+    e2 = e2 - dot(e2, e1) * e1;
+    e2 = (1 / std::sqrt(dot(e2, e2))) * e2;
+    const Vec3<double> y = (0.5 * beams.width[m]) * e2, z = (0.5 * beams.height[m]) * cross(e1, e2);
+    for (const std::int32_t b : {i, j}) {
+      const double* u = &frame.displacement[3 * static_cast<std::size_t>(b)];
+      const double* q = &frame.rotation[4 * static_cast<std::size_t>(b)];
+      const Vec3<double> middle = 0.5 * (at(i) + at(j)) - at(b);
+      for (const Vec3<double>& corner :
+           {middle - y - z, middle + y - z, middle + y + z, middle - y + z}) {
+        const Vec3<double> p = at(b) + Vec3<double>{u[0], u[1], u[2]} +
+                               rotate(normalised(Quat<double>{q[0], q[1], q[2], q[3]}), corner);
+        corners.push_back(static_cast<std::int32_t>(points.size() / 3));
+        points.insert(points.end(), {p.x, p.y, p.z});
+      }
+      beam.push_back(static_cast<std::int32_t>(m));
+    }
+  }
+  file_->write(group + "/damage", frame.damage);
+  if (beam.empty()) return;
+  file_->write(group + "/crack_points", points, 3);
+  file_->write(group + "/cracks", corners, 4);
+  file_->write(group + "/crack_beam", beam);
+  cracks_.back() = beam.size();
+}
+
+std::string Fields::cracks_grid(std::size_t k) const {
+  const std::string group = group_name(k), faces = std::to_string(cracks_[k]);
+  return "      <Grid Name=\"cracks\">\n        <Topology TopologyType=\"Quadrilateral\" "
+         "NumberOfElements=\"" +
+         faces + "\">" + item(group + "/cracks", faces + " 4", "Int", 4) +
+         "</Topology>\n        <Geometry GeometryType=\"XYZ\">" +
+         item(group + "/crack_points", std::to_string(4 * cracks_[k]) + " 3", "Float", 8) +
+         "</Geometry>\n        <Attribute Name=\"beam\" AttributeType=\"Scalar\" Center=\"Cell\">" +
+         item(group + "/crack_beam", faces, "Int", 4) + "</Attribute>\n      </Grid>\n";
+}
+
+/// The grids of one time: bodies as polygons, beams as lines, faces of cracks.
 std::string Fields::grid(std::size_t k) const {
   const std::string group = group_name(k), faces = std::to_string(body_of_face_.size());
   const std::size_t n = lattice_.bodies.position.size(), m = lattice_.beams.bodies.size();
@@ -225,8 +283,10 @@ std::string Fields::grid(std::size_t k) const {
         << attribute("beams_force", group, m, 3, "Cell", 8)
         << attribute("beams_moment", group, m, 3, "Cell", 8)
         << attribute("tensile_stress", group, m, 1, "Cell", 8)
-        << attribute("shear_stress", group, m, 1, "Cell", 8) << "      </Grid>\n";
+        << attribute("shear_stress", group, m, 1, "Cell", 8)
+        << (breakable_ ? attribute("damage", group, m, 1, "Cell", 8) : "") << "      </Grid>\n";
   }
+  if (cracks_[k] > 0) out << cracks_grid(k);
   out << "    </Grid>\n";
   return out.str();
 }

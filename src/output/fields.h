@@ -7,7 +7,9 @@
 ///   points (vertices in the world), centres (n x 3, bodies' centroids),
 ///   bodies_displacement, bodies_rotation (n x 3; rotation vectors), face_displacement,
 ///   face_rotation (the same, per face), beams_force (N, Q2, Q3), beams_moment (T, M2, M3),
-///   beams_stress (largest tensile stress, shear stress).
+///   beams_stress (largest tensile stress, shear stress), and where beams may break: damage (D per
+///   beam), crack_points and cracks (the two faces of each broken section as quadrilaterals,
+///   carried by its two bodies), crack_beam (the beam of each).
 #pragma once
 
 #include <optional>
@@ -26,6 +28,7 @@ struct Frame {
   std::vector<double> rotation;         ///< n x 4, from rest
   std::vector<double> rotation_vector;  ///< n x 3
   std::vector<double> sections;         ///< m x 6
+  std::vector<double> damage;           ///< m; empty if nothing can break
 };
 
 /// Lives on rank 0.
@@ -42,13 +45,17 @@ class Fields {
   void cut_back(std::size_t keep);
   void write_bodies(const std::string& group, const Frame& frame);
   void write_beams(const std::string& group, const Frame& frame);
+  void write_cracks(const std::string& group, const Frame& frame);
+  std::string cracks_grid(std::size_t k) const;
   void write_xmf() const;
   std::string grid(std::size_t k) const;
 
   std::string dir_;
   const Lattice& lattice_;
   std::optional<Hdf5File> file_;
+  bool breakable_ = false;  ///< frames have the beams' damage
   std::vector<double> times_;
+  std::vector<std::size_t> cracks_;  ///< per frame: faces of cracks
   std::vector<std::int32_t> topology_of_faces_, body_of_face_;
   std::size_t points_ = 0, topology_ = 0;
 };

@@ -12,6 +12,7 @@
 
 #include "floe/base/log.h"
 #include "floe/base/options.h"
+#include "output/cracks.h"
 #include "output/fields.h"
 #include "output/gather.h"
 #include "output/history.h"
@@ -57,6 +58,7 @@ struct Output::Impl {
   std::vector<std::int32_t> counted;  ///< local beams that this rank reports
   std::optional<Fields> fields;       ///< rank 0
   std::optional<History> history;     ///< rank 0
+  std::optional<CrackLog> cracks;     ///< if beams may break
   OutputMemory memory;
   std::optional<State<Spatial>> pending;  ///< accepted, but not in fields.h5
   bool header_checked = true;
@@ -82,7 +84,7 @@ struct Output::Impl {
   }
 
   void open_files(const Lattice& lattice, const std::string& options_yaml, bool restarted);
-  Sample sample(const Accepted<Spatial>& accepted) const;
+  Sample sample(const Accepted<Spatial>& accepted);
   void check_header();
   void write_row(const Sample& sample);
   void write_frame(const State<Spatial>& state);
@@ -109,6 +111,8 @@ Output::Output(const OutputOptions& options, const Lattice& lattice, const Model
     }
     impl_->sets.emplace_back(set.size(), mean);
   }
+  if (model.fracture() != nullptr)
+    impl_->cracks.emplace(options.dir, lattice, *model.fracture(), model.part());
   if (restart != nullptr) {
     impl_->memory = *restart;
     impl_->header_checked = false;
@@ -129,7 +133,7 @@ void Output::Impl::open_files(const Lattice& lattice, const std::string& options
   const std::string& dir = options.dir;
   if (!restarted) {
     // What an earlier run left would contradict this one until its own is written.
-    for (const char* old : {"/summary.json", "/fields.xmf", "/checkpoint.h5"})
+    for (const char* old : {"/summary.json", "/fields.xmf", "/checkpoint.h5", "/breaks.h5"})
       std::filesystem::remove(dir + old);
     write_lattice(lattice, dir + "/lattice.h5");
   }
@@ -145,7 +149,7 @@ const OutputMemory& Output::memory() const { return impl_->memory; }
 const Sample& Output::first() const { return impl_->memory.first; }
 const Sample& Output::last() const { return impl_->memory.last; }
 
-Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
+Sample Output::Impl::sample(const Accepted<Spatial>& accepted) {
   Sample s;
   s.time = accepted.state.time;
   for (std::size_t k = 0; k < model.boundaries().size(); ++k) {
@@ -196,6 +200,7 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) const {
   }
   s.forces = accepted.forces.empty() ? model.report(accepted.state) : accepted.forces;
   s.forces.insert(s.forces.end(), accepted.columns.begin(), accepted.columns.end());
+  if (cracks) s.forces.emplace_back("fragments", cracks->update());
   return s;
 }
 
@@ -260,7 +265,7 @@ void Output::Impl::write_frame(const State<Spatial>& state) {
                                : log_rotation(now);
     vector.insert(vector.end(), {t.x, t.y, t.z});
   }
-  Frame frame{state.time, bodies(u, 3), bodies(q, 4), bodies(vector, 3), {}};
+  Frame frame{state.time, bodies(u, 3), bodies(q, 4), bodies(vector, 3), {}, {}};
   if (model.beams() != nullptr) {
     const std::vector<BeamSection> all = model.beams()->sections(state);
     std::vector<double> mine;
@@ -270,6 +275,12 @@ void Output::Impl::write_frame(const State<Spatial>& state) {
       mine.insert(mine.end(), s.begin(), s.end());
     }
     frame.sections = beams(mine, 6);
+  }
+  if (model.fracture() != nullptr) {
+    std::vector<double> mine;
+    mine.reserve(counted.size());
+    for (const std::int32_t k : counted) mine.push_back(model.fracture()->damage(k));
+    frame.damage = beams(mine, 1);
   }
   ++memory.frames;
   if (fields) fields->write(frame);

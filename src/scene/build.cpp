@@ -7,8 +7,10 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/forces/buoyancy.h"
+#include "floe/forces/contact.h"
 #include "floe/forces/drag.h"
 #include "floe/forces/gravity.h"
+#include "mesh_file.h"
 
 namespace floe {
 namespace {
@@ -30,13 +32,16 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   {
     const Timed timed(Event::mesh);
     Progress progress("mesh", scene.sheet.iterations);
-    cells = tessellate(scene.sheet, comm, [&](int iteration, double move) {
+    const auto show = [&](int iteration, double move) {
       char note[48];
       std::snprintf(note, sizeof note, "largest move %.2g l", move);
       progress.update(iteration, note);
-    });
+    };
+    cells = scene.mesh_file.empty()
+                ? tessellate(scene.sheet, comm, show)
+                : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show);
   }
-  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate};
+  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate, {}};
   const Timed timed(Event::lattice);
   return make_sheet(cells, section);
 }
@@ -71,6 +76,8 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
                          ? "sheet: element_size: the sheet has a single cell and no beam"
                          : "forces: beam: '" + scene.lattice_file + "' has no beams");
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
+  if (scene.calibrate != Calibrate::none)
+    report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
   for (const Cut& c : scene.cuts) {
     const std::int32_t before = lattice.beams.size();
     cut(lattice, c.from, c.to);
@@ -108,8 +115,6 @@ RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = scene.time.dt;
-  options.safety = scene.time.safety;
-  options.allow_unstable = scene.time.allow_unstable;
   options.velocity_limit = scene.limit.velocity;
   options.energy_limit = scene.limit.energy_error;
   options.history = scene.output.history;
@@ -123,6 +128,9 @@ RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string
                         scene.options_yaml,
                         prepare,
                         others};
+  if (scene.integrator == Integrator::implicit) return run_implicit(model, options, observer);
+  options.safety = scene.time.safety;
+  options.allow_unstable = scene.time.allow_unstable;
   return run_explicit(model, options, observer);
 }
 
@@ -140,8 +148,13 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
 
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model) {
   const Part& part = model.part();
-  if (scene.forces.beam)
+  if (scene.forces.fracture) {
+    BreakableForce breakable = make_breakable_beams(part, scene.beam, scene.fracture);
+    model.set_fracture(breakable.fracture);
+    model.set_beams(std::move(breakable.force), scene.beam.kinematics);
+  } else if (scene.forces.beam) {
     model.set_beams(make_beam_force<Spatial>(part, scene.beam), scene.beam.kinematics);
+  }
   if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
   if (scene.forces.buoyancy)
     model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
@@ -150,6 +163,11 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
     model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));
   for (const PlacedLoad& load : loads)
     model.add_force(make_load<Spatial>(part, load, scene.beam.kinematics));
+}
+
+void add_contact(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {
+  if (scene.forces.contact)
+    model.add_force(make_contact(model.part(), lattice, scene.contact, scene.obstacles));
 }
 
 void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {

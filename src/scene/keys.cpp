@@ -10,9 +10,12 @@ using enum Kind;
 // A new key is one line here and one where scene.cpp reads it. Words of a choice stand in the order
 // of their enum. Columns: key, kind, default, unit, allowed, doc, count.
 constexpr std::array table{
-    OptionSpec{"integrator", choice, "quasistatic", "", "quasistatic | explicit",
-               "how the state moves on: static equilibrium at each load step, or leapfrog in time"},
-    OptionSpec{"forces", choices, "(required)", "", "beam | gravity | buoyancy | drag",
+    OptionSpec{
+        "integrator", choice, "quasistatic", "", "quasistatic | explicit | implicit",
+        "how the state moves on: static equilibrium at each load step, or in time by leapfrog "
+        "or by the generalised-alpha method"},
+    OptionSpec{"forces", choices, "(required)", "",
+               "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},
     OptionSpec{"gravity", number, "9.81", "m/s^2", "> 0", "acceleration of gravity, along -z"},
     OptionSpec{"lattice_file", text, "(none: the sheet is meshed)", "", "",
@@ -37,6 +40,9 @@ constexpr std::array table{
                "most iterations of the relaxation"},
     OptionSpec{"sheet: tolerance", number, "0", "", ">= 0",
                "the relaxation ends when no generator moves by more than this times element_size"},
+    OptionSpec{"sheet: mesh_file", text, "(none)", "", "",
+               "HDF5 file that keeps the relaxed generators: read if it is there, else written; "
+               "scenes that share a sheet mesh it once"},
 
     OptionSpec{"region: names", names, "(none)", "", "",
                "further sets of bodies: one section each"},
@@ -58,15 +64,33 @@ constexpr std::array table{
                "shear correction of the section, 5/6 for a rectangle"},
     OptionSpec{"beam: torsion", choice, "saint_venant", "", "saint_venant | polar",
                "torsion constant of the section: Saint-Venant's series, or Iy + Iz"},
+    OptionSpec{"beam: calibrate", choice, "none", "", "none | young | isotropic",
+               "stiffnesses of a sheet's beams: of its ice; such that a large sheet has the ice's "
+               "Young's modulus; or its Young's modulus and Poisson's ratio in stretching and in "
+               "bending"},
     OptionSpec{"beam: kinematics", choice, "corotational", "", "corotational | linear",
                "any rotation (Crisfield 1990), or small displacements and rotations"},
 
     OptionSpec{
         "beam: damping_ratio", number, "0", "", ">= 0",
-        "explicit: zeta of every dashpot, c = 2 zeta sqrt(m k) with the harmonic mean of the "
+        "dynamics: zeta of every dashpot, c = 2 zeta sqrt(m k) with the harmonic mean of the "
         "bodies' masses"},
     OptionSpec{"beam: damping_modes", choice, "all", "", "all | axial",
-               "explicit: dashpots on all six strains, or on the elongation only"},
+               "dynamics: dashpots on all six strains, or on the elongation only"},
+
+    OptionSpec{"fracture: tensile_strength", number, "6e5", "Pa", "> 0",
+               "sigma_t: a beam cracks where its largest tensile stress, with shear, reaches it"},
+    OptionSpec{"fracture: shear_strength", number, "(tensile_strength)", "Pa", "> 0",
+               "tau_c, of shear and torsion"},
+    OptionSpec{"fracture: energy", number, "15", "J/m^2", "> 0",
+               "dissipated per area of a section that breaks in tension or bending"},
+    OptionSpec{"fracture: energy_shear", number, "(energy)", "J/m^2", "> 0",
+               "the same in shear or torsion"},
+    OptionSpec{"fracture: weibull_modulus", number, "(none: equal strengths)", "", "> 0",
+               "beams' strengths scatter with this modulus"},
+    OptionSpec{"fracture: weibull_area", number, "(mean section of the beams)", "m^2", "> 0",
+               "section whose mean strength is the given one; larger ones are weaker"},
+    OptionSpec{"fracture: seed", integer, "1", "", ">= 0", "of the scatter"},
 
     OptionSpec{"water: density", number, "1010", "kg/m^3", "> 0",
                "density of the water; its level is z = 0"},
@@ -76,7 +100,44 @@ constexpr std::array table{
                "drag: C_d in the force -density C_d A |v| v/2 on the submerged part"},
     OptionSpec{"water: current", numbers, "0 0 0", "m/s", "", "drag: velocity of the water", 3},
     OptionSpec{"water: added_mass", number, "0", "", ">= 0",
-               "explicit: a body takes along this part of the water that it displaces at rest"},
+               "dynamics: a body takes along this part of the water that it displaces at rest"},
+
+    OptionSpec{"contact: law", choice, "overlap", "", "overlap | potential",
+               "force by the overlap's volume, or the gradient of an energy of it (Feng 2021)"},
+    OptionSpec{"contact: young", number, "(ice: young)", "Pa", "> 0",
+               "E_c: an overlap V presses with E_c V/(L_a + L_b), L half the cube root of a body's "
+               "volume; required with lattice_file"},
+    OptionSpec{"contact: friction", number, "0.1", "", ">= 0",
+               "Coulomb's coefficient between bodies"},
+    OptionSpec{"contact: plastic_limit", number, "(none)", "Pa", "> 0",
+               "most normal force over the contact's area; what is crushed is remembered"},
+    OptionSpec{
+        "contact: restitution", number, "1", "", "> 0",
+        "part of the speed that a central impact of a face on a plane gives back, at most 1"},
+    OptionSpec{"obstacle: names", names, "(none)", "", "",
+               "rigid convex obstacles: one section each"},
+    OptionSpec{"obstacle: NAME: shape", choice, "(required)", "",
+               "halfspace | box | cone | cylinder | file", "what it is"},
+    OptionSpec{"obstacle: NAME: friction", number, "(contact: friction)", "", ">= 0",
+               "Coulomb's coefficient against it"},
+    OptionSpec{"obstacle: NAME: velocity", numbers, "0 0 0", "m/s", "", "its steady motion", 3},
+    OptionSpec{"obstacle: NAME: point", numbers, "0 0 0", "m", "",
+               "halfspace: a point of its plane; file: where the file's origin is", 3},
+    OptionSpec{"obstacle: NAME: normal", numbers, "0 0 1", "", "", "halfspace: points out of it",
+               3},
+    OptionSpec{"obstacle: NAME: centre", numbers, "0 0 0", "m", "", "box: its centre", 3},
+    OptionSpec{"obstacle: NAME: size", numbers, "1 1 1", "m", "", "box: its edges", 3},
+    OptionSpec{"obstacle: NAME: rotation", numbers, "0 0 0", "degrees", "",
+               "box: about x, then y, then z", 3},
+    OptionSpec{"obstacle: NAME: base", numbers, "0 0 0", "m", "",
+               "cone, cylinder: centre of the foot; the axis is vertical", 3},
+    OptionSpec{"obstacle: NAME: radius", number, "1", "m", "> 0", "cone, cylinder: of the foot"},
+    OptionSpec{"obstacle: NAME: top_radius", number, "0", "m", ">= 0", "cone: of the top"},
+    OptionSpec{"obstacle: NAME: height", number, "1", "m", "> 0", "cone, cylinder"},
+    OptionSpec{"obstacle: NAME: facets", integer, "24", "", "> 0",
+               "cone, cylinder: sides of the polygon inside the circle, 3 or more"},
+    OptionSpec{"obstacle: NAME: file", text, "(required)", "", "",
+               "file: HDF5 file whose /shapes hold one convex polyhedron"},
 
     OptionSpec{"boundary: names", names, "(none)", "", "", "prescribed motions: one section each"},
     OptionSpec{"boundary: NAME: set", text, "(required)", "", "", "the set of bodies"},
@@ -103,7 +164,7 @@ constexpr std::array table{
                "the load rises linearly over this time"},
 
     OptionSpec{"initial: names", names, "(none)", "", "",
-               "explicit: initial motions, one section each; they override the lattice file's"},
+               "dynamics: initial motions, one section each; they override the lattice file's"},
     OptionSpec{"initial: NAME: set", text, "(required)", "", "", "the set of bodies"},
     OptionSpec{"initial: NAME: velocity", numbers, "0 0 0", "m/s", "", "of each body", 3},
     OptionSpec{"initial: NAME: angular_velocity", numbers, "0 0 0", "rad/s", "", "of each body", 3},
@@ -112,31 +173,34 @@ constexpr std::array table{
         "time: end", number, "1", "s", "> 0",
         "end of the run, from 0 (quasistatic: of the pseudo-time; what has no ramp acts fully)"},
     OptionSpec{"time: dt", number, "(auto)", "s", "> 0",
-               "step; auto: safety times the stable step (quasistatic: one load step)"},
+               "step; auto: safety times the stable step (implicit: from the error of each step; "
+               "quasistatic: one load step)"},
     OptionSpec{"time: safety", number, "0.9", "", "in (0, 1)",
                "explicit: dt auto is this times the stable step"},
     OptionSpec{"time: allow_unstable", flag, "false", "", "",
                "explicit: take a dt above the stable step all the same"},
 
     OptionSpec{"limit: velocity", number, "1000", "m/s", "> 0",
-               "explicit: a body faster than this stops the run"},
+               "dynamics: a body faster than this stops the run"},
     OptionSpec{
         "limit: energy_error", number, "0.1", "", "> 0",
-        "explicit: an error of the energy balance above this part of the energies that moved "
+        "dynamics: an error of the energy balance above this part of the energies that moved "
         "stops the run"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
-    OptionSpec{"output: history", number, "(auto)", "s", "> 0",
-               "between rows of history.csv; auto: every load step, explicit: 200 rows"},
+    OptionSpec{
+        "output: history", number, "(auto)", "s", "> 0",
+        "between rows of history.csv, where steps of implicit end too; auto: every load step, "
+        "dynamics: 200 rows at the most"},
     OptionSpec{"output: fields", number, "(first and last state)", "s", "> 0",
-               "between frames of fields.h5"},
+               "between frames of fields.h5, where steps of implicit end too"},
 
     OptionSpec{"checkpoint: every", number, "600", "s", "> 0",
-               "explicit: run time (by the clock) between checkpoints; with a section checkpoint "
+               "dynamics: run time (by the clock) between checkpoints; with a section checkpoint "
                "there is one at the end of the run too"},
     OptionSpec{
         "checkpoint: restart", text, "(none: from t = 0)", "", "",
-        "explicit: the checkpoint.h5 to go on from, in the same output folder; its step dt is "
+        "dynamics: the checkpoint.h5 to go on from, in the same output folder; its step dt is "
         "kept, time: end may be later"},
 };
 

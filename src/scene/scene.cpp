@@ -29,21 +29,49 @@ void read_forces(Options& options, Scene& scene) {
   const auto named = [&](std::string_view force) {
     return std::find(forces.begin(), forces.end(), force) != forces.end();
   };
-  scene.forces = {named("beam"), named("gravity"), named("buoyancy"), named("drag")};
+  scene.forces = {named("beam"),     named("fracture"), named("gravity"),
+                  named("buoyancy"), named("drag"),     named("contact")};
+  if (scene.forces.fracture && !scene.forces.beam)
+    throw InputError("forces: fracture needs beam: it is beams that break");
   if (scene.forces.buoyancy && !scene.forces.gravity)
     throw InputError("forces: buoyancy needs gravity");
   if (scene.forces.drag && scene.integrator == Integrator::quasistatic)
     throw InputError(
         "forces: drag would have no effect: 'integrator' is quasistatic, nothing moves");
+  if (scene.forces.contact && scene.integrator == Integrator::quasistatic)
+    throw InputError(
+        "forces: contact needs 'integrator: explicit': contacts have a memory and no tangent");
   const auto without = [](std::string_view force) {
     return "would have no effect: '" + std::string(force) + "' is not in 'forces'";
   };
   if (!scene.forces.beam) options.refuse("beam", without("beam"));
+  if (!scene.forces.fracture) options.refuse("fracture", without("fracture"));
   if (!scene.forces.gravity) options.refuse("gravity", without("gravity"));
+  for (const auto* section : {"contact", "obstacle"})
+    if (!scene.forces.contact) options.refuse(section, without("contact"));
   if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("water", without("buoyancy"));
   if (!scene.forces.drag) {
     for (const auto* key : {"water: drag_linear", "water: drag_coefficient", "water: current"})
       options.refuse(key, without("drag"));
+  }
+}
+
+void read_fracture(Options& options, Scene& scene) {
+  FractureOptions& fracture = scene.fracture;
+  fracture.tensile_strength = options.number("fracture: tensile_strength");
+  fracture.shear_strength =
+      options.number("fracture: shear_strength", {}, fracture.tensile_strength);
+  fracture.energy = options.number("fracture: energy");
+  fracture.energy_shear = options.number("fracture: energy_shear", {}, fracture.energy);
+  fracture.dynamic = scene.integrator != Integrator::quasistatic;
+  if (options.given("fracture: weibull_modulus")) {
+    fracture.weibull_modulus = options.number("fracture: weibull_modulus");
+    if (options.given("fracture: weibull_area"))
+      fracture.weibull_area = options.number("fracture: weibull_area");
+    fracture.seed = static_cast<std::uint64_t>(options.integer("fracture: seed"));
+  } else {
+    for (const auto* key : {"fracture: weibull_area", "fracture: seed"})
+      options.refuse(key, "would have no effect without 'fracture: weibull_modulus'");
   }
 }
 
@@ -69,6 +97,64 @@ void read_water(Options& options, Scene& scene) {
   scene.drag.density = scene.water_density;
 }
 
+Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
+
+Obstacle read_shape(Options& options, const std::string& name) {
+  enum class Shape { halfspace, box, cone, cylinder, file };
+  const auto of = [&](const char* key) {
+    return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
+  };
+  const auto shape = options.choice<Shape>("obstacle: NAME: shape", name);
+  if (shape == Shape::halfspace) {
+    const Vec3<double> point = of("point"), normal = of("normal");
+    if (dot(normal, normal) == 0)
+      throw InputError("obstacle: " + name + ": normal: 0 0 0 is no direction");
+    return half_space(point, normal);
+  }
+  if (shape == Shape::box) {
+    const Vec3<double> centre = of("centre"), size = of("size"), rotation = of("rotation");
+    if (!(size.x > 0 && size.y > 0 && size.z > 0))
+      throw InputError("obstacle: " + name + ": size: must be three numbers > 0 [m]");
+    return box(centre, size, rotation);
+  }
+  if (shape == Shape::file) {
+    const std::string file = options.text("obstacle: NAME: file", name);
+    return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
+  }
+  const Vec3<double> base = of("base");
+  const double radius = options.number("obstacle: NAME: radius", name),
+               height = options.number("obstacle: NAME: height", name);
+  const double top =
+      shape == Shape::cone ? options.number("obstacle: NAME: top_radius", name) : radius;
+  const std::int64_t facets = options.integer("obstacle: NAME: facets", name);
+  if (facets < 3 || facets > 1000)
+    throw InputError("obstacle: " + name + ": facets: " + std::to_string(facets) +
+                     " must be between 3 and 1000");
+  return cone(base, radius, top, height, static_cast<int>(facets));
+}
+
+void read_contact(Options& options, Scene& scene) {
+  ContactOptions& contact = scene.contact;
+  contact.law = options.choice<ContactLaw>("contact: law");
+  if (!scene.has_sheet && !options.given("contact: young"))
+    throw InputError("contact: young: is required with lattice_file [Pa]");
+  contact.young = options.number("contact: young", {}, scene.ice.young);
+  contact.friction = options.number("contact: friction");
+  if (options.given("contact: plastic_limit"))
+    contact.plastic_limit = options.number("contact: plastic_limit");
+  const double restitution = options.number("contact: restitution");
+  if (restitution > 1)
+    throw InputError("contact: restitution: " + text_of(restitution) + " must be <= 1");
+  contact.damping_ratio = damping_ratio_of(restitution);
+  for (const std::string& name : options.names("obstacle")) {
+    Obstacle obstacle = read_shape(options, name);
+    obstacle.name = name;
+    obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
+    obstacle.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
+    scene.obstacles.push_back(std::move(obstacle));
+  }
+}
+
 void read_sheet(Options& options, Scene& scene) {
   SheetPlan& plan = scene.sheet;
   plan.length = options.number("sheet: length");
@@ -79,6 +165,7 @@ void read_sheet(Options& options, Scene& scene) {
   const std::int64_t iterations = options.integer("sheet: iterations");
   plan.iterations = static_cast<int>(std::min<std::int64_t>(iterations, 1'000'000'000));
   plan.tolerance = options.number("sheet: tolerance");
+  if (options.given("sheet: mesh_file")) scene.mesh_file = options.text("sheet: mesh_file");
   scene.thickness = options.number("sheet: thickness");
 
   const double shorter = std::min(plan.length, plan.width);
@@ -100,7 +187,16 @@ void read_ice(Options& options, Scene& scene) {
   scene.ice.density = options.number("ice: density");
   if (!scene.forces.beam) return;
   scene.shear_factor = options.number("beam: shear_factor");
-  scene.torsion = options.choice<Torsion>("beam: torsion");
+  scene.calibrate = options.choice<Calibrate>("beam: calibrate");
+  if (scene.calibrate != Calibrate::isotropic) {
+    scene.torsion = options.choice<Torsion>("beam: torsion");
+    return;
+  }
+  if (scene.ice.poisson > largest_isotropic_poisson)
+    throw InputError("ice: poisson: " + text_of(scene.ice.poisson) +
+                     " must be <= 1/3 for beam: calibrate: isotropic, or stiffnesses are negative");
+  for (const auto* key : {"beam: shear", "beam: torsion"})
+    options.refuse(key, "would have no effect: 'beam: calibrate' is isotropic");
 }
 
 void read_lattice_source(Options& options, Scene& scene) {
@@ -117,7 +213,7 @@ void read_lattice_source(Options& options, Scene& scene) {
   } else {
     scene.lattice_file = options.text("lattice_file");
     constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
-    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion"})
+    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);
   }
 }
@@ -226,8 +322,13 @@ void read_dynamics(Options& options, Scene& scene) {
       options.refuse(key, why);
     return;
   }
-  scene.time.safety = options.number("time: safety");
-  scene.time.allow_unstable = options.flag("time: allow_unstable");
+  if (scene.integrator == Integrator::implicit) {
+    for (const auto* key : {"time: safety", "time: allow_unstable"})
+      options.refuse(key, "would have no effect: 'integrator' is implicit, any step is stable");
+  } else {
+    scene.time.safety = options.number("time: safety");
+    scene.time.allow_unstable = options.flag("time: allow_unstable");
+  }
   scene.checkpoint.every = options.number("checkpoint: every");
   scene.checkpoint.at_end = options.given_section("checkpoint");
   scene.limit.velocity = options.number("limit: velocity");
@@ -294,11 +395,14 @@ Scene read_scene(const std::string& path) {
   read_lattice_source(options, scene);
   read_regions_and_cuts(options, scene);
   if (scene.forces.beam) {
-    scene.beam.shear = options.choice<Shear>("beam: shear");
+    if (scene.calibrate != Calibrate::isotropic)
+      scene.beam.shear = options.choice<Shear>("beam: shear");
     scene.beam.kinematics = options.choice<Kinematics>("beam: kinematics");
   }
+  if (scene.forces.fracture) read_fracture(options, scene);
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
+  if (scene.forces.contact) read_contact(options, scene);
   check_floats(scene);
   for (const std::string& name : options.names("boundary")) {
     scene.boundaries.push_back(read_boundary(options, name));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -32,25 +33,51 @@ std::string line(const char* format, auto... values) {
   return std::string(text) + "\n";
 }
 
+/// Mean x at rest of a boundary's bodies [m]. Collective.
+double mean_x(const Model<Spatial>& model, const Boundary& boundary) {
+  std::array<double, 2> mine{}, all{};  // sum and number
+  for (const PlacedBoundary& placed : model.boundaries()) {
+    if (placed.boundary.name != boundary.name) continue;
+    for (const std::int32_t body : placed.bodies) {
+      if (body >= model.part().owned) continue;
+      mine[0] += model.part().bodies.position[static_cast<std::size_t>(body)][0];
+      mine[1] += 1;
+    }
+  }
+  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model.part().comm);
+  return all[0] / all[1];
+}
+
 /// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width
-/// h (paper).
-void add_tension(const Scene& scene, const Sample& last, Json& json, std::string& text) {
+/// h (paper). The same with the gauge length, between the edge cells' centroids that u acts on,
+/// for L, is what tends to the modulus of a large sheet.
+void add_tension(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
+                 const Sample& last, Json& json, std::string& text) {
   const BoundarySample& left = last.boundaries.at(boundary_on(scene, "left")->name);
   const BoundarySample& right = last.boundaries.at(boundary_on(scene, "right")->name);
   const double strain = (right.displacement[0] - left.displacement[0]) / scene.sheet.length;
   const double young = -left.force[0] / (scene.sheet.width * scene.thickness * strain);
-  const LatticeModuli lattice = lattice_moduli(scene.sheet.element_size, scene.thickness, scene.ice,
-                                               scene.shear_factor, scene.beam.shear, scene.torsion);
+  const double gauge =
+      mean_x(model, *boundary_on(scene, "right")) - mean_x(model, *boundary_on(scene, "left"));
+  const double gauged = young * gauge / scene.sheet.length;
+  const LatticeModuli lattice =
+      mesh.calibration ? mesh.calibration->moduli
+                       : lattice_moduli(scene.sheet.element_size, scene.thickness, scene.ice,
+                                        scene.shear_factor, scene.beam.shear, scene.torsion);
   const double reference = lattice.young * scene.ice.young;
   json["E"] = young;
   json["E_over_Eb"] = young / scene.ice.young;
   json["E_star"] = reference;
   json["E_over_Estar"] = young / reference;
+  json["gauge_length"] = gauge;
+  json["E_gauge_over_Eb"] = gauged / scene.ice.young;
   text += line("E      = %.6g Pa (effective Young's modulus of the sheet)", young);
   text +=
       line("E/Eb   = %.6f (Eb = %.4g Pa, of the beams)", young / scene.ice.young, scene.ice.young);
-  text += line("E/E*   = %.6f (E* = %.6g Pa, of the infinite regular lattice)", young / reference,
-               reference);
+  text += line("E/E*   = %.6f (E* = %.6g Pa, of the %s)", young / reference, reference,
+               mesh.calibration ? "calibrated lattice" : "infinite regular lattice");
+  text += line("E/Eb   = %.6f with the strain over the gauge length %.6g m between edge cells",
+               gauged / scene.ice.young, gauge);
 }
 
 /// Deflection of the load's point from the floating equilibrium at time 0, against the infinite
@@ -71,6 +98,50 @@ void add_bending(const Scene& scene, const Sample& first, const Sample& last, Js
   text += line("deflection = %.6g m under the load", deflection);
   text += line("w/w0       = %.6f (w0 = %.6g m, Wyman's infinite plate, l_c = %.5g m)",
                deflection / wyman, wyman, characteristic);
+}
+
+/// Number of contacts at the end, and the largest and the mean force on each obstacle.
+void add_contacts(const Scene& scene, const Sample& last, Json& json) {
+  const auto value = [&](const std::string& name) {
+    const auto found = std::find_if(last.forces.begin(), last.forces.end(),
+                                    [&](const auto& column) { return column.first == name; });
+    return found == last.forces.end() ? 0.0 : found->second;
+  };
+  json["contacts"] = static_cast<std::int64_t>(value("contacts"));
+  for (const char* what : {"peak_force", "mean_force"}) {
+    Json all = Json::object();
+    for (const Obstacle& o : scene.obstacles) {
+      const std::string column = o.name + "_" + what;
+      all[o.name] = {value(column + "_x"), value(column + "_y"), value(column + "_z")};
+    }
+    if (!all.empty()) json[what] = all;
+  }
+}
+
+/// What a large sheet of this lattice has, less the material's constants.
+void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::string& text) {
+  const double nu = scene.ice.poisson;
+  Json j;
+  j["kind"] = scene.calibrate == Calibrate::isotropic ? "isotropic" : "young";
+  j["irregularity"] = c.ratios.irregularity;
+  j["texture"] = std::abs(c.ratios.texture);
+  j["scale"] = c.scale;
+  j["shear_ratio"] = c.ratios.shear;
+  j["torsion_ratio"] = c.ratios.torsion;
+  j["young_error"] = c.moduli.young - 1;
+  j["poisson_error"] = c.moduli.poisson - nu;
+  j["bending_error"] = c.moduli.bending - 1;
+  j["bending_poisson_error"] = c.moduli.bending_poisson - nu;
+  j["young_scatter"] = c.scatter.young;
+  j["poisson_scatter"] = c.scatter.poisson;
+  j["bending_scatter"] = c.scatter.bending;
+  j["bending_poisson_scatter"] = c.scatter.bending_poisson;
+  json["calibration"] = j;
+  text += line(
+      "calibrated: large sheet has E/Eb = %.4f +- %.4f, nu = %.4f +- %.4f, D/D(Eb, nu) = %.4f +- "
+      "%.4f, nu_b = %.4f +- %.4f",
+      c.moduli.young, c.scatter.young, c.moduli.poisson, c.scatter.poisson, c.moduli.bending,
+      c.scatter.bending, c.moduli.bending_poisson, c.scatter.bending_poisson);
 }
 
 }  // namespace
@@ -110,7 +181,8 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   json["beams"] = model.part().global_beams;
   json["ranks"] = size();
   const bool stepped = scene.integrator == Integrator::leapfrog;
-  json["integrator"] = stepped ? "explicit" : "quasistatic";
+  constexpr std::array names{"quasistatic", "explicit", "implicit"};
+  json["integrator"] = names[static_cast<std::size_t>(scene.integrator)];
   json["time"] = last.time;
   json["steps"] = result.steps;
   json["dt"] = result.dt;
@@ -133,19 +205,26 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
     json["degenerate_facets"] = mesh.degenerate;
   }
   text +=
-      line("%d bodies, %lld beams, %lld load steps, %lld Newton iterations",
-           model.part().global_bodies, static_cast<long long>(model.part().global_beams),
-           static_cast<long long>(result.steps), static_cast<long long>(result.newton_iterations));
+      line("%d bodies, %lld beams, %lld %s, %lld Newton iterations", model.part().global_bodies,
+           static_cast<long long>(model.part().global_beams), static_cast<long long>(result.steps),
+           scene.integrator == Integrator::quasistatic ? "load steps" : "steps",
+           static_cast<long long>(result.newton_iterations));
   if (scene.has_sheet)
     text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations",
                  mesh.energy_ratio, mesh.largest_move, mesh.iterations);
-  if (result.done && scene.report.tension) add_tension(scene, last, json, text);
+  if (mesh.calibration) add_calibration(scene, *mesh.calibration, json, text);
+  if (result.done && scene.report.tension) add_tension(scene, model, mesh, last, json, text);
   if (result.done && scene.report.bending) add_bending(scene, first, last, json, text);
   Json energy = Json::object();
   for (const auto& [name, value] : last.forces) {
     if (name.rfind("energy_", 0) == 0) energy[name.substr(7)] = value;
   }
   json["energy"] = energy;
+  if (scene.forces.contact) add_contacts(scene, last, json);
+  for (const auto& [name, value] : last.forces) {
+    if (name.rfind("beams_", 0) == 0 || name == "fragments")
+      json[name] = static_cast<std::int64_t>(std::llround(value));
+  }
   json["wall_s"] = wall;
   json["mesh_s"] = wall_seconds(Event::mesh);
   json["lattice_s"] = wall_seconds(Event::lattice);

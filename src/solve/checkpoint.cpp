@@ -61,6 +61,7 @@ std::string fingerprint(const Lattice& lattice) {
   for (const auto* values : {&m.area, &m.inertia_y, &m.inertia_z, &m.torsion, &m.length, &m.young,
                              &m.shear_modulus, &m.shear_factor})
     hash.add(*values);
+  if (!m.shear_factor_y.empty()) hash.add(m.shear_factor_y);
   hash.add(lattice.shapes.vertices);
   std::array<char, 17> text{};
   std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash.value()));

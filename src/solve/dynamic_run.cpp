@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "solve/numbers.h"
 #include "solve/text.h"
 
 namespace floe {
@@ -95,8 +95,7 @@ void DynamicRun<Space>::remember(Memory& memory) {
   memory.enter("ledger");
   ledger_.remember(memory);
   memory.enter("bodies");
-  std::vector<std::int32_t> owned(static_cast<std::size_t>(model_.part().owned));
-  std::iota(owned.begin(), owned.end(), 0);
+  const std::vector<std::int32_t> owned = owned_bodies(model_.part());
   memory.rows("records", owned, std::span(state_.records).first(owned.size() * Space::record),
               Space::record);
   for (std::size_t k = 0; k < model_.forces().size(); ++k) {
@@ -239,7 +238,14 @@ bool DynamicRun<Space>::sample(bool last) {
   const std::array<double, 2> mine{kinetic, boundary};
   std::array<double, 2> all{};
   MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model_.part().comm);
-  const auto reported = model_.report(state_);
+  auto reported = model_.report(state_);
+  const Columns own = own_columns();
+  for (const auto& [name, value] : own.values()) {
+    const double share = value;
+    double sum = 0;
+    MPI_Allreduce(&share, &sum, 1, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+    reported.emplace_back(name, sum);
+  }
   ledger_.take(reported, all[0], all[1]);
   if (!(ledger_.relative_error() <= options_.energy_limit)) {
     why_ = "the energy balance is off by " + text(ledger_.relative_error()) +

@@ -77,6 +77,8 @@ class DynamicRun {
   };
   /// At the state, whose wrenches are known.
   virtual Energies energies() const = 0;
+  /// What else it has to report of this rank's bodies at the state.
+  virtual Columns own_columns() const { return {}; }
   /// What the integrator itself takes along over a restart, beside records, time and dt.
   virtual void remember_own(Memory& memory) = 0;
   /// What it does between the run's beginning and the first step; false: the run ends here.

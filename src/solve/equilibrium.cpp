@@ -6,36 +6,12 @@
 #include <limits>
 
 #include "floe/base/log.h"
+#include "solve/newton.h"
 
 namespace floe {
 namespace {
 
 constexpr std::size_t reference_size = 7;  // q_ref (w x y z) and the rotation sum there (x y z)
-
-/// The storage and form of the tangent that the chosen preconditioner wants: Cholesky takes blocked
-/// symmetric storage, LU the exact unsymmetric K, everything else (GAMG, hypre, ...) plain rows.
-/// -mat_type wins.
-TangentOptions tangent_options() {
-  char pc[64] = "cholesky";
-  PetscBool given = PETSC_FALSE;
-  check(PetscOptionsGetString(nullptr, nullptr, "-pc_type", pc, sizeof pc, &given));
-  TangentOptions options;
-  if (std::strcmp(pc, PCCHOLESKY) != 0) options.type = MATAIJ;
-  options.symmetric = std::strcmp(pc, PCLU) != 0;
-  return options;
-}
-
-/// A typical diagonal of the free unknowns for the prescribed ones, so that the matrix stays well
-/// scaled [N/m].
-double typical_stiffness(const Model<Spatial>& model) {
-  double mine = 0;
-  for (std::int32_t b = 0; b < model.part().owned; ++b) {
-    for (const auto& force : model.forces()) mine = std::max(mine, force->stiffness_bound(b));
-  }
-  double all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, model.part().comm);
-  return all > 0 ? all : 1.0;
-}
 
 /// Diagonal of the box around all bodies, and at least a body's own size [m].
 double extent(const Part& part) {
@@ -73,7 +49,7 @@ Equilibrium::Equilibrium(Model<Spatial>& model)
   extent_ = extent(part_);
   check(MatCreateVecs(tangent_.matrix(), x_.put(), f_.put()));
   check(VecDuplicate(x_, step_.put()));
-  attach_rigid_modes();
+  attach_rigid_modes(model, model.held(), tangent_.matrix());
   check(SNESCreate(part_.comm, snes_.put()));
   check(SNESSetFunction(snes_, f_, residual, this));
   check(SNESSetJacobian(snes_, tangent_.matrix(), tangent_.matrix(), jacobian, this));
@@ -83,19 +59,12 @@ Equilibrium::Equilibrium(Model<Spatial>& model)
 
 /// Defaults that PETSc's own options override.
 void Equilibrium::set_defaults() {
-  check(SNESSetType(snes_, SNESNEWTONLS));
-  SNESLineSearch search = nullptr;
-  check(SNESGetLineSearch(snes_, &search));
-  check(SNESLineSearchSetType(
-      search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
+  set_newton_defaults(snes_);
   check(SNESSetTolerances(snes_, PETSC_DEFAULT, 1e-10, 0.0, 30, PETSC_DEFAULT));
   KSP ksp = nullptr;
   PC pc = nullptr;
   check(SNESGetKSP(snes_, &ksp));
-  check(KSPSetType(ksp, KSPPREONLY));
   check(KSPGetPC(ksp, &pc));
-  check(PCSetType(pc, PCCHOLESKY));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   check(KSPSetFromOptions(ksp));
   check(SNESSetFromOptions(snes_));
   PetscBool lag_given = PETSC_FALSE;
@@ -115,46 +84,6 @@ void Equilibrium::set_defaults() {
   check(PCFactorSetUpMatSolverType(pc));
   check(PCFactorGetMatrix(pc, &factor));
   check(MatMumpsSetIcntl(factor, 13, 1));
-}
-
-/// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic
-/// body.
-void Equilibrium::attach_rigid_modes() {
-  std::array<Handle<Vec>, 6> modes;
-  std::vector<Vec> list;
-  for (int m = 0; m < 6; ++m) {
-    auto& mode = modes[static_cast<std::size_t>(m)];
-    check(VecDuplicate(x_, mode.put()));
-    PetscScalar* values = nullptr;
-    check(VecGetArrayWrite(mode, &values));
-    for (std::int32_t body = 0; body < part_.owned; ++body) {
-      const auto b = static_cast<std::size_t>(body);
-      const Point3& p = part_.bodies.position[b];
-      const Vec3<double> axis{m % 3 == 0 ? 1.0 : 0.0, m % 3 == 1 ? 1.0 : 0.0,
-                              m % 3 == 2 ? 1.0 : 0.0};
-      const Vec3<double> turn = m < 3 ? Vec3<double>{0, 0, 0} : axis;
-      const Vec3<double> u = m < 3 ? axis : cross(axis, Vec3<double>{p[0], p[1], p[2]});
-      const double l = model_.length_scale();
-      const std::array<double, 6> entries{u.x, u.y, u.z, l * turn.x, l * turn.y, l * turn.z};
-      for (std::size_t k = 0; k < 6; ++k)
-        values[b * n + k] = (model_.held()[b] >> k & 1U) != 0 ? 0.0 : entries[k];
-    }
-    check(VecRestoreArrayWrite(mode, &values));
-    for (const Vec earlier : list) {
-      PetscScalar along = 0;
-      check(VecDot(mode, earlier, &along));
-      check(VecAXPY(mode, -along, earlier));
-    }
-    PetscReal norm = 0;
-    check(VecNorm(mode, NORM_2, &norm));
-    if (norm < 1e-10) continue;  // everything of it is held
-    check(VecScale(mode, 1.0 / norm));
-    list.push_back(mode);
-  }
-  Handle<MatNullSpace> space;
-  check(MatNullSpaceCreate(part_.comm, PETSC_FALSE, static_cast<PetscInt>(list.size()), list.data(),
-                           space.put()));
-  check(MatSetNearNullSpace(tangent_.matrix(), space));
 }
 
 void Equilibrium::take(Vec x) {
@@ -200,22 +129,8 @@ void Equilibrium::rebase(Vec x) {
 void Equilibrium::fill_residual(Vec f) {
   const Timed timed(Event::forces);
   const double scale = 1.0 / model_.length_scale();
-  std::fill(wrenches_.values.begin(), wrenches_.values.end(), 0.0);
-  external2_ = 0;
+  external2_ = model_.evaluate_apart(state_, wrenches_, share_);
   const auto owned = static_cast<std::size_t>(part_.owned) * n;
-  for (const auto& force : model_.forces()) {
-    if (force.get() == model_.beams()) {
-      force->add(state_, wrenches_);
-      continue;
-    }
-    std::fill(share_.values.begin(), share_.values.end(), 0.0);
-    force->add(state_, share_);
-    for (std::size_t k = 0; k < owned; ++k) {
-      const double value = share_.at(k) * (k % n < 3 ? 1.0 : scale);
-      external2_ += value * value;
-      wrenches_.at(k) += share_.at(k);
-    }
-  }
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(f, &values));
   for (std::size_t k = 0; k < owned; ++k) {
@@ -394,13 +309,46 @@ void Equilibrium::restore(const Saved& saved) {
   fill_residual(f_);
 }
 
-bool Equilibrium::solve(double time) {
+bool Equilibrium::solve(double time, double overload_limit) {
   const Saved before = save();
   why_.clear();
-  if (!predict(time)) {
+  collapsed_ = false;
+  if (!balance(time) || (model_.fracture() != nullptr && !let_break(time, overload_limit))) {
     restore(before);
     return false;
   }
+  fill_residual(f_);
+  for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
+  return true;
+}
+
+/// Beams break one at a time, the most overloaded first, and others soften, each time to a new
+/// balance: states that are in balance but for the beams that break, as slow loading passes
+/// through them.
+bool Equilibrium::let_break(double time, double overload_limit) {
+  Fracture& fracture = *model_.fracture();
+  if (const double overload = fracture.overload(state_); overload > overload_limit) {
+    why_ = "a beam would be loaded to " + std::to_string(overload) + " times its strength";
+    return false;
+  }
+  constexpr int most_rounds = 1000;  // of softening without a break
+  int rounds = 0;
+  for (Advance done = fracture.advance(state_); done != Advance::none;
+       done = fracture.advance(state_)) {
+    rounds = done == Advance::broke ? 0 : rounds + 1;
+    if (rounds <= most_rounds && balance(time)) continue;
+    if (why_.empty()) why_ = "damage does not come to rest";
+    collapsed_ = true;
+    fracture.retreat();
+    return false;
+  }
+  return true;
+}
+
+/// Newton's method from the present state to equilibrium at `time`; leaves the state anywhere if it
+/// fails.
+bool Equilibrium::balance(double time) {
+  if (!predict(time)) return false;
   const Timed timed(Event::solve);
   check(SNESSolve(snes_, nullptr, x_));
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
@@ -413,17 +361,13 @@ bool Equilibrium::solve(double time) {
                ? "nothing holds the bodies within 100 times the lattice's extent (does it sink?)"
                : std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +
                      std::to_string(taken) + " iterations)";
-    restore(before);
     return false;
   }
   take(x_);
   if (const std::int64_t folded = count_folded(); folded > 0) {
     why_ = std::to_string(folded) + " beams folded over";
-    restore(before);
     return false;
   }
-  fill_residual(f_);
-  for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
   return true;
 }
 

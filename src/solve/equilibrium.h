@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "floe/base/petsc.h"
@@ -26,12 +27,16 @@ class Equilibrium {
 
   /// Solves for the state at `time`, starting from the present one. Returns false, with the state
   /// as before, if Newton fails; why() then says so.
-  bool solve(double time);
+  /// Beams that may break do so until none is overloaded. \param overload_limit  on the largest s
+  /// of undamaged beams before the first of them breaks: above it the step is refused
+  bool solve(double time, double overload_limit = std::numeric_limits<double>::infinity());
 
   const State<Spatial>& state() const { return state_; }
   const Wrenches<Spatial>& wrenches() const { return wrenches_; }
   std::int64_t newton_iterations() const { return iterations_; }
   const std::string& why() const { return why_; }
+  /// Whether the last failure came after beams had broken: the way on is dynamic.
+  bool collapsed() const { return collapsed_; }
   /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load
   /// pushes a motion that nothing holds.
   double pin_reaction() const;
@@ -62,12 +67,13 @@ class Equilibrium {
                                   SNESConvergedReason*, void* self) noexcept;
 
   void set_defaults();
-  void attach_rigid_modes();
   void take(Vec x);    ///< state of the unknowns, ghosts included
   void rebase(Vec x);  ///< moves the reference of the rotations to the present state
   void fill_residual(Vec f);
   void assemble(std::span<const double> increments = {});
   bool predict(double time);
+  bool balance(double time);
+  bool let_break(double time, double overload_limit);
   bool keeps_factorisation() const;
   Scale scale_of_forces() const;
   bool is_lost() const;
@@ -96,6 +102,7 @@ class Equilibrium {
   Handle<SNES> snes_;
   std::int64_t iterations_ = 0;
   std::string why_;
+  bool collapsed_ = false;
 };
 
 }  // namespace floe

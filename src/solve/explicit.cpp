@@ -1,3 +1,5 @@
+#include "floe/forces/contact.h"
+#include "floe/forces/fracture.h"
 #include "solve/explicit_run.h"
 #include "solve/leapfrog.h"
 #include "solve/motion.h"
@@ -14,6 +16,9 @@ class LeapfrogRun final : public ExplicitRun {
               const Observer<Spatial>& observer)
       : ExplicitRun(ts_leapfrog, model, options, observer), motion_(model) {
     result().stepper = ts_leapfrog;
+    for (const auto& force : model.forces()) {
+      if (auto* contact = dynamic_cast<Contact*>(force.get())) contact_ = contact;
+    }
     motion_.start(state(), model.part().bodies.velocity, model.part().bodies.angular_velocity);
     evaluate();
   }
@@ -31,10 +36,19 @@ class LeapfrogRun final : public ExplicitRun {
     if (!keep_step_stable(ts)) return false;
     const double speed2 = motion_.step(state(), wrenches(), dt());
     for (const auto& force : model().forces()) force->commit(state(), dt());
+    release_broken();
     return moved(next_time(), speed2) && look_around();
   }
 
  private:
+  /// Bodies whose beam broke in this step may touch from now on.
+  void release_broken() {
+    if (contact_ == nullptr || model().fracture() == nullptr) return;
+    const auto pairs = model().fracture()->released();
+    int any = pairs.empty() ? 0 : 1;
+    MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, model().part().comm);
+    if (any != 0) contact_->release(pairs);
+  }
   StableStep find_stable_step() override {
     const StableStep stable = stable_step(model(), state());
     evaluate();  // forces keep by-products of their last evaluation: the power they take
@@ -56,6 +70,7 @@ class LeapfrogRun final : public ExplicitRun {
   }
 
   Motion motion_;
+  Contact* contact_ = nullptr;  ///< if the scene has it
 };
 
 RunResult run_leapfrog(Model<Spatial>& model, const ExplicitOptions& options,

@@ -18,7 +18,8 @@ void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, dou
   double size = std::abs(kinetic) + std::abs(boundary);
   for (const auto& [name, value] : forces) {
     if (name.rfind("energy_", 0) == 0) floor_ = std::max(floor_, rounding * std::abs(value));
-    if (name == "energy_damping" || name == "energy_drag") {
+    if (name == "energy_damping" || name == "energy_drag" || name == "energy_fracture" ||
+        name == "energy_numerical") {
       lost += value;
       size += std::abs(value);  // a current gives energy
     } else if (name == "energy_external") {

@@ -86,6 +86,28 @@ void Model<Space>::evaluate(const State<Space>& state, Wrenches<Space>& wrenches
 }
 
 template <class Space>
+double Model<Space>::evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
+                                    Wrenches<Space>& share) const {
+  std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
+  double squares = 0;
+  const double scale = 1.0 / length_scale_;
+  for (const auto& force : forces_) {
+    if (force.get() == beams_) {
+      force->add(state, wrenches);
+      continue;
+    }
+    std::fill(share.values.begin(), share.values.end(), 0.0);
+    force->add(state, share);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+      const double value = share.at(k) * (k % n < Space::translations ? 1.0 : scale);
+      squares += value * value;
+      wrenches.at(k) += share.at(k);
+    }
+  }
+  return squares;
+}
+
+template <class Space>
 void Model<Space>::pin(const std::vector<Pin>& pins) {
   held_ = prescribed_;
   for (const Pin& p : pins) {

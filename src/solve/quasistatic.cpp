@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <limits>
+#include <sstream>
 
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
@@ -9,6 +11,8 @@ namespace floe {
 namespace {
 
 constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, before a run is given up
+/// Of a beam's strength: a step that would load one beyond is taken in smaller ones first.
+constexpr double overload_tolerance = 0.005;
 constexpr double pin_tolerance =
     1e-6;  // of the forces in balance: more means a free motion is loaded
 
@@ -50,9 +54,18 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
     // Equal steps that end at the end: a remainder within rounding of a step is a step.
     const double step = dt >= left * (1 - rounding) ? left : dt;
     const double next = step == left ? time.end : now + step;
-    if (!equilibrium.solve(next)) {
+    const bool divisible = 0.5 * step >= smallest_fraction * given;
+    const double overload_limit =
+        divisible ? 1 + overload_tolerance : std::numeric_limits<double>::infinity();
+    if (!equilibrium.solve(next, overload_limit)) {
       dt = 0.5 * step;
-      if (dt < smallest_fraction * given) {
+      if (equilibrium.collapsed()) {
+        result.message = "dynamic failure at load factor " + text(next / time.end) +
+                         ": continue with integrator: explicit (no equilibrium once beams break: " +
+                         equilibrium.why() + ")";
+        return result;
+      }
+      if (!divisible) {
         result.message = "no equilibrium beyond time " + text(now) + " (load step cut to " +
                          text(step) + "): " + equilibrium.why();
         return result;

@@ -12,31 +12,12 @@
 #include "solve/body_equations.h"
 #include "solve/dynamic_run.h"
 #include "solve/explicit_run.h"
+#include "solve/numbers.h"
 #include "solve/rk_stability.h"
 #include "solve/text.h"
 
 namespace floe {
 namespace {
-
-/// The numbers of a vector that this rank holds.
-class Numbers {
- public:
-  explicit Numbers(Vec vec) : vec_(vec) {
-    PetscInt size = 0;
-    check(VecGetLocalSize(vec, &size));
-    check(VecGetArray(vec, &data_));
-    span_ = {data_, static_cast<std::size_t>(size)};
-  }
-  ~Numbers() { (void)VecRestoreArray(vec_, &data_); }
-  Numbers(const Numbers&) = delete;
-  Numbers& operator=(const Numbers&) = delete;
-  std::span<double> operator*() const { return span_; }
-
- private:
-  Vec vec_;
-  double* data_ = nullptr;
-  std::span<double> span_;
-};
 
 class RkRun final : public ExplicitRun {
  public:

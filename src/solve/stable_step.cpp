@@ -20,6 +20,7 @@ using Vector = Eigen::VectorXd;
 class Operators {
  public:
   static constexpr int n = Spatial::unknowns;
+  using Rates = Force<Spatial>::Rates;
 
   Operators(const Model<Spatial>& model, const State<Spatial>& state)
       : model_(model),
@@ -41,6 +42,10 @@ class Operators {
     speed_ = std::sqrt(fastest2);
     if (speed_ < slow) moving_ = base_;
     moved_ = base_;
+    for (const auto& force : model.forces()) {
+      bound_.stiffness += force->own_rates().stiffness;
+      bound_.damping += force->own_rates().damping;
+    }
     evaluate(base_, at_rest_);
   }
 
@@ -87,6 +92,16 @@ class Operators {
     displace(z, -step, 0);
     evaluate(moved_, backward_);
     stiffness = weighted(forward_, backward_, step > 0 ? -0.5 / step : 0.0);
+    difference_damping(z, step, damping);
+    stiffness += bound_.stiffness * z;
+    damping += bound_.damping * z;
+  }
+  /// Bounds of the forces whose differences are not taken.
+  const Rates& bound() const { return bound_; }
+
+ private:
+  /// \param step  of displacements that are 1e-6 of the length scale and of a radian
+  void difference_damping(const Vector& z, double step, Vector& damping) {
     if (speed_ < slow || step == 0) {
       displace(z, 0, 1);
       evaluate(moved_, forward_);
@@ -103,9 +118,11 @@ class Operators {
     damping = weighted(forward_, backward_, -0.5 / change);
   }
 
- private:
   void evaluate(const State<Spatial>& state, Wrenches<Spatial>& wrenches) {
-    model_.evaluate(state, wrenches);
+    std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
+    for (const auto& force : model_.forces()) {
+      if (force->own_rates().stiffness == 0) force->add(state, wrenches);
+    }
     ++evaluations_;
   }
   Triad<double> axes(std::size_t b) const {
@@ -162,6 +179,7 @@ class Operators {
   State<Spatial> base_, moving_, moved_;
   Wrenches<Spatial> at_rest_, forward_, backward_;
   double speed_ = 0;
+  Rates bound_;
   int evaluations_ = 0;
 };
 
@@ -293,8 +311,9 @@ std::optional<Trial> top_mode(Operators& a, Vector start, auto& search) {
   int quiet = 0;
   for (int it = 0; it < most && quiet < 3; ++it) {
     if (it == 0 && !search.begin(a.dot(x.z, x.k), a.dot(x.z, x.c))) return {};
-    std::vector<Trial> space;
-    space.push_back(x);
+    std::vector<Trial> space;  // trials are moved about, never copied: each is 144 bytes per body
+    space.reserve(3);
+    space.push_back(std::move(x));
     const auto orthonormal = [&](Trial t) {
       for (int pass = 0; pass < 2; ++pass) {
         for (const Trial& s : space) t.add(-a.dot(s.z, t.z), s);
@@ -305,13 +324,16 @@ std::optional<Trial> top_mode(Operators& a, Vector start, auto& search) {
       space.push_back(std::move(t));
     };
     const Weights weights = search.weights();
-    Vector residual = weights.stiffness * x.k + weights.damping * x.c;
-    residual -= a.dot(x.z, residual) * x.z;
+    Vector residual = weights.stiffness * space[0].k + weights.damping * space[0].c;
+    residual -= a.dot(space[0].z, residual) * space[0].z;
     const double norm = std::sqrt(a.dot(residual, residual));
-    if (norm < 1e-12) break;
+    if (norm < 1e-12) {
+      x = std::move(space[0]);
+      break;
+    }
     residual /= norm;
     orthonormal(make(std::move(residual)));
-    if (direction.z.size() > 0) orthonormal(direction);
+    if (direction.z.size() > 0) orthonormal(std::move(direction));
 
     const auto m = static_cast<Eigen::Index>(space.size());
     Eigen::MatrixXd k(m, m), c(m, m);
@@ -326,10 +348,10 @@ std::optional<Trial> top_mode(Operators& a, Vector start, auto& search) {
     const double before = search.value();
     search.improve(k, c);
     const Vector y = largest(k, c, search.weights()).second;
-    direction = space[1];
+    direction = std::move(space[1]);
     direction.scale(y[1]);
     if (m > 2) direction.add(y[2], space[2]);
-    x = space[0];
+    x = std::move(space[0]);
     x.scale(y[0]);
     x.add(1, direction);
     const double size = std::sqrt(a.dot(x.z, x.z));
@@ -350,11 +372,14 @@ StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state)
     result.dt = std::numeric_limits<double>::infinity();
     return result;
   }
-  result.dt = search.value();
+  const double dt = search.value();
+  result.dt = dt;
   result.omega = std::sqrt(std::max(0.0, a.dot(mode->z, mode->k)));
   result.decay = a.dot(mode->z, mode->c);
   result.evaluations = a.evaluations();
   result.limit = describe(a, model, mode->z);
+  if (dt * dt * a.bound().stiffness + 2 * dt * a.bound().damping > 2)  // more than half of 4
+    result.limit = "contacts that may come";
   return result;
 }
 

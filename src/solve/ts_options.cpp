@@ -10,6 +10,7 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "solve/leapfrog.h"
+#include "solve/liealpha.h"
 
 namespace floe {
 namespace {
@@ -66,16 +67,23 @@ std::string chosen_type() {
   return type;
 }
 
-void refuse(const char* option, const std::string& why) {
+void refuse(const char* option, const std::string& why, const char* integrator = "explicit") {
   if (value_of(option))
-    throw InputError(std::string(option + 1) + ": integrator: explicit does not take it: " + why);
+    throw InputError(std::string(option + 1) + ": integrator: " + integrator +
+                     " does not take it: " + why);
+}
+
+/// Options that would upset samples and checkpoints.
+void refuse_times(const char* integrator) {
+  for (const char* option : {"-ts_init_time", "-ts_time_span"})
+    refuse(option, "runs start at time 0 or from a checkpoint, samples are output: history",
+           integrator);
+  refuse("-ts_exact_final_time", "runs end at their end", integrator);
 }
 
 /// Options that TS would read without effect, or that would upset samples and checkpoints.
 void refuse_without_effect(const std::string& type) {
-  for (const char* option : {"-ts_init_time", "-ts_time_span"})
-    refuse(option, "runs start at time 0 or from a checkpoint, samples are output: history");
-  refuse("-ts_exact_final_time", "equal steps end at the end, and the last of others is cut");
+  refuse_times("explicit");
   for (const char* option : {"-ts_rk_multirate", "-ts_rk_dtratio", "-ts_use_splitrhsfunction"})
     refuse(option, "all bodies take the same step");
   const std::string adaptivity = value_of("-ts_adapt_type").value_or(TSADAPTNONE);
@@ -97,6 +105,20 @@ std::string explicit_type() {
   const std::string type = chosen_type();
   refuse_without_effect(type);
   return type;
+}
+
+void check_implicit_options() {
+  const std::string type = value_of("-ts_type").value_or(ts_liealpha);
+  if (type == TSALPHA2)
+    throw InputError(
+        "ts_type: 'alpha2' cannot step this scene: it forgets its history when a step's rotations "
+        "are taken over (integrator: implicit steps with liealpha, the same method at "
+        "-ts_liealpha_radius 1)");
+  if (type != ts_liealpha)
+    throw InputError("ts_type: '" + type +
+                     "' cannot step this scene: it does not know rotations "
+                     "(integrator: implicit steps with liealpha)");
+  refuse_times("implicit");
 }
 
 }  // namespace floe

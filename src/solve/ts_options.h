@@ -1,5 +1,5 @@
 /// \file
-/// What of PETSc's options explicit dynamics takes.
+/// What of PETSc's options dynamics takes.
 #pragma once
 
 #include <string>
@@ -10,5 +10,9 @@ namespace floe {
 /// (-snes_*, -ksp_*, -pc_*, -mat_*), types that cannot step the bodies of a scene, and options of
 /// TS that would have no effect, naming the option and the reason
 std::string explicit_type();
+
+/// \throws InputError for an -ts_type other than `liealpha` and for options of TS that would upset
+/// samples and checkpoints, naming the option and the reason
+void check_implicit_options();
 
 }  // namespace floe

@@ -28,6 +28,7 @@ ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_bi
 SHEET = "sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}\n"
 HELD = "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
 GOOD = "forces: [beam]\n" + SHEET + HELD
+BREAKABLE = "forces: [beam, fracture]\n" + SHEET + HELD
 FLOATING = "forces: [beam, gravity, buoyancy]\n" + SHEET
 FILE = "forces: [beam]\nlattice_file: bad.h5\nboundary: {names: [a], a: {set: root, fix: x y z rx ry rz}}\n"
 
@@ -41,6 +42,14 @@ def loaded(rest):
 
 
 PULLED = loaded("set: right, force: [1e5, 0, 0]")  # what a solver has work with
+
+TOUCHING = "integrator: explicit\nforces: [beam, contact]\n" + SHEET
+FLOOR = "obstacle: {names: [o], o: {shape: halfspace, normal: [0, 0, 1]}}\n"
+
+
+def obstacle(rest):
+    return TOUCHING + "obstacle: {names: [o], o: {" + rest + "}}\n"
+
 
 COMMAND_LINE = {
     "stray word": (GOOD, ["stray"], "stray"),
@@ -87,6 +96,10 @@ SCENES = {
     "negative seed": (GOOD, "sheet: seed: -1", ["-sheet_seed", "-1"]),
     "Poisson's ratio": (GOOD + "ice: {poisson: 0.5}\n", "ice: poisson"),
     "a sheet that sinks": (FLOATING + "ice: {density: 1100}\n", "ice: density"),
+    "fracture without beams": ("forces: [fracture, gravity, buoyancy]\n" + SHEET, "needs beam"),
+    "fracture that is not named": (GOOD + "fracture: {energy: 15}\n", "'fracture' is not in 'forces'"),
+    "strength that does not scatter": (BREAKABLE + "fracture: {seed: 3}\n", "weibull_modulus"),
+    "no strength": (BREAKABLE + "fracture: {tensile_strength: 0}\n", "fracture: tensile_strength: 0"),
     "buoyancy without gravity": ("forces: [beam, buoyancy]\n" + SHEET, "gravity"),
     "section of a force that is not named": (GOOD + "water: {density: 1000}\n", "water: density"),
     "gravity that does not act": (GOOD + "gravity: 9.81\n", "gravity"),
@@ -97,6 +110,12 @@ SCENES = {
     "unknown set of a load": (loaded("set: rihgt, force: [1, 0, 0]"), "rihgt"),
     "four numbers for a vector": (loaded("set: right, force: [1, 2, 3, 4]"), "load: p: force: 1,2,3,4"),
     "two numbers for a vector": (loaded("set: right, force: [1, 2]"), "load: p: force: 1,2"),
+    "Poisson's ratio that no lattice has":
+        (GOOD + "ice: {poisson: 0.4}\nbeam: {calibrate: isotropic}\n", "ice: poisson: 0.4 must be <= 1/3"),
+    "shear of a calibrated sheet": (GOOD + "beam: {calibrate: isotropic, shear: exact}\n", "beam: shear"),
+    "torsion of a calibrated sheet": (GOOD + "beam: {calibrate: isotropic, torsion: polar}\n", "beam: torsion"),
+    "unknown calibration": (GOOD + "beam: {calibrate: bending}\n", "none | young | isotropic"),
+    "calibration of a file": (FILE + "beam: {calibrate: young}\n", "beam: calibrate"),
     "load on a set and at a point": (loaded("set: right, point: [0, 0], force: [1, 0, 0]"), "not both"),
     "load nowhere": (loaded("force: [1, 0, 0]"), "set or point"),
     "load beside the sheet": (loaded("point: [6, 0], force: [0, 0, 1]"), "load: p: point"),
@@ -121,6 +140,20 @@ SCENES = {
     "region without bodies": (GOOD + "region: {names: [r], r: {box: 90 91 0 1 0 1}}\n", "region: r"),
     "region upside down": (GOOD + "region: {names: [r], r: {box: 1 0 0 1 0 1}}\n", "region: r: box"),
     "cut beside the sheet": (GOOD + "cut: {names: [c], c: {from: [9, -9], to: [9, 9]}}\n", "cut: c"),
+    "contact in statics": (TOUCHING, "forces: contact", ["-integrator", "quasistatic"]),
+    "contact that does not act": (GOOD + "contact: {friction: 0.1}\n", "contact: friction"),
+    "obstacle that does not act": (GOOD + FLOOR, "obstacle"),
+    "restitution above 1": (TOUCHING + "contact: {restitution: 1.1}\n", "contact: restitution"),
+    "negative friction": (TOUCHING + "contact: {friction: -0.1}\n", "contact: friction"),
+    "obstacle of no known shape": (obstacle("shape: sphere"), "sphere"),
+    "obstacle without a shape": (obstacle("friction: 0.1"), "obstacle: o: shape"),
+    "half-space without a direction": (obstacle("shape: halfspace, normal: [0, 0, 0]"), "obstacle: o: normal"),
+    "flat box": (obstacle("shape: box, size: [1, 0, 1]"), "obstacle: o: size"),
+    "cylinder of two facets": (obstacle("shape: cylinder, facets: 2"), "obstacle: o: facets"),
+    "radius of a box": (obstacle("shape: box, radius: 1"), "obstacle: o: radius"),
+    "obstacle from a file that is not there": (obstacle("shape: file, file: none.h5"), "none.h5"),
+    "lattice file without a stiffness of contacts":
+        ("integrator: explicit\nforces: [contact]\nlattice_file: bad.h5\n", "contact: young"),
     "load step beyond the end": (GOOD + "time: {end: 1, dt: 2}\n", "time: dt"),
     "output below a regular file": (GOOD + "output: {dir: scene.yaml/out}\n", "output: dir"),
     "output in place of a regular file": (GOOD + "output: {dir: scene.yaml}\n", "output: dir"),
@@ -130,7 +163,8 @@ SCENES = {
 def spoil(name, value):
     """Puts another value in place of a dataset, or removes it if the value is None."""
     def change(file):
-        del file[name]
+        if name in file:
+            del file[name]
         if value is not None:
             file[name] = value
     return change
@@ -151,6 +185,7 @@ LATTICE_FILES = {
         (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 3]], np.int32)), "/beams/bodies"),
     "beams with three columns": (spoil("beams/bodies", np.ones((4, 3), np.int32)), "/beams/bodies"),
     "wrong length": (spoil("beams/length", np.full(4, 7.0)), "/beams/length"),
+    "factors of shear in the plane, one too few": (spoil("beams/shear_factor_y", np.ones(3)), "/beams/shear_factor_y"),
     "set of a body that is not there": (spoil("sets/root", np.array([5], np.int32)), "/sets/root"),
 }
 
@@ -205,6 +240,12 @@ class BadInput(unittest.TestCase):
                 with h5py.File(folder / "bad.h5", "r+") as file:
                     change(file)
             self.on_ranks(name, ["scene.yaml"], part, prepare)
+        def without_sides(folder):
+            (folder / "scene.yaml").write_text(FILE.replace("[beam]", "[beam, fracture]"))
+            frame.write(folder / "bad.h5")
+            with h5py.File(folder / "bad.h5", "r+") as file:
+                del file["beams/width"], file["beams/height"]
+        self.on_ranks("fracture of sections without sides", ["scene.yaml"], "/beams/width", without_sides)
         self.on_ranks("not HDF5", ["scene.yaml"], "bad.h5",
                       lambda folder: [(folder / "scene.yaml").write_text(FILE),
                                       (folder / "bad.h5").write_text("no")])

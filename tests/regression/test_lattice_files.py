@@ -111,6 +111,24 @@ class Written(unittest.TestCase):
             run = subprocess.run([FLOE, scene, "-check"], capture_output=True, text=True, cwd=self.folder.name)
             self.assertEqual(run.returncode, 0, f"{kind}: {run.stdout}{run.stderr}")
 
+    def test_a_calibrated_sheet_reads_back_with_its_stiffness(self):
+        if not os.access(FLOE, os.X_OK):
+            self.skipTest("floe is not built")
+        pulled = ("boundary: {names: [left, right], left: {set: left, fix: x},"
+                  " right: {set: right, fix: x, displacement: [0.01, 0, 0], ramp: 1}}\n")
+        scenes = {"made": "sheet: {length: 10, element_size: 1}\nbeam: {calibrate: isotropic}\n",
+                  "read": "lattice_file: out/made/lattice.h5\n"}
+        for name, lattice in scenes.items():
+            Path(self.folder.name, name + ".yaml").write_text("forces: [beam]\n" + lattice + pulled)
+            subprocess.run([FLOE, name + ".yaml"], capture_output=True, check=True, cwd=self.folder.name)
+        made, read = (Path(self.folder.name, "out", name, "history.csv").read_text() for name in scenes)
+        self.assertEqual(made, read)
+        with h5py.File(Path(self.folder.name, "out/made/lattice.h5")) as file:
+            self.assertEqual(file["beams/shear_factor_y"].shape, file["beams/length"].shape)
+            width, height = file["beams/width"][:], file["beams/height"][:]
+            np.testing.assert_array_equal(file["beams/area"][:], width * height)
+            np.testing.assert_allclose(file["beams/inertia_y"][:], width * height**3 / 12, rtol=1e-15)
+
     def test_bad_arguments_are_one_clear_line(self):
         file = os.path.join(self.folder.name, "x.h5")
         run = subprocess.run([str(REPOSITORY / "tools/make_lattice"), "triangles", "--rows", "4", file],

@@ -28,7 +28,8 @@ def leaves(data):
     found, at = {}, data.NewIterator()
     while not at.IsDoneWithTraversal():
         block = at.GetCurrentDataObject()
-        found["bodies" if block.GetCellData().HasArray("body") else "beams"] = block
+        cells = block.GetCellData()
+        found["bodies" if cells.HasArray("body") else "cracks" if cells.HasArray("beam") else "beams"] = block
         at.GoToNextItem()
     return found
 
@@ -73,6 +74,32 @@ class ParaView(unittest.TestCase):
             self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
             seen = self.look(Path(folder), Path(folder, "out/fields.xmf"))
             self.compare(seen, Path(folder, "out"))
+
+    def test_cracks_appear(self):
+        """The grid of cracks is there from the first break on."""
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/notch.yaml"), "-sheet_element_size", "2",
+                                  "-output_fields", "0.05", "-output_dir", f"{folder}/out"],
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            seen = self.look(Path(folder), Path(folder, "out/fields.xmf"))
+            numbers = []
+            with h5py.File(Path(folder, "out/fields.h5")) as fields:
+                samples = sorted((g for g in fields.values() if "time" in g.attrs), key=lambda g: g.attrs["time"])
+                self.assertEqual(len(seen), len(samples))
+                for sample, group in zip(seen, samples):
+                    broken = np.flatnonzero(group["damage"][:] == 1)
+                    cracks = sample["blocks"].get("cracks")
+                    numbers.append(cracks["cells"] if cracks else 0)
+                    self.assertEqual(numbers[-1], 2 * len(broken))
+                    self.assertEqual(sample["blocks"]["beams"]["ranges"]["damage"][0][1], float(len(broken) > 0))
+                    if cracks:
+                        self.assertEqual(cracks["ranges"]["beam"], [[broken.min(), broken.max()]])
+                        points = group["crack_points"][:]
+                        bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
+                        np.testing.assert_allclose(cracks["bounds"], bounds, atol=1e-6)
+            self.assertEqual(numbers[0], 0)
+            self.assertGreater(numbers[-1], 10)
 
     def look(self, folder, file):
         """What ParaView sees in a file."""

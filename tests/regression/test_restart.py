@@ -253,6 +253,35 @@ class Refused(RestartTest):
         self.assertIn("integrator' is quasistatic", said)
 
 
+class Fracture(RestartTest):
+    def test_a_sheet_that_breaks(self):
+        """Damage, breaks and the ledger go on bit for bit; the log of breaks is that of the straight run."""
+        (self.folder / "scene.yaml").write_text(SCENE.replace("forces: [beam,", "forces: [beam, fracture,")
+                                                .replace("[0.01, 0, 0]", "[0.02, 0, 0]")
+                                                + "fracture: {energy: 100, weibull_modulus: 8, seed: 3}\n"
+                                                + "limit: {energy_error: 1}\n")
+        for ranks in (1, 2):
+            a = self.run_whole("-time_end", "2", dir=f"a{ranks}", ranks=ranks)
+            summary = json.loads((a / "summary.json").read_text())
+            self.assertGreater(summary["beams_broken"], 5)
+            dir = f"b{ranks}"
+            # One checkpoint before anything is damaged, one in the middle of breaking.
+            self.run_whole("-time_end", "2", "-ts_max_steps", "100", dir=dir, ranks=ranks)
+            with h5py.File(a / "breaks.h5") as file:
+                middle = str(int(np.median(file["time"][:]) / summary["dt"]))
+            b = self.go_on("-time_end", "2", "-ts_max_steps", middle, dir=dir, ranks=ranks)
+            with h5py.File(b / "breaks.h5") as file:
+                self.assertGreater(len(file["time"]), 1)
+            b = self.go_on("-time_end", "2", dir=dir, ranks=ranks)
+            first, second = contents(a / "breaks.h5"), contents(b / "breaks.h5")
+            for name, values in first.items():
+                self.assertTrue(np.array_equal(values, second[name]), name)
+            first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
+            self.assertEqual(first["run/step"], second["run/step"])
+            for name in ("bodies/records", "force_0_beam/cracks", "force_0_beam/energy_fracture"):
+                self.assertTrue(np.array_equal(first[name], second[name]), name)
+
+
 class Killed(RestartTest):
     def test_at_random_moments(self):
         """kill -9: every file is readable, rows and frames are whole, and going on gives the straight run."""

@@ -71,6 +71,42 @@ def check_bending(test, run):
     test.assertAlmostEqual(output.summary["deflection_over_wyman"], 1.06, delta=0.03)
 
 
+def expect_calibration(test, calibration):
+    test.assertEqual(calibration["kind"], "isotropic")
+    test.assertAlmostEqual(calibration["scale"], 1 / 0.7, delta=1e-12)
+    for constant in ("young", "poisson", "bending", "bending_poisson"):
+        test.assertAlmostEqual(calibration[f"{constant}_error"], 0, delta=1e-8)
+        test.assertLess(calibration[f"{constant}_scatter"], 3e-3)
+
+
+def check_tension_calibrated(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 7391)
+    test.assertAlmostEqual(output.summary["gauge_length"], 79.1, delta=0.1)
+    test.assertAlmostEqual(output.summary["E_gauge_over_Eb"], 1, delta=0.005)
+    test.assertAlmostEqual(output.summary["E_over_Estar"], output.summary["E_over_Eb"], delta=1e-8)
+    expect_calibration(test, output.summary["calibration"])
+    young = run("-beam_calibrate", "young").summary
+    test.assertAlmostEqual(young["E_gauge_over_Eb"], 1, delta=0.012)  # edges are stiff by half a cell
+    test.assertAlmostEqual(young["calibration"]["poisson_error"], 0.211 - 0.3, delta=0.005)
+    none = run("-beam_calibrate", "none").summary
+    test.assertAlmostEqual(none["E_over_Eb"] * young["calibration"]["scale"] / young["E_over_Eb"], 1, delta=1e-9)
+    test.assertNotIn("calibration", none)
+    small = ("-sheet_length", "20", "-sheet_width", "20", "-boundary_right_displacement", "0.02,0,0")
+    static = run(*small).summary["E_over_Eb"]
+    moving = run(*small, "-integrator", "explicit", "-beam_damping_ratio", "1", "-boundary_right_ramp", "0.2",
+                 "-time_end", "0.4").summary
+    test.assertAlmostEqual(moving["E_over_Eb"] / static, 1, delta=1e-4)  # the same stiffnesses, at rest again
+    test.assertLess(abs(moving["energy"]["balance_error"]), 1e-3 * moving["energy"]["boundary"])
+
+
+def check_bending_calibrated(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 3285)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"], 1.01, delta=0.025)
+    expect_calibration(test, output.summary["calibration"])
+
+
 def check_bend45(test, run):
     output = run()
     for time, expected in ((0.5, (-11.9318, -7.0447, 40.1925)), (1, (-23.5606, -13.6047, 53.4755))):
@@ -289,9 +325,135 @@ def check_wave(test, run):
     test.assertAlmostEqual(-0.01 / slope / 1773.1, 1, delta=0.01)
 
 
+def check_stopping(test, run):
+    output = run()
+    row = last_row(output)
+    test.assertAlmostEqual(output.field("bodies_displacement", 1.5)[0, 0] / 1.0194, 1, delta=0.01)
+    test.assertAlmostEqual(row["energy_friction"] / 368, 1, delta=0.01)
+    test.assertAlmostEqual(row["floor_force_z"] / -1805.04, 1, delta=0.01)
+    test.assertEqual(output.summary["contacts"], 1)
+    test.assertGreater(-output.summary["peak_force"]["floor"][2], 1805)
+    test.assertAlmostEqual(output.summary["mean_force"]["floor"][2] / -1805.04, 1, delta=0.05)
+
+
+def check_floes_collide(test, run):
+    output = run()
+    row = last_row(output)
+    test.assertLess(abs(row["energy_balance_error"]), 0.01 * column(output, "energy_kinetic")[0])
+    test.assertGreater(column(output, "contacts").max(), 3)
+    with h5py.File(output.folder / "lattice.h5") as file:
+        mass = file["bodies/mass"][:]
+    times = output.times
+    u = [output.field("bodies_displacement", time)[:, 0] for time in times]
+    west = np.isin(np.arange(len(mass)), output.sets["west"])
+    mean = mass @ (u[-1] - u[0]) / mass.sum() / (times[-1] - times[0])
+    test.assertAlmostEqual(mean / (0.5 * mass[west].sum() / mass.sum()), 1, delta=1e-6)
+    late = times > 0.8 * times[-1]  # they have parted
+    speed = [mass[floe] @ (u[-1] - u[np.flatnonzero(late)[0]])[floe] / mass[floe].sum()
+             / (times[-1] - times[late][0]) for floe in (west, ~west)]
+    test.assertGreater(speed[1], speed[0] + 0.1)  # it was at rest and leads now
+    test.assertLess(speed[1], 0.5)
+
+
+def check_rubble_pile(test, run):
+    output = run("-time_end", "3")
+    test.assertEqual(output.summary["bodies"], 1000)
+    test.assertGreater(output.summary["contacts"], 30)
+    energy = output.summary["energy"]
+    lost = sum(energy[name] for name in ("drag", "contact_viscous", "friction", "crushing"))
+    test.assertGreater(lost, 0)
+    test.assertLess(abs(energy["balance_error"]), 0.01 * lost)
+    z = output.position[:, 2] + output.field("bodies_displacement", 3)[:, 2]
+    test.assertGreater(z.mean(), output.position[:, 2].mean() + 0.5)  # they rise,
+    test.assertLess(z.max(), 1)                                       # and none is thrown out
+
+
+def check_punch_through(test, run):
+    output = run()
+    time, load = column(output, "time"), column(output, "plate_force_z")
+    test.assertEqual(np.abs(load[time < 7.5]).max(), 0)
+    test.assertGreater(load[time > 14].mean(), 5 * 441)
+    test.assertGreater(output.summary["peak_force"]["plate"][2], load.max() - 1e-6 * load.max())
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 0.01 * energy["external"])
+    mean = output.summary["mean_force"]["plate"][2]  # over every step, where history.csv has samples
+    test.assertAlmostEqual(energy["external"] / (mean * 18 * 0.25), 1, delta=1e-3)
+
+
+def largest(output, name):
+    """Largest size in a column of history.csv."""
+    return np.max(np.abs(column(output, name)))
+
+
+def check_break_strip(test, run):
+    output = run()
+    test.assertAlmostEqual(largest(output, "right_moment_y") / 200e3, 1, delta=0.01)
+    test.assertEqual((output.summary["beams_broken"], output.summary["fragments"]), (1, 2))
+    test.assertLess(abs(last_row(output)["right_moment_y"]), 1)
+
+
+def breaks(output, name):
+    with h5py.File(output.folder / "breaks.h5") as file:
+        return file[name][:]
+
+
+def check_in_situ_cantilever(test, run):
+    output = run()
+    test.assertGreaterEqual(output.summary["fragments"], 2)
+    bodies = breaks(output, "fragments/bodies")
+    test.assertGreater(bodies[1], 35)  # most of the cantilever, 46 bodies
+    test.assertLess(bodies[1], 60)
+    root = breaks(output, "place")[:, 0] < -1
+    test.assertGreaterEqual(root.sum(), 4)
+    test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 1.2, delta=0.25)
+
+
+def check_edge_uplift(test, run):
+    output = run()
+    force = largest(output, "edge_force_z") / 8
+    test.assertAlmostEqual(force / 5672, 1, delta=0.07)
+    place = breaks(output, "place")[:, 0] + 30
+    far = place[place > 4]
+    test.assertAlmostEqual(np.median(far), 8.94, delta=1)
+
+
+def check_point_breakthrough(test, run):
+    output = run()
+    time, place, pairs = (breaks(output, name) for name in ("time", "place", "bodies"))
+    chord = output.position[pairs[:, 1]] - output.position[pairs[:, 0]]
+    chord /= np.linalg.norm(chord, axis=1)[:, None]
+    radius = np.hypot(*place[:, :2].T)
+    along = np.abs(np.sum(chord[:, :2] * place[:, :2], axis=1)) / radius  # 1: the crack runs around the load
+    early, late = time <= np.quantile(time, 0.25), time >= np.quantile(time, 0.6)
+    test.assertGreater(np.mean(along[early] < 0.5), 2 * np.mean(along[early] > 0.8))
+    test.assertGreater(np.mean(along[late] > 0.8), 1.5 * np.mean(along[late] < 0.5))
+    around = radius[late & (along > 0.8)]
+    test.assertTrue(0.7 < np.median(around) / 8.245 < 1.5, np.median(around))
+
+
+def check_notch(test, run):
+    output = run()
+    test.assertEqual(output.summary["fragments"], 2)
+    place = breaks(output, "place")
+    test.assertLess(np.max(np.abs(place[:, 0])), 3)  # ahead of the notch, all the way
+    test.assertTrue(place[:, 1].min() > -5.5 and place[:, 1].max() > 9)
+    test.assertLess(abs(last_row(output)["right_force_x"]), 1)
+
+
 EXPECTED = {
+    "punch_through.yaml": check_punch_through,
+    "floes_collide.yaml": check_floes_collide,
+    "rubble_pile.yaml": check_rubble_pile,
+    "verify/stopping.yaml": check_stopping,
+    "break_strip.yaml": check_break_strip,
+    "in_situ_cantilever.yaml": check_in_situ_cantilever,
+    "edge_uplift.yaml": check_edge_uplift,
+    "point_breakthrough.yaml": check_point_breakthrough,
+    "notch.yaml": check_notch,
     "tension.yaml": check_tension,
     "bending.yaml": check_bending,
+    "tension_calibrated.yaml": check_tension_calibrated,
+    "bending_calibrated.yaml": check_bending_calibrated,
     "tension_explicit.yaml": check_tension_explicit,
     "bending_explicit.yaml": check_bending_explicit,
     "verify/free_top.yaml": check_free_top,

@@ -34,11 +34,18 @@ class Dynamics {
     motion_.stagger(state_, wrenches_, dt_);
     evaluate();
   }
+  /// The state is that of another run after set_step(dt).
+  void go_on(double dt) { dt_ = dt; }
   /// Returns the square of the largest speed [m^2/s^2].
   double step() {
+    const double largest = step_without_evaluation();
+    evaluate();
+    return largest;
+  }
+  /// As a checkpoint finds the forces: the next evaluation is yet to come.
+  double step_without_evaluation() {
     const double largest = motion_.step(state_, wrenches_, dt_);
     for (const auto& force : model_.forces()) force->commit(state_, dt_);
-    evaluate();
     return largest;
   }
   void steps(long count) {
@@ -68,6 +75,7 @@ class Dynamics {
   static const Model<Spatial>& with_forces(const Scene& scene, const Lattice& lattice,
                                            Model<Spatial>& model) {
     add_forces(scene, place_loads(scene, lattice), model);
+    add_contact(scene, lattice, model);
     return model;
   }
 

@@ -82,7 +82,7 @@ Vector12 wrenches(const BeamConstants<double>& beam, const Pair& p) {
 template <class Beam>
 Matrix12 tangent(const BeamConstants<double>& beam, const Pair& p, bool symmetric) {
   std::array<double, 144> k;
-  Beam::tangent(beam, p.i(), p.j(), symmetric, k);
+  Beam::tangent(beam, nullptr, p.i(), p.j(), symmetric, k);
   return Eigen::Map<const Matrix12>(k.data());
 }
 template <class Beam>
@@ -492,6 +492,20 @@ TEST(BeamStiffness, ShearVariantsByTheirFormulas) {
                 : shear == Shear::exact   ? exact(iy)
                                           : 12 * e * iy / (l * l * l));
   }
+}
+
+TEST(BeamStiffness, ShearAlongAxis2MayHaveAFactorOfItsOwn) {
+  Beams b;
+  b.bodies = {{0, 1}};
+  const double e = 4e9, g = 1.5e9, along_2 = 0.3, along_3 = 0.8, area = 0.6, iz = 0.04, l = 1.9;
+  b.area = {area}, b.inertia_y = {0.07}, b.inertia_z = {iz}, b.torsion = {0.05}, b.length = {l};
+  b.young = {e}, b.shear_modulus = {g}, b.shear_factor = {along_3};
+  b.shear_factor_y = {along_2};
+  const BeamStiffness k = beam_stiffness(b, 0, Shear::one_point);
+  EXPECT_NEAR(k.ksz / (along_2 * g * area / l), 1, 1e-14);
+  EXPECT_NEAR(k.ksy / (along_3 * g * area / l), 1, 1e-14);
+  const double bending = 12 * e * iz / (l * l * l), shear = along_2 * g * area / l;
+  EXPECT_NEAR(beam_stiffness(b, 0, Shear::exact).ksz * (1 / bending + 1 / shear), 1, 1e-14);
 }
 
 }  // namespace

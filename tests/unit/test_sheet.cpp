@@ -174,7 +174,9 @@ TEST(Sheet, EdgeSetsLieOnTheirSides) {
 TEST(Cut, RemovesTheBeamsThatCross) {
   Lattice s = make_sheet(cells(20, 20, 2), {});
   const Lattice whole = s;
+  s.beams.shear_factor_y = s.beams.length;
   cut(s, {0, -10}, {0, 10});
+  EXPECT_EQ(s.beams.shear_factor_y, s.beams.length);
   std::size_t crossing = 0;
   for (const auto& [i, j] : whole.beams.bodies)
     crossing += (whole.bodies.position[i][0] < 0) != (whole.bodies.position[j][0] < 0);

@@ -42,8 +42,22 @@ class Force {
   virtual void add(const State<Space>& state, Wrenches<Space>& wrenches) const = 0;
   /// Adds minus the derivative of the wrenches; false if the force has none.
   virtual bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const = 0;
+  /// Adds minus the derivative of the wrenches to the velocities, if they depend on them.
+  virtual void add_damping(const State<Space>& /*state*/, Tangent<Space>& /*tangent*/) const {}
+  /// Adds the wrenches that take energy by the bodies' velocities, which no potential accounts for;
+  /// false if there are none.
+  virtual bool add_losses(const State<Space>& /*state*/, Wrenches<Space>& /*wrenches*/) const {
+    return false;
+  }
   /// An upper bound of the force's stiffness against a unit displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
+  /// Upper bounds of M^-1 K [1/s^2] and M^-1 C [1/s] of a force that says so itself, because
+  /// differences of its wrenches at a state would not tell (contacts that are yet to come). Zeros:
+  /// they do.
+  struct Rates {
+    double stiffness = 0, damping = 0;
+  };
+  virtual Rates own_rates() const { return {}; }
   /// Takes over what an accepted step changes (damage, slip, dissipated energy; the latter as for
   /// leapfrog, whose velocities lag half a step). \param dt step [s]
   virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}
@@ -51,10 +65,9 @@ class Force {
   /// step, and never take one back, can use the force.
   virtual bool has_history() const { return false; }
   /// A cheap measure of the fastest rate at which the force alone moves or stops one of this rank's
-  /// bodies [1/s], of forces for which that changes in a run (bodies come to the water, contacts
-  /// come, beams are pressed, drag grows with the speed). Where their sum
-  /// over forces has grown, the stable step is found anew in time. Alike on all ranks: all give a
-  /// number, or none does.
+  /// bodies [1/s], of forces for which that changes in a run (bodies come to the water, beams are
+  /// pressed, drag grows with the speed). Where the sum over forces has grown, the stable step is
+  /// found anew in time. Alike on all ranks: all give a number, or none does.
   virtual std::optional<double> fastest_rate(const State<Space>& /*state*/) const { return {}; }
 
   /// Power on this rank's bodies of what no potential of the force accounts for, in its last

@@ -9,6 +9,9 @@
 /// On rotations, differentiation of the gradient gives K = H - skew(m)/2 with H the Hessian and m
 /// the block's moment gradient; H = K + skew(m)/2 is assembled (model.md section 2), unless the
 /// exact K was asked for.
+///
+/// In dynamics a body's rotation unknowns may stand in a frame that goes with it, and the same
+/// matrix takes derivatives to velocities, which the unknowns move too: weigh().
 #pragma once
 
 #include <array>
@@ -26,6 +29,12 @@ namespace floe {
 struct TangentOptions {
   const char* type = MATSBAIJ;
   bool symmetric = true;
+};
+
+/// Rotation unknowns of a body in a frame of their own, row-major.
+struct TurnFrame {
+  std::array<double, 9> rows;     ///< takes a moment in the world to the unknowns' rows
+  std::array<double, 9> columns;  ///< the spin in the world that a change of the unknowns is
 };
 
 template <class Space>
@@ -49,6 +58,10 @@ class Tangent {
   /// the columns of prescribed unknowns times their increments are collected in lift() while blocks
   /// come in.
   void begin(std::span<const double> increments = {});
+  /// Blocks that follow are multiplied by `factor`, and their rotations are taken from the world to
+  /// the unknowns' frames (one per local body; none: they stand in the world). begin() goes back to
+  /// 1 and none. \param frames  must outlive what follows
+  void weigh(double factor, std::span<const TurnFrame> frames);
   /// Adds a body's own stiffness. \param block n x n [N/m, N, N m]; already H or K as symmetric()
   /// says
   void add_body(std::int32_t body, const Block& block);
@@ -62,6 +75,8 @@ class Tangent {
 
  private:
   void prepare_rows(std::int32_t body, std::span<double> rows, int columns);
+  void turn_rows(std::int32_t body, std::span<double> rows, int columns) const;
+  void turn_columns(std::int32_t body, std::span<double> block, int first, int columns) const;
   bool is_held(std::int32_t body, int k) const {
     return (held_[static_cast<std::size_t>(body)] >> k & 1U) != 0;
   }
@@ -72,6 +87,8 @@ class Tangent {
   std::array<double, static_cast<std::size_t>(n)> scale_;
   bool symmetric_;
   Handle<Mat> matrix_;
+  double factor_ = 1;
+  std::span<const TurnFrame> frames_;
   std::span<const double> increments_;
   std::vector<double> lift_;
 };

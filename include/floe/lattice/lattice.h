@@ -33,15 +33,16 @@ struct Bodies {
 /// in-plane bending.
 struct Beams {
   std::vector<std::array<std::int32_t, 2>> bodies;
-  std::vector<double> area;           ///< [m^2]
-  std::vector<double> inertia_y;      ///< second moment about axis 2 [m^4]
-  std::vector<double> inertia_z;      ///< second moment about axis 3 [m^4]
-  std::vector<double> torsion;        ///< torsion constant J [m^4]
-  std::vector<double> length;         ///< |X_j - X_i| [m]
-  std::vector<double> young;          ///< [Pa]
-  std::vector<double> shear_modulus;  ///< [Pa]
-  std::vector<double> shear_factor;   ///< kappa
-  std::vector<Point3> axis_y;         ///< unit vector, world
+  std::vector<double> area;            ///< [m^2]
+  std::vector<double> inertia_y;       ///< second moment about axis 2 [m^4]
+  std::vector<double> inertia_z;       ///< second moment about axis 3 [m^4]
+  std::vector<double> torsion;         ///< torsion constant J [m^4]
+  std::vector<double> length;          ///< |X_j - X_i| [m]
+  std::vector<double> young;           ///< [Pa]
+  std::vector<double> shear_modulus;   ///< [Pa]
+  std::vector<double> shear_factor;    ///< kappa
+  std::vector<double> shear_factor_y;  ///< kappa of shear along axis 2; empty: shear_factor
+  std::vector<Point3> axis_y;          ///< unit vector, world
   std::vector<double> width;   ///< section's extent along axis 2 [m]; empty if the file has none
   std::vector<double> height;  ///< section's extent along axis 3 [m]; empty if the file has none
   std::int32_t size() const { return static_cast<std::int32_t>(bodies.size()); }
@@ -89,6 +90,9 @@ void add_region(Lattice& lattice, const std::string& name, const std::array<doub
 /// then renamed. \throws InputError naming the file and the dataset if it is missing, has a wrong
 /// shape, or a value out of range.
 Lattice read_lattice(const std::string& file);
+/// Reads the one convex polyhedron of a file's /shapes, wherever its origin is.
+/// \param key  the option that named the file, for messages   \throws InputError
+Shapes read_polyhedron(const std::string& file, const std::string& key);
 void write_lattice(const Lattice& lattice, const std::string& file);
 
 }  // namespace floe

@@ -12,6 +12,7 @@
 #include "floe/forces/beam.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/force.h"
+#include "floe/forces/fracture.h"
 
 namespace floe {
 
@@ -72,6 +73,10 @@ class Model {
   void set_beams(std::unique_ptr<BeamForce<Space>> beams, Kinematics kinematics);
   const std::vector<std::unique_ptr<Force<Space>>>& forces() const { return forces_; }
   const BeamForce<Space>* beams() const { return beams_; }
+  /// Beams that may break: the same object as the force that set_beams() gets.
+  void set_fracture(Fracture* fracture) { fracture_ = fracture; }
+  /// Null if nothing can break.
+  Fracture* fracture() const { return fracture_; }
   Kinematics kinematics() const { return kinematics_; }
 
   /// What resists acceleration, per local body: its mass and that of the water it takes along [kg].
@@ -81,6 +86,11 @@ class Model {
 
   /// All wrenches at a state whose ghosts are up to date.
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const;
+
+  /// The same, by way of `share`; returns the sum over this rank's bodies and over the forces but
+  /// beams of each one's wrenches squared, moments divided by the length scale [N^2].
+  double evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
+                        Wrenches<Space>& share) const;
 
   /// Prescribed unknowns, n bits per local body; held() includes the pins.
   std::span<const std::uint8_t> prescribed() const { return prescribed_; }
@@ -107,6 +117,7 @@ class Model {
   std::vector<PlacedBoundary> boundaries_;
   std::vector<std::unique_ptr<Force<Space>>> forces_;
   const BeamForce<Space>* beams_ = nullptr;
+  Fracture* fracture_ = nullptr;
   Kinematics kinematics_ = Kinematics::corotational;
   std::vector<std::uint8_t> prescribed_, held_;
 };

@@ -1,0 +1,171 @@
+/// \file
+/// All contacts of a model: poses, velocities and shapes in, wrenches out, once per step.
+///
+/// A pair of bodies is A, with the smaller global index, and B; obstacle k as B has the index
+/// -1 - k. Pairs are sorted, and each is computed by the same instructions wherever it is: what a
+/// body gets does not depend on how bodies are spread over ranks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "floe/contact/law.h"
+#include "floe/contact/obstacle.h"
+
+namespace floe {
+
+/// A body in the world: centroid and principal axes.
+struct Pose {
+  Vec3<double> x;
+  Quat<double> q;
+};
+struct MovingPose {
+  Pose pose;
+  Vec3<double> velocity, spin;
+};
+/// About the body's centroid.
+struct ContactWrench {
+  Vec3<double> force{}, moment{};
+};
+
+/// What contacts have taken so far and store now [J]; of pairs whose A is counted here.
+struct ContactEnergies {
+  double stored = 0;    ///< in normal and tangential springs
+  double viscous = 0;   ///< lost to the viscous term
+  double friction = 0;  ///< lost to sliding
+  double crushing = 0;  ///< work of the elastic term that is not stored: what stays crushed, and
+                        ///< what law `overlap` does not give back between polyhedra
+  double external = 0;  ///< done on bodies by moving obstacles
+};
+
+class Contacts {
+ public:
+  /// \param shapes  of all bodies, in their principal axes   \param masses  of all bodies [kg]
+  /// \param joined  pairs with an unbroken beam, sorted, the smaller index first
+  Contacts(const Shapes& shapes, std::span<const double> masses,
+           std::vector<std::array<std::int32_t, 2>> joined, const ContactOptions& options,
+           std::vector<Obstacle> obstacles);
+
+  /// How far a vertex may move between two builds [m]: half the reach of the list of pairs.
+  double slack() const { return 0.5 * reach_; }
+  /// Distance of body's farthest vertex from its centroid [m].
+  double radius(std::int32_t body) const { return radius_[static_cast<std::size_t>(body)]; }
+  /// Whether pairs may have become eligible since the last build.
+  bool changed() const { return changed_; }
+
+  /// Lists the pairs that may touch before some vertex has moved by slack(). History goes with its
+  /// pair. \param poses  of all bodies   \param here  bodies whose wrenches are wanted
+  void build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time);
+  /// Bodies that are in a listed pair, sorted: evaluate() wants these, in this order.
+  std::span<const std::int32_t> involved() const { return involved_; }
+
+  /// Adds the contacts' wrenches on involved bodies; changes no history.
+  void evaluate(std::span<const MovingPose> bodies, double time, std::span<ContactWrench> wrenches);
+  /// Takes over what the last evaluation found. \param bodies  after the step: velocities half a
+  /// step on   \param dt  the step [s]
+  void commit(std::span<const MovingPose> bodies, double dt);
+
+  /// The beam between two bodies is broken: they may touch from now on, without an energy.
+  void release(std::array<std::int32_t, 2> pair);
+
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  /// Force and moment about its frame's origin on obstacle k, in the last evaluation, of bodies
+  /// that are here.
+  const ContactWrench& on_obstacle(std::size_t k) const { return on_obstacle_[k]; }
+  /// Contacts counted here with a force, in the last evaluation.
+  std::int64_t touching() const { return touching_; }
+  std::size_t listed() const { return pairs_.size(); }
+  ContactEnergies energies() const;
+
+  /// Bounds of M^-1 K and M^-1 C of any contacts that may come (docs/model.md, "Contact", has the
+  /// estimate).
+  struct Rates {
+    double stiffness = 0;  ///< [1/s^2]
+    double damping = 0;    ///< [1/s]
+  };
+  Rates rates() const;
+
+  /// What goes to a checkpoint: rows of `width` numbers per pair with history that is counted here.
+  static constexpr std::size_t width = 10;
+  std::vector<double> history() const;
+  /// Rows of all pairs, sorted; the next build takes them over. \param changed  whether
+  /// pairs had become eligible since the last build.
+  void restore(std::span<const double> rows, bool changed);
+  /// Sums that go on over a restart.
+  std::array<double, 7>& sums() { return sums_; }
+  std::vector<std::array<std::int32_t, 2>> released() const { return released_; }
+
+ private:
+  struct Pair {
+    std::int32_t a, b;            ///< bodies; b < 0: obstacle -1 - b
+    std::int32_t slot_a, slot_b;  ///< among the involved
+    std::int32_t touch;           ///< among the touches of the last evaluation, or -1
+    std::int32_t memory;          ///< among the memories, or -1
+    bool counted, fresh;
+    Vec3<double> axis;  ///< along which they were apart last, from B to A
+  };
+  /// A contact of the last evaluation.
+  struct Touch {
+    std::int32_t pair;
+    Vec3<double> centre;
+    ContactForce contact;
+    std::array<double, 4> power;  ///< elastic, viscous, friction, of a moving obstacle
+  };
+  struct Remembered {
+    std::int32_t a, b;
+    std::int32_t pair;  ///< -1: from a checkpoint
+    PairMemory memory;
+  };
+  struct Placed {
+    Vec3<double> x;
+    Triad<double> axes;
+  };
+
+  bool may_touch(std::int32_t a, std::int32_t b) const;
+  void find_pieces();
+  void list_bodies(std::span<const Placed> placed, std::span<const std::uint8_t> here);
+  void list_obstacles(std::span<const Placed> placed, std::span<const std::uint8_t> here,
+                      double time);
+  void list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b, bool counted);
+  void take_memories();
+  std::span<const Vec3<double>> vertices(std::int32_t body) const;
+  std::span<const HalfSpace> planes(std::int32_t body) const;
+  Placed at_time(std::int32_t obstacle, double time) const;
+  PairConstants constants(std::int32_t a, std::int32_t b) const;
+  double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
+  bool meet(std::int32_t index, const Placed& b, std::span<const MovingPose> bodies);
+  RelativeMotion relative(const Pair& pair, const Vec3<double>& centre,
+                          std::span<const MovingPose> bodies) const;
+  std::array<double, 4> powers(const Touch& touch, std::span<const MovingPose> bodies) const;
+
+  Shapes shapes_;
+  std::vector<Vec3<double>> vertices_;
+  std::vector<HalfSpace> planes_;
+  std::vector<std::int32_t> plane_of_{0};
+  std::vector<double> masses_, volumes_, radius_, surface_, widest_;
+  std::vector<std::array<std::int32_t, 2>> joined_, released_;
+  std::vector<std::int32_t> faces_, beams_, piece_;  ///< per body
+  ContactOptions options_;
+  std::vector<Obstacle> obstacles_;
+  double reach_ = 0;
+  bool changed_ = true, first_ = true;
+
+  std::vector<Pair> pairs_;
+  std::vector<std::int32_t> involved_;
+  std::vector<Remembered> memories_, next_memories_;  ///< of pairs that touch, sorted as the pairs
+  std::vector<Touch> touches_;
+  std::vector<Placed> placed_;  ///< per slot
+  std::vector<ContactWrench> on_obstacle_;
+  Clipper clipper_;
+  std::vector<Vec3<double>> work_a_, work_b_;  ///< placed vertices
+  std::int64_t touching_ = 0;
+
+  std::array<double, 7> sums_{};  ///< work of elastic, viscous, friction, obstacles [J]; last dt;
+                                  ///< energy stored at the start; whether that is known
+};
+
+}  // namespace floe

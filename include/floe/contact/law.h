@@ -1,0 +1,74 @@
+/// \file
+/// The law of one contact: from an overlap to forces (docs/model.md, "Contact").
+#pragma once
+
+#include <limits>
+
+#include "floe/geometry/overlap.h"
+
+namespace floe {
+
+enum class ContactLaw {
+  overlap,    ///< F = k_v (V - V_p) at the overlap's centroid
+  potential,  ///< the gradient of k_v (V - V_p)^2/(2 A_r) (Feng 2021)
+};
+
+struct ContactOptions {
+  ContactLaw law = ContactLaw::overlap;
+  double young = 1e8;                                              ///< E_c [Pa]
+  double friction = 0.1;                                           ///< mu between bodies
+  double damping_ratio = 0;                                        ///< zeta of the viscous term
+  double plastic_limit = std::numeric_limits<double>::infinity();  ///< sigma_p [Pa]
+};
+
+/// zeta with which a central impact of a face returns the part e of its speed: without tension
+/// e = exp(-2 zeta arccos(zeta)/sqrt(1 - zeta^2)), and its continuation above 1.
+/// \param restitution  in (0, 1]
+double damping_ratio_of(double restitution);
+
+/// What is fixed for a pair.
+struct PairConstants {
+  double stiffness = 0;  ///< k_v = E_c/(L_a + L_b) [Pa/m]
+  double area = 0;       ///< A_r [m^2]
+  double mass = 0;       ///< m_r [kg]
+  double friction = 0;   ///< mu
+  bool half_space = false;
+};
+
+/// What a pair remembers between steps.
+struct PairMemory {
+  double plastic = 0;         ///< V_p [m^3]
+  double shear = 0;           ///< k_t of the last step [N/m]
+  Vec3<double> normal{};      ///< of the last step
+  Vec3<double> tangential{};  ///< F_t on A, as the springs have it now [N]
+};
+
+/// How the two bodies move against each other at the contact.
+struct RelativeMotion {
+  Vec3<double> velocity{};  ///< of A against B at c [m/s]
+  Vec3<double> spin{};      ///< omega_A - omega_B [rad/s]
+};
+
+/// The wrench of one contact on A, about the overlap's centroid; on B it is the opposite.
+struct ContactForce {
+  Vec3<double> elastic{}, viscous{}, tangential{};  ///< [N]
+  Vec3<double> couple{};                            ///< elastic; zero with law overlap [N m]
+  double normal_energy = 0, tangential_energy = 0;  ///< stored [J]
+  PairMemory memory;                                ///< if this evaluation is committed
+
+  Vec3<double> force() const { return elastic + viscous + tangential; }
+};
+
+/// \param o  the overlap in world axes, with V > 0   \param depth  of its centroid below the plane
+/// of a half-space [m]; not used otherwise   \param fresh  the pair may touch since now: what it
+/// overlaps by is plastic
+ContactForce contact_force(const ContactOptions& options, const PairConstants& pair,
+                           const Overlap& o, double depth, const RelativeMotion& motion,
+                           const PairMemory& memory, bool fresh);
+
+/// Moves the springs of friction on over a step. \param memory  as contact_force left it
+/// \param mean_spin  of the two bodies
+void slide(PairMemory& memory, const RelativeMotion& motion, const Vec3<double>& mean_spin,
+           double dt);
+
+}  // namespace floe

@@ -1,0 +1,33 @@
+/// \file
+/// Rigid convex obstacles: half-spaces, boxes, cones, cylinders, polyhedra from a file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "floe/geometry/overlap.h"
+
+namespace floe {
+
+/// At rest or on a steady motion. Its frame is that of the world, moved to `point`.
+struct Obstacle {
+  std::string name;
+  Vec3<double> point{};     ///< origin of its frame at time 0 [m]
+  Vec3<double> velocity{};  ///< [m/s]
+  double friction = 0;      ///< mu against bodies
+  std::vector<HalfSpace> planes;
+  std::vector<Vec3<double>> vertices;  ///< empty: a half-space, which has none
+};
+
+/// \param normal  out of the obstacle, of any length but 0
+Obstacle half_space(const Vec3<double>& point, const Vec3<double>& normal);
+/// \param rotation  degrees about x, then y, then z
+Obstacle box(const Vec3<double>& centre, const Vec3<double>& size, const Vec3<double>& rotation);
+/// A frustum on a vertical axis with regular polygons of `facets` sides inside its two circles;
+/// top_radius 0 makes a pyramid, radius = top_radius a cylinder. \param base  centre of the foot
+Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double height,
+              int facets);
+/// Body `body` of `shapes`, its frame moved to `point`.
+Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>& point);
+
+}  // namespace floe

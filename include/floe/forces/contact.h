@@ -1,0 +1,32 @@
+/// \file
+/// Contacts of bodies with each other and with obstacles, as a force of a model.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "floe/contact/contacts.h"
+#include "floe/forces/force.h"
+
+namespace floe {
+
+class Contact : public Force<Spatial> {
+ public:
+  bool has_history() const final { return true; }
+  /// Beams are broken: their bodies (global indices) may touch from the next evaluation on, without
+  /// an energy. Collective; each rank may name pairs of its own.
+  virtual void release(std::span<const std::array<std::int32_t, 2>> pairs) = 0;
+};
+
+/// Reports energy_contact (stored), energy_contact_viscous, energy_friction, energy_crushing
+/// (lost), energy_external of moving obstacles, contacts, and per obstacle NAME_force_x..,
+/// NAME_moment_x.. (about its point), NAME_peak_force_x.. (largest so far), NAME_mean_force_x..
+/// (over the run so far). \param part  must outlive the force   \param lattice  whole; needed
+/// during construction only \throws InputError if the lattice has no shapes or one is not convex
+std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
+                                      const ContactOptions& options,
+                                      std::vector<Obstacle> obstacles);
+
+}  // namespace floe

@@ -1,0 +1,257 @@
+// Which pairs are looked at: eligibility, neighbours, the list and what it keeps of the one before.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "contact/broad_phase.h"
+#include "floe/contact/contacts.h"
+#include "floe/contact/separation.h"
+
+namespace floe {
+namespace {
+
+double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+/// Area of all faces of a body and of the largest one [m^2].
+std::array<double, 2> face_areas(const Shapes& shapes, std::int32_t body) {
+  const auto b = static_cast<std::size_t>(body);
+  std::array<double, 2> areas{};
+  for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
+       f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
+    const auto at = [&](std::int32_t c) {
+      const Point3& p =
+          shapes.vertices[static_cast<std::size_t>(shapes.corners[static_cast<std::size_t>(c)])];
+      return Vec3<double>{p[0], p[1], p[2]};
+    };
+    const std::int32_t begin = shapes.corner_of[f];
+    Vec3<double> twice{};
+    for (std::int32_t c = begin + 1; c + 1 < shapes.corner_of[f + 1]; ++c)
+      twice = twice + cross(at(c) - at(begin), at(c + 1) - at(begin));
+    areas[0] += 0.5 * length(twice);
+    areas[1] = std::max(areas[1], 0.5 * length(twice));
+  }
+  return areas;
+}
+
+}  // namespace
+
+Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
+                   std::vector<std::array<std::int32_t, 2>> joined, const ContactOptions& options,
+                   std::vector<Obstacle> obstacles)
+    : shapes_(shapes),
+      masses_(masses.begin(), masses.end()),
+      joined_(std::move(joined)),
+      options_(options),
+      obstacles_(std::move(obstacles)),
+      on_obstacle_(obstacles_.size()) {
+  for (const Point3& p : shapes_.vertices) vertices_.push_back({p[0], p[1], p[2]});
+  for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
+    append_half_spaces(shapes_, b, planes_);
+    plane_of_.push_back(static_cast<std::int32_t>(planes_.size()));
+    volumes_.push_back(volume_properties(shapes_, b).volume);
+    double most = 0;
+    for (const auto& r : vertices(b)) most = std::max(most, length(r));
+    radius_.push_back(most);
+    const auto [all, widest] = face_areas(shapes_, b);
+    surface_.push_back(all);
+    widest_.push_back(widest);
+    faces_.push_back(shapes_.face_of[static_cast<std::size_t>(b) + 1] -
+                     shapes_.face_of[static_cast<std::size_t>(b)]);
+  }
+  // Enough for a few hundred steps of slow bodies, and no more pairs than necessary.
+  constexpr double part_of_radius = 0.15;
+  double mean = 0;
+  for (const double r : radius_) mean += r / static_cast<double>(radius_.size());
+  reach_ = part_of_radius * mean;
+}
+
+std::span<const Vec3<double>> Contacts::vertices(std::int32_t body) const {
+  if (body < 0) return obstacles_[static_cast<std::size_t>(-1 - body)].vertices;
+  const auto b = static_cast<std::size_t>(body);
+  return {vertices_.data() + shapes_.vertex_of[b], vertices_.data() + shapes_.vertex_of[b + 1]};
+}
+
+std::span<const HalfSpace> Contacts::planes(std::int32_t body) const {
+  if (body < 0) return obstacles_[static_cast<std::size_t>(-1 - body)].planes;
+  const auto b = static_cast<std::size_t>(body);
+  return {planes_.data() + plane_of_[b], planes_.data() + plane_of_[b + 1]};
+}
+
+Contacts::Placed Contacts::at_time(std::int32_t obstacle, double time) const {
+  const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - obstacle)];
+  return {o.point + time * o.velocity, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+}
+
+void Contacts::release(std::array<std::int32_t, 2> pair) {
+  if (pair[0] > pair[1]) std::swap(pair[0], pair[1]);
+  const auto at = std::lower_bound(joined_.begin(), joined_.end(), pair);
+  if (at == joined_.end() || *at != pair) return;  // it is free already
+  joined_.erase(at);
+  released_.push_back(pair);
+  changed_ = true;
+}
+
+/// Pieces joined by beams (their smallest body's index), and how many beams each body has.
+void Contacts::find_pieces() {
+  const auto n = static_cast<std::size_t>(shapes_.bodies());
+  beams_.assign(n, 0);
+  piece_.resize(n);
+  std::iota(piece_.begin(), piece_.end(), 0);
+  const auto root = [&](std::int32_t b) {
+    while (piece_[static_cast<std::size_t>(b)] != b) {
+      std::int32_t& up = piece_[static_cast<std::size_t>(b)];
+      up = piece_[static_cast<std::size_t>(up)];
+      b = up;
+    }
+    return b;
+  };
+  for (const auto& [a, b] : joined_) {
+    ++beams_[static_cast<std::size_t>(a)];
+    ++beams_[static_cast<std::size_t>(b)];
+    const std::int32_t i = root(a), j = root(b);
+    piece_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
+  }
+  for (std::size_t b = 0; b < n; ++b) piece_[b] = root(static_cast<std::int32_t>(b));
+}
+
+/// Bodies of different pieces may touch, and of one piece those on its surface: with fewer beams
+/// than a prism has sides.
+bool Contacts::may_touch(std::int32_t a, std::int32_t b) const {
+  const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+  if (piece_[i] != piece_[j]) return true;
+  const bool surface = beams_[i] < faces_[i] - 2 && beams_[j] < faces_[j] - 2;
+  return surface && !std::binary_search(joined_.begin(), joined_.end(), BodyPair{a, b});
+}
+
+void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
+  if (changed_) find_pieces();
+  std::vector<Placed> placed;
+  placed.reserve(poses.size());
+  for (const Pose& p : poses) placed.push_back({p.x, triad(p.q)});
+  pairs_.clear();
+  list_bodies(placed, here);
+  list_obstacles(placed, here, time);
+  std::sort(pairs_.begin(), pairs_.end(),
+            [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+  involved_.clear();
+  for (const Pair& p : pairs_) {
+    involved_.push_back(p.a);
+    if (p.b >= 0) involved_.push_back(p.b);
+  }
+  std::sort(involved_.begin(), involved_.end());
+  involved_.erase(std::unique(involved_.begin(), involved_.end()), involved_.end());
+  const auto slot = [&](std::int32_t body) {
+    return static_cast<std::int32_t>(std::lower_bound(involved_.begin(), involved_.end(), body) -
+                                     involved_.begin());
+  };
+  for (Pair& p : pairs_) {
+    p.slot_a = slot(p.a);
+    p.slot_b = p.b >= 0 ? slot(p.b) : -1;
+  }
+  take_memories();
+  touches_.clear();
+  placed_.resize(involved_.size());
+  changed_ = first_ = false;
+}
+
+void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::uint8_t> here) {
+  std::vector<Vec3<double>> centres;
+  centres.reserve(placed.size());
+  for (const Placed& p : placed) centres.push_back(p.x);
+  std::vector<BodyPair> near;
+  near_pairs(centres, radius_, reach_, here, near);
+  for (const auto& [a, b] : near) {
+    if (may_touch(a, b))
+      list(a, b, placed[static_cast<std::size_t>(a)], placed[static_cast<std::size_t>(b)],
+           here[static_cast<std::size_t>(a)] != 0);
+  }
+}
+
+void Contacts::list_obstacles(std::span<const Placed> placed, std::span<const std::uint8_t> here,
+                              double time) {
+  for (std::int32_t k = 0; k < static_cast<std::int32_t>(obstacles_.size()); ++k) {
+    const Placed at = at_time(-1 - k, time);
+    for (std::int32_t b = 0; b < static_cast<std::int32_t>(placed.size()); ++b) {
+      const auto body = static_cast<std::size_t>(b);
+      if (here[body] == 0) continue;
+      const Vec3<double> x = placed[body].x - at.x;
+      const auto beyond = [&](const HalfSpace& h) {
+        return dot(h.normal, x) - h.offset > radius_[body] + reach_;
+      };
+      const auto sides = planes(-1 - k);
+      if (std::none_of(sides.begin(), sides.end(), beyond)) list(b, -1 - k, placed[body], at, true);
+    }
+  }
+}
+
+/// Lists a pair unless there is a wide gap.
+void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
+                    bool counted) {
+  Pair pair{a, b, -1, -1, -1, -1, counted, changed_ && !first_, at_a.x - at_b.x};
+  const double size = length(pair.axis);
+  pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
+  if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;
+  constexpr int tries = 20;
+  if (gap(pair, at_a, at_b, tries) <= reach_) pairs_.push_back(pair);
+}
+
+/// Memories of the list before, or of a checkpoint, by pair; both are sorted.
+void Contacts::take_memories() {
+  next_memories_.clear();
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    Pair& p = pairs_[k];
+    while (at < memories_.size() &&
+           (memories_[at].a < p.a || (memories_[at].a == p.a && memories_[at].b < p.b)))
+      ++at;
+    if (at == memories_.size() || memories_[at].a != p.a || memories_[at].b != p.b) continue;
+    p.memory = static_cast<std::int32_t>(next_memories_.size());
+    p.fresh = false;
+    next_memories_.push_back({p.a, p.b, static_cast<std::int32_t>(k), memories_[at].memory});
+  }
+  std::swap(memories_, next_memories_);
+}
+
+std::vector<double> Contacts::history() const {
+  std::vector<double> rows;
+  for (const Remembered& r : memories_) {
+    if (r.pair >= 0 && !pairs_[static_cast<std::size_t>(r.pair)].counted) continue;
+    const PairMemory& m = r.memory;
+    rows.insert(rows.end(),
+                {static_cast<double>(r.a), static_cast<double>(r.b), m.plastic, m.shear, m.normal.x,
+                 m.normal.y, m.normal.z, m.tangential.x, m.tangential.y, m.tangential.z});
+  }
+  return rows;
+}
+
+void Contacts::restore(std::span<const double> rows, bool changed) {
+  pairs_.clear();
+  memories_.clear();
+  changed_ = true;
+  first_ = !changed;
+  for (std::size_t k = 0; k + width <= rows.size(); k += width) {
+    const auto r = rows.subspan(k, width);
+    memories_.push_back({static_cast<std::int32_t>(r[0]),
+                         static_cast<std::int32_t>(r[1]),
+                         -1,
+                         {r[2], r[3], {r[4], r[5], r[6]}, {r[7], r[8], r[9]}}});
+  }
+}
+
+Contacts::Rates Contacts::rates() const {
+  // L of the stiffest partner.
+  double smallest = obstacles_.empty() ? std::numeric_limits<double>::max() : 0.0;
+  for (const double v : volumes_) smallest = std::min(smallest, 0.5 * std::cbrt(v));
+  double most = 0;
+  for (std::size_t b = 0; b < masses_.size(); ++b) {
+    const double k = options_.young / (0.5 * std::cbrt(volumes_[b]) + smallest);
+    const double reference = std::pow(volumes_[b], 2.0 / 3);
+    const double steeper =
+        options_.law == ContactLaw::potential ? std::max(1.0, widest_[b] / reference) : 1.0;
+    most = std::max(most, 2 * k * steeper * surface_[b] / masses_[b]);
+  }
+  return {most, 4 * options_.damping_ratio * std::sqrt(most)};
+}
+
+}  // namespace floe

@@ -1,0 +1,255 @@
+#include "floe/forces/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "floe/base/petsc.h"
+#include "forces/all_gathered.h"
+#include "forces/contact_exchange.h"
+
+namespace floe {
+namespace {
+
+std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int32_t, 2>> pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+/// Says when the list of pairs must be made anew: before a vertex has moved by the list's slack.
+/// Looks seldom: speeds tell how many steps are safe.
+class Watch {
+ public:
+  void start(const State<Spatial>& state, std::int32_t owned) {
+    at_build_.assign(state.records.begin(),
+                     state.records.begin() + static_cast<std::ptrdiff_t>(owned) * Spatial::record);
+    time_ = state.time;
+    looks_in_ = 0;
+  }
+  bool started() const { return started_; }
+  /// The same on every rank.
+  bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
+    started_ = true;
+    if (--looks_in_ > 0) return false;
+    std::array<double, 2> mine{}, all{};  // way and speed of any vertex
+    for (std::int32_t b = 0; b < part.owned; ++b) {
+      const auto k = static_cast<std::size_t>(b);
+      const double* was = &at_build_[k * Spatial::record];
+      const double* is = state.record(k);
+      const double radius = contacts.radius(part.global[k]);
+      const Vec3<double> way{is[0] - was[0], is[1] - was[1], is[2] - was[2]};
+      const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
+                                        Quat<double>{was[3], -was[4], -was[5], -was[6]});
+      mine[0] = std::max(mine[0], length(way) + 2 * radius * length({turn.x, turn.y, turn.z}));
+      mine[1] = std::max(mine[1],
+                         length({is[7], is[8], is[9]}) + radius * length({is[10], is[11], is[12]}));
+    }
+    for (const Obstacle& o : contacts.obstacles()) {
+      mine[0] = std::max(mine[0], std::abs(state.time - time_) * length(o.velocity));
+      mine[1] = std::max(mine[1], length(o.velocity));
+    }
+    MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part.comm);
+    constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
+    const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : contacts.slack();
+    looks_in_ =
+        static_cast<std::int64_t>(std::clamp((contacts.slack() - all[0]) / per_step, 0.0, 1000.0));
+    return all[0] > contacts.slack();
+  }
+
+ private:
+  std::vector<double> at_build_;
+  double time_ = 0;
+  std::int64_t looks_in_ = 0;
+  bool started_ = false;
+};
+
+class ContactOfModel final : public Contact {
+ public:
+  ContactOfModel(const Part& part, const Lattice& lattice, const ContactOptions& options,
+                 std::vector<Obstacle> obstacles)
+      : part_(part),
+        contacts_(lattice.shapes, lattice.bodies.mass, sorted(lattice.beams.bodies), options,
+                  std::move(obstacles)),
+        exchange_(part),
+        here_(static_cast<std::size_t>(part.global_bodies), 0),
+        peak_(contacts_.obstacles().size()),
+        impulse_(contacts_.obstacles().size()),
+        rates_(contacts_.rates()) {
+    for (std::int32_t b = 0; b < part.owned; ++b)
+      here_[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])] = 1;
+  }
+
+  std::string_view name() const override { return "contact"; }
+
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+    if (contacts_.changed() || !watch_.started() || watch_.is_due(state, part_, contacts_, dt_))
+      build(state);
+    exchange_.gather(state, bodies_);
+    std::fill(mine_.begin(), mine_.end(), ContactWrench{});
+    contacts_.evaluate(bodies_, state.time, mine_);
+    const std::vector<std::int32_t>& local = exchange_.local();
+    for (std::size_t k = 0; k < local.size(); ++k) {
+      if (local[k] < 0) continue;
+      double* w = wrenches.of(static_cast<std::size_t>(local[k]));
+      const ContactWrench& c = mine_[k];
+      w[0] += c.force.x, w[1] += c.force.y, w[2] += c.force.z;
+      w[3] += c.moment.x, w[4] += c.moment.y, w[5] += c.moment.z;
+    }
+  }
+  bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
+  double stiffness_bound(std::int32_t body) const override {
+    return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
+  }
+  Rates own_rates() const override { return {rates_.stiffness, rates_.damping}; }
+
+  void commit(const State<Spatial>& state, double dt) override {
+    exchange_.gather(state, bodies_);
+    contacts_.commit(bodies_, dt);
+    dt_ = dt;
+    watch_obstacles(dt);
+  }
+
+  void release(std::span<const std::array<std::int32_t, 2>> pairs) override {
+    std::vector<std::int32_t> mine;
+    for (const auto& pair : pairs) mine.insert(mine.end(), pair.begin(), pair.end());
+    const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
+    for (std::size_t k = 0; k + 1 < all.size(); k += 2) contacts_.release({all[k], all[k + 1]});
+  }
+
+  void report(const State<Spatial>&, Columns& columns) const override {
+    const ContactEnergies e = contacts_.energies();
+    columns.add("energy_contact", e.stored);
+    columns.add("energy_contact_viscous", e.viscous);
+    columns.add("energy_friction", e.friction);
+    columns.add("energy_crushing", e.crushing);
+    bool moving = false;
+    for (const Obstacle& o : contacts_.obstacles()) moving = moving || length(o.velocity) > 0;
+    if (moving) columns.add("energy_external", e.external);
+    columns.add("contacts", static_cast<double>(contacts_.touching()));
+    const bool first = rank(part_.comm) == 0;  // of what all ranks know alike
+    for (std::size_t k = 0; k < contacts_.obstacles().size(); ++k) {
+      const std::string& obstacle = contacts_.obstacles()[k].name;
+      const ContactWrench& w = contacts_.on_obstacle(k);
+      put(columns, obstacle + "_force", w.force);
+      put(columns, obstacle + "_moment", w.moment);
+      put(columns, obstacle + "_peak_force", first ? peak_[k] : Vec3<double>{});
+      const double share = first && time_ > 0 ? 1 / time_ : 0.0;
+      put(columns, obstacle + "_mean_force", share * impulse_[k]);
+    }
+  }
+
+  void remember(Memory& memory) override;
+
+ private:
+  static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
+    columns.add(name + "_x", v.x);
+    columns.add(name + "_y", v.y);
+    columns.add(name + "_z", v.z);
+  }
+
+  void build(const State<Spatial>& state) const {
+    contacts_.build(exchange_.poses(state), here_, state.time);
+    exchange_.choose(contacts_.involved());
+    bodies_.resize(contacts_.involved().size());
+    mine_.resize(bodies_.size());
+    watch_.start(state, part_.owned);
+    (void)watch_.is_due(state, part_, contacts_, dt_);
+  }
+
+  /// Peak and impulse of the forces on obstacles; with several ranks a sum over them per step.
+  void watch_obstacles(double dt) {
+    const std::size_t n = peak_.size();
+    if (n == 0) return;
+    std::vector<Vec3<double>>& forces = forces_;
+    forces.clear();
+    for (std::size_t k = 0; k < n; ++k) forces.push_back(contacts_.on_obstacle(k).force);
+    if (size(part_.comm) > 1)
+      MPI_Allreduce(MPI_IN_PLACE, forces.data(), static_cast<int>(3 * n), MPI_DOUBLE, MPI_SUM,
+                    part_.comm);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (dot(forces[k], forces[k]) > dot(peak_[k], peak_[k])) peak_[k] = forces[k];
+      impulse_[k] = impulse_[k] + dt * forces[k];
+    }
+    time_ += dt;
+  }
+
+  const Part& part_;
+  mutable Contacts contacts_;
+  mutable ContactExchange exchange_;
+  mutable Watch watch_;
+  mutable std::vector<MovingPose> bodies_;
+  mutable std::vector<ContactWrench> mine_;
+  std::vector<std::uint8_t> here_;
+  std::vector<Vec3<double>> peak_, impulse_, forces_;
+  Contacts::Rates rates_;
+  double dt_ = 0, time_ = 0;
+};
+
+/// The list of pairs is made anew from the state; what a pair remembers goes with it.
+void ContactOfModel::remember(Memory& memory) {
+  for (std::size_t k = 0; k < contacts_.sums().size(); ++k) {
+    // The last step and whether the start is known are no sums.
+    double& value = contacts_.sums()[k];
+    const std::string key = "sum_" + std::to_string(k);
+    k == 4 || k == 6 ? memory.common(key, value) : memory.share(key, value);
+  }
+  memory.common("dt", dt_);
+  memory.common("time", time_);
+  std::vector<double> rows = contacts_.history(), pairs;
+  if (!memory.loading()) {
+    const std::vector<double> all = all_gathered(rows, MPI_DOUBLE, part_.comm);
+    // In list order, whatever the ranks.
+    std::vector<std::array<double, Contacts::width>> in_order(all.size() / Contacts::width);
+    for (std::size_t k = 0; k < in_order.size(); ++k)
+      std::copy_n(&all[k * Contacts::width], Contacts::width, in_order[k].begin());
+    std::sort(in_order.begin(), in_order.end());
+    rows.clear();
+    for (const auto& row : in_order) rows.insert(rows.end(), row.begin(), row.end());
+    for (const auto& [a, b] : contacts_.released())
+      pairs.insert(pairs.end(), {static_cast<double>(a), static_cast<double>(b)});
+  }
+  bool changed = contacts_.changed();
+  memory.common("changed", changed);
+  memory.common("pairs", rows);
+  memory.common("released", pairs);
+  for (std::size_t k = 0; k < peak_.size(); ++k) {
+    const std::string& obstacle = contacts_.obstacles()[k].name;
+    for (auto& [key, vector] :
+         {std::pair<std::string, Vec3<double>*>{"peak_", &peak_[k]}, {"impulse_", &impulse_[k]}}) {
+      memory.common(key + obstacle + "_x", vector->x);
+      memory.common(key + obstacle + "_y", vector->y);
+      memory.common(key + obstacle + "_z", vector->z);
+    }
+  }
+  if (!memory.loading()) return;
+  for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
+    contacts_.release(
+        {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
+  contacts_.restore(rows, changed);
+  watch_ = {};
+}
+
+void check_shapes(const Lattice& lattice) {
+  if (lattice.shapes.empty())
+    throw InputError("forces: contact needs bodies with a shape; the lattice file has no /shapes");
+  for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
+    const double size = std::cbrt(volume_properties(lattice.shapes, b).volume);
+    constexpr double rounding = 1e-6;
+    if (concavity(lattice.shapes, b) > rounding * size)
+      throw InputError("forces: contact needs convex bodies; body " + std::to_string(b) +
+                       " of the lattice is not convex, or a face of it is not plane");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
+                                      const ContactOptions& options,
+                                      std::vector<Obstacle> obstacles) {
+  check_shapes(lattice);
+  return std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+}
+
+}  // namespace floe

@@ -1,0 +1,68 @@
+/// \file
+/// PETSc TS type `liealpha`: the generalised-alpha method for second-order systems whose
+/// configuration may hold rotations (Chung & Hulbert 1993; Arnold & Bruels 2007; Bruels & Cardona
+/// 2010). An own type because PETSc's alpha2 (3.18) starts with an acceleration that is only of
+/// first order, forgets its history when the solution is touched between steps, and keeps its
+/// acceleration to itself, so that a run could not go on from a checkpoint.
+///
+/// The equations F(t, X, V, A) = 0 (TSSetI2Function, TSSetI2Jacobian) hold at the end of each step:
+///
+///     X1 = X0 + h V0 + h^2 ((1/2 - beta) a0 + beta a1)
+///     V1 = V0 + h ((1 - gamma) a0 + gamma a1)
+///     (1 - alpha_m) a1 + alpha_m a0 = (1 - alpha_f) A1 + alpha_f A0
+///     alpha_m = (2 rho - 1)/(rho + 1), alpha_f = rho/(rho + 1),
+///     gamma = 1/2 + alpha_f - alpha_m, beta = (gamma + 1/2)^2/4
+///
+/// with `a` the method's own acceleration, A at about t + (alpha_m - alpha_f) h, and rho =
+/// -ts_liealpha_radius the spectral radius for frequencies that the step does not resolve: 1
+/// conserves the energy of a linear system (the trapezoidal rule), 0 takes them out at once.
+///
+/// Rotations: a component of X may be the running sum of a rotation's increments, q = q_ref exp(X -
+/// X_ref), if the problem moves q_ref and X_ref to the present after each accepted step
+/// (TSSetPostStep) and never writes X. Then a step turns by exp of the increment in X, as in the
+/// papers, and a rejected one leaves nothing behind.
+#pragma once
+
+#include <petscts.h>
+
+#include <functional>
+
+#include "floe/base/petsc.h"
+
+namespace floe {
+
+inline constexpr const char* ts_liealpha = "liealpha";
+
+/// Makes the type known to PETSc (once).
+void register_liealpha();
+
+/// X, V, A and the method's own acceleration at one time.
+struct LieAlphaStage {
+  Vec x, v, a, own;
+};
+
+/// What the type asks of a problem beside PETSc's second-order functions.
+struct LieAlphaProblem {
+  /// A at a start, F(t, x, v, A) = 0: the mass matrix is the problem's to invert.
+  std::function<void(double t, Vec x, Vec v, Vec a)> start;
+  /// Gives prescribed components their values at t, 0 in `own`. F and its derivative leave them
+  /// out. May be empty.
+  std::function<void(double t, const LieAlphaStage& stage)> prescribe;
+};
+
+/// \param problem  must outlive the TS
+void set_liealpha_problem(TS ts, const LieAlphaProblem* problem);
+
+/// What the type takes along over a restart, beside X and V of TS2SetSolution.
+struct LieAlphaMemory {
+  Vec a, own;            ///< at t_n, the type's own vectors
+  double last_step = 0;  ///< the one that led to t_n; 0 at a start
+  PetscInt delay = 0;    ///< steps that TSAdapt still waits before it lets the step grow
+};
+/// What it is at present; the TS must be set up. A start if no step has been made.
+LieAlphaMemory liealpha_memory(TS ts);
+/// The vectors of liealpha_memory() have been given their values: the next step goes on from them
+/// instead of starting.
+void resume_liealpha(TS ts, const LieAlphaMemory& memory);
+
+}  // namespace floe

@@ -1,0 +1,86 @@
+#include "solve/newton.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+namespace floe {
+
+TangentOptions tangent_options() {
+  char pc[64] = "cholesky";
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsGetString(nullptr, nullptr, "-pc_type", pc, sizeof pc, &given));
+  TangentOptions options;
+  if (std::strcmp(pc, PCCHOLESKY) != 0) options.type = MATAIJ;
+  options.symmetric = std::strcmp(pc, PCLU) != 0;
+  return options;
+}
+
+double typical_stiffness(const Model<Spatial>& model) {
+  double mine = 0;
+  for (std::int32_t b = 0; b < model.part().owned; ++b) {
+    for (const auto& force : model.forces()) mine = std::max(mine, force->stiffness_bound(b));
+  }
+  double all = 0;
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, model.part().comm);
+  return all > 0 ? all : 1.0;
+}
+
+void set_newton_defaults(SNES snes) {
+  check(SNESSetType(snes, SNESNEWTONLS));
+  SNESLineSearch search = nullptr;
+  check(SNESGetLineSearch(snes, &search));
+  check(SNESLineSearchSetType(
+      search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
+  KSP ksp = nullptr;
+  PC pc = nullptr;
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPSetType(ksp, KSPPREONLY));
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCCHOLESKY));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
+void attach_rigid_modes(const Model<Spatial>& model, std::span<const std::uint8_t> held,
+                        Mat matrix) {
+  constexpr std::size_t n = Spatial::unknowns;
+  const Part& part = model.part();
+  std::array<Handle<Vec>, 6> modes;
+  std::vector<Vec> list;
+  for (int m = 0; m < 6; ++m) {
+    auto& mode = modes[static_cast<std::size_t>(m)];
+    check(MatCreateVecs(matrix, mode.put(), nullptr));
+    PetscScalar* values = nullptr;
+    check(VecGetArrayWrite(mode, &values));
+    for (std::int32_t body = 0; body < part.owned; ++body) {
+      const auto b = static_cast<std::size_t>(body);
+      const Point3& p = part.bodies.position[b];
+      const Vec3<double> axis{m % 3 == 0 ? 1.0 : 0.0, m % 3 == 1 ? 1.0 : 0.0,
+                              m % 3 == 2 ? 1.0 : 0.0};
+      const Vec3<double> turn = m < 3 ? Vec3<double>{0, 0, 0} : axis;
+      const Vec3<double> u = m < 3 ? axis : cross(axis, Vec3<double>{p[0], p[1], p[2]});
+      const double l = model.length_scale();
+      const std::array<double, 6> entries{u.x, u.y, u.z, l * turn.x, l * turn.y, l * turn.z};
+      for (std::size_t k = 0; k < 6; ++k)
+        values[b * n + k] = (held[b] >> k & 1U) != 0 ? 0.0 : entries[k];
+    }
+    check(VecRestoreArrayWrite(mode, &values));
+    for (const Vec earlier : list) {
+      PetscScalar along = 0;
+      check(VecDot(mode, earlier, &along));
+      check(VecAXPY(mode, -along, earlier));
+    }
+    PetscReal norm = 0;
+    check(VecNorm(mode, NORM_2, &norm));
+    if (norm < 1e-10) continue;  // everything of it is held
+    check(VecScale(mode, 1.0 / norm));
+    list.push_back(mode);
+  }
+  Handle<MatNullSpace> space;
+  check(MatNullSpaceCreate(part.comm, PETSC_FALSE, static_cast<PetscInt>(list.size()), list.data(),
+                           space.put()));
+  check(MatSetNearNullSpace(matrix, space));
+}
+
+}  // namespace floe
