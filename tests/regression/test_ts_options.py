@@ -179,13 +179,13 @@ class ChangingSteps(RestartTest):
         (self.folder / "scene.yaml").write_text(PUSHED)
         subprocess.run([REPOSITORY / "tools/make_lattice", "block", "--size", "2", "2", "0.5", "--height", "-5",
                         "block.h5"], cwd=self.folder, check=True, capture_output=True)
-        for kind in ((), RK4):
+        for dir, kind in (("b", ()), ("c", RK4)):
             straight = self.run_whole(*kind, dir="a")
             summary = json.loads((straight / "summary.json").read_text())
             self.assertLess(summary["dt"], summary["stable_dt"])
             self.assertGreater(summary["steps"], 5000)  # about 1000 at the first step
-            self.finish(self.interrupted(stop_file, *kind), INTERRUPTED)
-            self.assert_same(straight, self.go_on(*kind))
+            self.finish(self.interrupted(stop_file, *kind, dir=dir), INTERRUPTED)
+            self.assert_same(straight, self.go_on(*kind, dir=dir))
 
 
 class Refused(TsTest):

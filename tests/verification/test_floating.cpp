@@ -12,6 +12,7 @@
 
 #include "floe/build.h"
 #include "support/box.h"
+#include "support/dynamics.h"
 #include "support/record.h"
 
 namespace floe::test {
@@ -186,6 +187,19 @@ TEST(Drag, DecayOfVelocity) {
                "over exp(-c A t/(m + rho_w V))");
   for (const Course* r : {&linear, &half, &quadratic, &heavier})
     EXPECT_LT(r->worst_error(), 1e-6 * r->drag.back());
+}
+
+/// What tests step by hand (support/dynamics.h) takes the water along as well.
+TEST(AddedMass, SlowsAFallStepByStep) {
+  Scene scene;
+  scene.forces.gravity = true;
+  scene.added_mass = 1;
+  Dynamics falling(scene, block(-2, {0, 0, 0}));
+  const double dt = 1e-3;
+  falling.set_step(dt);
+  falling.steps(100);
+  EXPECT_NEAR(falling.state().record(0)[Spatial::velocity + 2] / (-gravity * 99.5 * dt),
+              ice / (ice + water), 1e-12);
 }
 
 TEST(Drag, BlockDriftsWithTheCurrent) {
