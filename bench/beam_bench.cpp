@@ -13,10 +13,11 @@ namespace {
 using namespace floe;
 
 /// A meshed sheet of about `bodies` bodies with a smooth deformation and motion.
+template <class Space>
 struct Case {
   Part part;
-  State<Spatial> state;
-  Wrenches<Spatial> wrenches;
+  State<Space> state;
+  Wrenches<Space> wrenches;
   explicit Case(std::int64_t bodies) {
     SheetPlan plan;
     plan.element_size = 1;
@@ -25,25 +26,28 @@ struct Case {
     Lattice lattice = make_sheet(tessellate(plan, PETSC_COMM_SELF), SheetSection{});
     (void)reorder(lattice);
     part = partition(lattice, PETSC_COMM_SELF);
-    state = State<Spatial>(static_cast<std::size_t>(part.local));
-    wrenches = Wrenches<Spatial>(static_cast<std::size_t>(part.local));
+    state = State<Space>(static_cast<std::size_t>(part.local));
+    wrenches = Wrenches<Space>(static_cast<std::size_t>(part.local));
+    constexpr int turns = Space::unknowns - Space::translations;
+    constexpr int first = Space::rotation + (turns == 3 ? 1 : 0);  // after a quaternion's w
     for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
       const Point3& x = part.bodies.position[b];
       double* r = state.record(b);
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < Space::translations; ++k) {
         r[k] = 1e-3 * std::sin(x[0] + k) * std::cos(x[1]);
-        r[Spatial::rotation + 1 + k] = 1e-3 * std::cos(x[0] - k);
-        r[Spatial::velocity + k] = 1e-2 * std::sin(x[1] + k);
+        r[Space::velocity + k] = 1e-2 * std::sin(x[1] + k);
       }
+      for (int k = 0; k < turns; ++k) r[first + k] = 1e-3 * std::cos(x[0] - k);
     }
   }
 };
 
+template <class Space>
 void beam(benchmark::State& bench, double damping) {
-  Case c(bench.range(0));
+  Case<Space> c(bench.range(0));
   BeamOptions options;
   options.damping_ratio = damping;
-  const auto force = make_beam_force<Spatial>(c.part, options);
+  const auto force = make_beam_force<Space>(c.part, options);
   for (auto _ : bench) {
     force->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
@@ -52,8 +56,16 @@ void beam(benchmark::State& bench, double damping) {
       static_cast<double>(c.part.beams.size()) * 1e-9,
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK_CAPTURE(beam, undamped, 0.0)->Arg(1460)->Arg(29561)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(beam, damped, 1.0)->Arg(1460)->Arg(29561)->Unit(benchmark::kMicrosecond);
+void spatial(benchmark::State& bench, double damping) { beam<Spatial>(bench, damping); }
+void planar(benchmark::State& bench, double damping) { beam<Planar>(bench, damping); }
+
+void sizes(benchmark::internal::Benchmark* bench) {
+  bench->Arg(1460)->Arg(29561)->Unit(benchmark::kMicrosecond);
+}
+BENCHMARK_CAPTURE(spatial, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(spatial, damped, 1.0)->Apply(sizes);
+BENCHMARK_CAPTURE(planar, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(planar, damped, 1.0)->Apply(sizes);
 
 }  // namespace
 
