@@ -5,6 +5,7 @@
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
+#include "solve/out_of_plane.h"
 #include "solve/text.h"
 
 namespace floe {
@@ -18,11 +19,15 @@ constexpr double pin_tolerance =
 
 }  // namespace
 
-void check_solver_options(Model<Spatial>& model) { const Equilibrium equilibrium(model); }
+template <class Space>
+void check_solver_options(Model<Space>& model) {
+  const Equilibrium<Space> equilibrium(model);
+}
 
-RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
-                          const Observer<Spatial>& observer) {
-  Equilibrium equilibrium(model);
+template <class Space>
+RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
+                          const Observer<Space>& observer, const OutOfPlane* rest) {
+  Equilibrium<Space> equilibrium(model);
   RunResult result;
   const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
   const auto accept = [&](std::int64_t step) {
@@ -83,7 +88,21 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
   }
   result.done = true;
   result.unstable_modes = equilibrium.unstable_modes();
+  result.factorisations = equilibrium.factorisations();
+  if constexpr (std::is_same_v<Space, Planar>) {
+    if (rest != nullptr && result.unstable_modes >= 0) {
+      result.unstable_modes += unstable_modes(model, *rest, equilibrium.state());
+      ++result.factorisations;
+    }
+  }
   return result;
 }
+
+template void check_solver_options(Model<Spatial>&);
+template void check_solver_options(Model<Planar>&);
+template RunResult run_quasistatic(Model<Spatial>&, const TimeSpan&, const Observer<Spatial>&,
+                                   const OutOfPlane*);
+template RunResult run_quasistatic(Model<Planar>&, const TimeSpan&, const Observer<Planar>&,
+                                   const OutOfPlane*);
 
 }  // namespace floe
