@@ -353,23 +353,27 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
 /// through them.
 template <class Space>
 bool Equilibrium<Space>::let_break(double time, double overload_limit) {
-  Fracture& fracture = *model_.fracture();
-  if (const double overload = fracture.overload(state_); overload > overload_limit) {
-    why_ = "a beam would be loaded to " + std::to_string(overload) + " times its strength";
-    return false;
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    Fracture& fracture = *model_.fracture();
+    if (const double overload = fracture.overload(state_); overload > overload_limit) {
+      why_ = "a beam would be loaded to " + std::to_string(overload) + " times its strength";
+      return false;
+    }
+    constexpr int most_rounds = 1000;  // of softening without a break
+    int rounds = 0;
+    for (Advance done = fracture.advance(state_); done != Advance::none;
+         done = fracture.advance(state_)) {
+      rounds = done == Advance::broke ? 0 : rounds + 1;
+      if (rounds <= most_rounds && balance(time)) continue;
+      if (why_.empty()) why_ = "damage does not come to rest";
+      collapsed_ = true;
+      fracture.retreat();
+      return false;
+    }
+    return true;
+  } else {  // planar beams do not break
+    return (void)time, (void)overload_limit, true;
   }
-  constexpr int most_rounds = 1000;  // of softening without a break
-  int rounds = 0;
-  for (Advance done = fracture.advance(state_); done != Advance::none;
-       done = fracture.advance(state_)) {
-    rounds = done == Advance::broke ? 0 : rounds + 1;
-    if (rounds <= most_rounds && balance(time)) continue;
-    if (why_.empty()) why_ = "damage does not come to rest";
-    collapsed_ = true;
-    fracture.retreat();
-    return false;
-  }
-  return true;
 }
 
 /// Newton's method from the present state to equilibrium at `time`; leaves the state anywhere if it
@@ -408,19 +412,47 @@ std::int64_t Equilibrium<Space>::count_folded() const {
   return all;
 }
 
+/// The tangent on z, rx, ry at a planar state, into the planar one's matrix, whose size and pattern
+/// it has, so that MUMPS need not analyse it again. No entry couples these with x, y, rz (mirror
+/// symmetry); so the negative eigenvalues of both together are those of the spatial tangent
+/// (Sylvester's law of inertia).
 template <class Space>
-std::int64_t Equilibrium<Space>::unstable_modes() {
+void Equilibrium<Space>::assemble_out_of_plane(const OutOfPlane& rest) {
+  const Timed timed(Event::tangent);
+  if constexpr (std::is_same_v<Space, Planar>) {
+    constexpr std::uint8_t z_rx_ry = 0b011100;
+    Tangent<Spatial> tangent(part_, rest.held, model_.length_scale(), typical_stiffness(model_),
+                             tangent_.matrix(), z_rx_ry);
+    const State<Spatial> all = in_space(state_, false);
+    tangent.begin();
+    for (const auto& force : rest.forces) (void)force->add_tangent(all, tangent);
+    tangent.end();
+    ++assemblies_;
+  }
+}
+
+template <class Space>
+std::int64_t Equilibrium<Space>::unstable_modes(const OutOfPlane* rest) {
   KSP ksp = nullptr;
   check(SNESGetKSP(snes_, &ksp));
-  check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+  const auto use_tangent = [&] {
+    check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+  };
+  use_tangent();
   if (mumps_cholesky(ksp) == nullptr) return -1;
   if (!constant_) {
     rebase(x_);
     assemble();
-    check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+    use_tangent();
   }
   const Timed timed(Event::solve);
-  return negative_pivots(ksp);
+  std::int64_t negative = negative_pivots(ksp);
+  // With linear kinematics forces in the plane have no effect out of it.
+  if (rest == nullptr || model_.kinematics() == Kinematics::linear) return negative;
+  assemble_out_of_plane(*rest);
+  use_tangent();
+  negative += negative_pivots(ksp);
+  return negative;
 }
 
 template <class Space>

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "floe/solve/model.h"
+#include "floe/solve/integrator.h"
 #include "solve/rotation_unknowns.h"
 
 namespace floe {
@@ -48,9 +48,10 @@ class Equilibrium {
   /// pushes a motion that nothing holds.
   double pin_reaction() const;
   /// Number of negative eigenvalues of the tangent at the present state: more than none is an
-  /// unstable equilibrium. Costs a factorisation if forces are not linear; -1 if the solver is not
-  /// Cholesky by MUMPS, which tells.
-  std::int64_t unstable_modes();
+  /// unstable equilibrium. Costs a factorisation if forces are not linear, and one more for what a
+  /// planar model leaves out; -1 if the solver is not Cholesky by MUMPS, which tells. To be asked
+  /// last.
+  std::int64_t unstable_modes(const OutOfPlane* rest);
 
  private:
   struct Saved {
@@ -85,6 +86,7 @@ class Equilibrium {
   }
   std::array<double, turns> turn_of(const PetscScalar* unknowns) const;
   void assemble(std::span<const double> increments = {});
+  void assemble_out_of_plane(const OutOfPlane& rest);
   std::vector<double> increments_to(double time);
   void fill_right_hand_side(std::vector<double>& increments);
   bool predict(double time);

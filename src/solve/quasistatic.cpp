@@ -5,7 +5,6 @@
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
-#include "solve/out_of_plane.h"
 #include "solve/text.h"
 
 namespace floe {
@@ -26,7 +25,7 @@ void check_solver_options(Model<Space>& model) {
 
 template <class Space>
 RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
-                          const Observer<Space>& observer, const OutOfPlane* rest) {
+                          const ObserverOf<Space>& observer, const OutOfPlane* rest) {
   Equilibrium<Space> equilibrium(model);
   RunResult result;
   const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
@@ -87,14 +86,8 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
     dt = std::min(given, 2 * dt);
   }
   result.done = true;
-  result.unstable_modes = equilibrium.unstable_modes();
+  result.unstable_modes = equilibrium.unstable_modes(rest);
   result.factorisations = equilibrium.factorisations();
-  if constexpr (std::is_same_v<Space, Planar>) {
-    if (rest != nullptr && result.unstable_modes >= 0) {
-      result.unstable_modes += unstable_modes(model, *rest, equilibrium.state());
-      ++result.factorisations;
-    }
-  }
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,9 @@ struct TimeSpan {
 
 template <class Space>
 using Observer = std::function<void(const Accepted<Space>&)>;
+/// Where the space follows from a model, so that a lambda will do.
+template <class Space>
+using ObserverOf = std::type_identity_t<Observer<Space>>;
 
 /// What a planar model leaves out, for one question at the end of a static run: whether the
 /// equilibrium would stand a disturbance out of plane.
@@ -64,7 +68,7 @@ struct OutOfPlane {
 /// storage. Collective. \param rest  of a planar model: its unstable modes count too
 template <class Space>
 RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
-                          const Observer<Space>& observer, const OutOfPlane* rest = nullptr);
+                          const ObserverOf<Space>& observer, const OutOfPlane* rest = nullptr);
 
 /// What an integrator that moves bodies is told.
 struct DynamicOptions {
@@ -87,8 +91,12 @@ struct ExplicitOptions : DynamicOptions {
 /// sample goes to the observer. Stops, with the last sample as last good state, when a velocity or
 /// the energy balance crosses its limit or a number is not finite. Collective. \throws InputError
 /// for a dt above the stable step, and for options of solvers that explicit dynamics does not use
-RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
-                       const Observer<Spatial>& observer);
+template <class Space>
+RunResult run_explicit(Model<Space>& model, const ExplicitOptions& options,
+                       const ObserverOf<Space>& observer);
+
+/// Why the stepper that the options choose takes spatial models only; empty if it does not.
+std::string explicit_needs_space();
 
 /// Newton's equations by PETSc's TS: own type `liealpha`, generalised-alpha on the rotation group,
 /// with the exact tangent; any step. All of PETSc's -ts_adapt_*, -snes_*, -ksp_*, -pc_* and -mat_*
