@@ -13,10 +13,10 @@
 #include <map>
 #include <tuple>
 
-#include "floe/base/petsc.h"
 #include "floe/solve/model.h"
 #include "forces/beam_blocks.h"
 #include "forces/beam_spatial.h"
+#include "sheet.h"
 #include "solve/leapfrog.h"
 #include "solve/motion.h"
 
@@ -65,15 +65,9 @@ class Case {
 
  private:
   static Lattice mesh(std::int64_t bodies) {
-    SheetPlan plan;
-    plan.element_size = 1;
-    plan.length = plan.width = std::sqrt(static_cast<double>(bodies) * std::sqrt(3.0) / 2);
-    plan.iterations = 5;
     SheetSection section;
     section.thickness = 0.5;
-    Lattice lattice = make_sheet(tessellate(plan, PETSC_COMM_SELF), section);
-    (void)reorder(lattice);
-    return lattice;
+    return bench::meshed_sheet(bodies, section);
   }
   Motion start(double damping, bool breakable) {
     BeamOptions options;
@@ -238,9 +232,4 @@ BENCHMARK(ts)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  floe::Mpi mpi(argc, argv);
-  floe::Session session(argc, argv, "");
-  benchmark::RunSpecifiedBenchmarks();
-}
+int main(int argc, char** argv) { return floe::bench::run(argc, argv); }

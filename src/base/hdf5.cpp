@@ -45,9 +45,16 @@ void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 }  // namespace
 
-Hdf5File Hdf5File::create(const std::string& path) {
+Hdf5File Hdf5File::create(const std::string& path, std::uintmax_t room) {
   quiet();
   const std::string temporary = path + temporary_ending;
+  std::error_code unknown;
+  const auto folder = std::filesystem::absolute(path).parent_path();
+  const auto space = std::filesystem::space(folder, unknown);
+  if (!unknown && space.available < room) {
+    errno = ENOSPC;
+    require(false, "write", temporary);
+  }
   const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   require(id >= 0, "create", temporary);
   return {id, temporary, path};

@@ -186,6 +186,7 @@ PlanarStress<T> linear_rates(const PlanarConstants<C>& beam, const Vec2<T>& velo
 /// The kernel for one choice of kinematics, picked outside the loop over beams.
 template <Kinematics kinematics>
 struct PlanarKernel {
+  static constexpr bool is_linear = kinematics == Kinematics::linear;
   template <class T, class C>
   static PlanarStrains<T> strains(const PlanarConstants<C>& beam, const Vec2<T>& d, const T& turn_i,
                                   const T& turn_j) {
@@ -236,7 +237,7 @@ struct PlanarBeam {
   }
   /// Of unit length, without stiffness.
   static Constants none() { return {{1, 0}, 1, 0, 0, 0}; }
-  static double largest_stiffness(const Constants& c) { return std::max(c.kn, c.ks); }
+  static double shear_stiffness(const Constants& c) { return c.ks; }
 
   static PlanarStrains<double> strains(const Constants& c, const double* i, const double* j) {
     return Kernel::strains(c, relative(i, j), i[Space::rotation], j[Space::rotation]);

@@ -39,7 +39,8 @@ struct SpatialBeam {
     c.l0 = 1;
     return c;
   }
-  static double largest_stiffness(const Constants& c) { return std::max({c.kn, c.ksy, c.ksz}); }
+  /// The larger one.
+  static double shear_stiffness(const Constants& c) { return std::max(c.ksy, c.ksz); }
 
   static BeamStrains<double> strains(const Constants& c, const double* i, const double* j) {
     return Kernel::strains(c, relative(i, j), rotation_of(i), rotation_of(j));

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "floe/base/simd.h"
@@ -101,6 +103,26 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
   double power(const State<Space>&) const override { return -power_lost_; }
   void take_work(double work) override { lost_ -= work; }
 
+  /// Of the stiffnesses that change with a beam's length, against the lighter of its bodies: k_n,
+  /// and k_s (l0/l)^2 + |N|/l across.
+  std::optional<double> fastest_rate(const State<Space>& state) const override {
+    if (Beam::Kernel::is_linear) return {};
+    double fastest2 = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      const Constants c = constants(m);
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const Point3 &from = part_.bodies.position[a], &to = part_.bodies.position[b];
+      const Vec3<double> chord = Vec3<double>{to[0] - from[0], to[1] - from[1], to[2] - from[2]} +
+                                 (displacement(state, b) - displacement(state, a));
+      const double l = std::sqrt(dot(chord, chord)), stretch = c.l0 / l;
+      const double across =
+          Beam::shear_stiffness(c) * stretch * stretch + std::abs(c.kn * (l - c.l0)) / l;
+      fastest2 = std::max(
+          fastest2, std::max(c.kn, across) / std::min(part_.bodies.mass[a], part_.bodies.mass[b]));
+    });
+    return std::sqrt(fastest2);
+  }
+
   void report(const State<Space>& state, Columns& columns) const override {
     columns.add("energy_strain", stored(state));
     // Leapfrog's velocities lag half a step: at t_n the sum has the powers up to n - 3/2, and what
@@ -158,7 +180,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
     block.i[k % lanes] = i;
     block.j[k % lanes] = j;
     for (const std::int32_t body : {i, j})
-      stiffness_[static_cast<std::size_t>(body)] += Beam::largest_stiffness(c);
+      stiffness_[static_cast<std::size_t>(body)] += std::max(c.kn, Beam::shear_stiffness(c));
     if constexpr (damped) {
       const BeamStiffness springs = beam_stiffness(part_.beams, m, options.shear);
       dashpots_[k / lanes].set(k % lanes, beam_damping(part_, m, springs, options),

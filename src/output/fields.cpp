@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <sstream>
 
 #include "floe/base/rotation.h"
@@ -104,7 +105,8 @@ void Fields::cut_back(std::size_t keep) {
     }
     as_it_is = !old.has(group_name(keep));
     if (!as_it_is) {
-      Hdf5File kept = Hdf5File::create(path);
+      // HDF5 1.10 crashes where its copy of an object meets a full disk.
+      Hdf5File kept = Hdf5File::create(path, std::filesystem::file_size(path));
       kept.copy(old, "/mesh");
       for (std::size_t k = 0; k < keep; ++k) kept.copy(old, group_name(k));
       write_xmf();  // before the frames go: a run killed in between leaves no name of a frame that

@@ -103,6 +103,8 @@ class DynamicRun {
   void evaluate();
   /// Hands the state out if a sample is due at its time.
   bool sample_if_due() { return !due() || sample(); }
+  /// Whether the state was a sample.
+  bool sampled() const { return sampled_ == done_; }
   bool evaluate_and_sample_if_due() {
     if (!due()) return true;
     evaluate();

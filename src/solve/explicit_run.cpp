@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "solve/text.h"
 
@@ -10,21 +12,20 @@ namespace floe {
 template <class Space>
 ExplicitRun<Space>::ExplicitRun(std::string_view type, Model<Space>& model,
                                 const ExplicitOptions& options, const Observer<Space>& observer)
-    : DynamicRun<Space>("explicit", type, model, options, observer),
-      explicit_options_(options),
-      rates_(model.forces().size(), -1) {}
+    : DynamicRun<Space>("explicit", type, model, options, observer), explicit_options_(options) {}
 
 template <class Space>
 StableStep ExplicitRun<Space>::look() {
   const StableStep stable = find_stable_step();
   evaluations_ = stable.evaluations;
   last_look_ = this->done();
+  last_stable_ = stable.dt;
+  last_rate_ = fastest_rate();
   return stable;
 }
 
 template <class Space>
 void ExplicitRun<Space>::choose_step() {
-  (void)is_faster();
   const StableStep stable = look();
   this->result().stable_dt = stable.dt;
   this->result().limited_by = stable.limit;
@@ -39,37 +40,34 @@ void ExplicitRun<Space>::choose_step() {
   this->plan(wanted);
 }
 
-/// Whether a force moves or stops bodies a fifth faster than it ever did when this was last true.
+/// Sum of the forces' own fastest rates, of all ranks' bodies; 0 if none has any.
 template <class Space>
-bool ExplicitRun<Space>::is_faster() {
-  std::vector<double> rates(rates_.size(), -1);
-  bool any = false;
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (const auto rate = this->model().forces()[k]->fastest_rate(this->state())) {
-      rates[k] = *rate;
-      any = true;
-    }
+double ExplicitRun<Space>::fastest_rate() {
+  std::vector<double> rates;
+  for (const auto& force : this->model().forces()) {
+    if (const auto rate = force->fastest_rate(this->state())) rates.push_back(*rate);
   }
-  if (!any) return false;
+  if (rates.empty()) return 0;
   MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPI_DOUBLE, MPI_MAX,
                 this->model().part().comm);
-  constexpr double much = 1.2;
-  bool faster = false;
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    if (!(rates[k] > much * std::max(rates_[k], 0.0))) continue;
-    rates_[k] = rates[k];
-    faster = true;
-  }
-  return faster;
+  return std::accumulate(rates.begin(), rates.end(), 0.0);
+}
+
+/// The least stable step that dt is taken with.
+template <class Space>
+double ExplicitRun<Space>::needed() const {
+  return this->options().dt > 0 ? this->dt() : this->dt() / (0.5 * (1 + explicit_options_.safety));
 }
 
 template <class Space>
 bool ExplicitRun<Space>::look_is_due() {
-  if (explicit_options_.allow_unstable) return false;
-  // A step costs about an evaluation, and the rates a tenth of it.
-  constexpr std::int64_t now_and_then = 20, least = 1000, share = 100;
-  return this->done() - last_look_ >= std::max(least, share * evaluations_) ||
-         (this->done() % now_and_then == 0 && this->done() > 0 && is_faster());
+  if (explicit_options_.allow_unstable || this->done() == 0) return false;
+  // A step costs about an evaluation, and the rates less than half of it.
+  constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
+  if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
+  if (!this->sampled() && this->done() % now_and_then != 0) return false;
+  const double rate = fastest_rate();
+  return rate > last_rate_ && !(last_stable_ * (last_rate_ / rate) >= needed());
 }
 
 template <class Space>
@@ -80,9 +78,8 @@ bool ExplicitRun<Space>::keep_step_stable(TS ts) {
     this->result().stable_dt = stable.dt;
     this->result().limited_by = stable.limit;
   }
-  const double safety = explicit_options_.safety, before = this->dt();
+  if (needed() <= stable.dt) return true;
   if (this->options().dt > 0) {
-    if (before <= stable.dt) return true;
     this->give_up(
         "the stable step has fallen to " + text(stable.dt) + " s, below dt, at time " +
         text(this->time()) + " s, limited by the " + stable.limit +
@@ -90,8 +87,8 @@ bool ExplicitRun<Space>::keep_step_stable(TS ts) {
         "all the same)");
     return false;
   }
-  if (before <= 0.5 * (1 + safety) * stable.dt) return true;
-  this->replan(ts, safety * stable.dt);
+  const double before = this->dt();
+  this->replan(ts, explicit_options_.safety * stable.dt);
   step_changed(ts, before);
   return true;
 }
@@ -100,7 +97,8 @@ template <class Space>
 void ExplicitRun<Space>::remember_own(Memory& memory) {
   memory.common("last_look", last_look_);
   memory.common("look_evaluations", evaluations_);
-  memory.common("rates", rates_);
+  memory.common("look_stable_dt", last_stable_);
+  memory.common("look_rate", last_rate_);
 }
 
 template class ExplicitRun<Spatial>;

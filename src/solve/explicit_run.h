@@ -8,11 +8,12 @@
 
 namespace floe {
 
-/// The stable step is found at the beginning and again, as often as that costs 1 % of the steps, or
-/// sooner once a force says that it has become faster (Force::fastest_rate). Where it has
-/// fallen so far that half of what `safety` leaves is used up, `dt: auto` takes shorter steps from
-/// there on; a given step ends the run when it is no longer stable. A run whose stable step does
-/// not fall so far goes on as if nobody had looked, to the last bit.
+/// The stable step is found at the beginning and again, as often as that costs 1 % of the steps. It
+/// is found at once where the forces' own fastest rates (Force::fastest_rate), looked at with each
+/// sample, have grown so far that it may have fallen below what dt needs. `dt: auto` needs it where
+/// half of what `safety` leaves is used up, and takes shorter steps from there on; a given step
+/// ends the run when it is no longer stable. A run whose stable step does not fall so far goes on
+/// as if nobody had looked, to the last bit.
 template <class Space>
 class ExplicitRun : public DynamicRun<Space> {
  public:
@@ -37,11 +38,13 @@ class ExplicitRun : public DynamicRun<Space> {
  private:
   StableStep look();
   bool look_is_due();
-  bool is_faster();
+  double fastest_rate();
+  double needed() const;
 
   const ExplicitOptions& explicit_options_;
+  // Of the last look:
   std::int64_t last_look_ = 0, evaluations_ = 0;
-  std::vector<double> rates_;  // the largest at a look, of each force; below 0: it has none [1/s]
+  double last_stable_ = 0, last_rate_ = 0;
 };
 
 /// Newton's equations by PETSc's explicit Runge-Kutta methods, all of their -ts_rk_type, on bodies'

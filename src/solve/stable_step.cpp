@@ -30,9 +30,9 @@ class Operators {
         base_(state),
         moving_(state),
         moved_(state),
-        while_moving_(static_cast<std::size_t>(part_.local)),
-        forward_(while_moving_),
-        backward_(while_moving_) {
+        at_rest_(static_cast<std::size_t>(part_.local)),
+        forward_(at_rest_),
+        backward_(at_rest_) {
     for (std::int32_t b = 0; b < part_.owned; ++b) roots_.push_back(roots(b));
     // Stiffness without the velocities of the moment, so that dashpots have no part in it.
     double fastest2 = 0;
@@ -50,7 +50,7 @@ class Operators {
       bound_.stiffness += force->own_rates().stiffness;
       bound_.damping += force->own_rates().damping;
     }
-    evaluate(moving_, while_moving_);
+    evaluate(base_, at_rest_);
   }
 
   int evaluations() const { return evaluations_; }
@@ -95,12 +95,7 @@ class Operators {
     displace(z, -step, 0);
     evaluate(moved_, backward_);
     stiffness = weighted(forward_, backward_, step > 0 ? -0.5 / step : 0.0);
-    // Damping is linear but for quadratic drag: about the velocities of the moment, by 1 % of them.
-    const double change =
-        speed_ < slow || step == 0 ? 1.0 : 1e4 * step * speed_ / model_.length_scale();
-    displace(z, 0, change);
-    evaluate(moved_, forward_);
-    damping = weighted(forward_, while_moving_, -1.0 / change);
+    difference_damping(z, step, damping);
     stiffness += bound_.stiffness * z;
     damping += bound_.damping * z;
   }
@@ -108,6 +103,24 @@ class Operators {
   const Rates& bound() const { return bound_; }
 
  private:
+  /// \param step  of displacements that are 1e-6 of the length scale and of a radian
+  void difference_damping(const Vector& z, double step, Vector& damping) {
+    if (speed_ < slow || step == 0) {
+      displace(z, 0, 1);
+      evaluate(moved_, forward_);
+      damping = weighted(forward_, at_rest_, -1.0);
+      return;
+    }
+    // About the velocities of the moment, on which quadratic drag depends: by 1e-3 of them to
+    // either side, or the images of a search's vectors would not be those of one linear map.
+    const double change = 1e3 * step * speed_ / model_.length_scale();
+    displace(z, 0, change);
+    evaluate(moved_, forward_);
+    displace(z, 0, -change);
+    evaluate(moved_, backward_);
+    damping = weighted(forward_, backward_, -0.5 / change);
+  }
+
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) {
     std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
     for (const auto& force : model_.forces()) {
@@ -193,7 +206,7 @@ class Operators {
   const Part& part_;
   static constexpr double slow = 1e-6;  // [m/s]: no quadratic drag to speak of
   State<Space> base_, moving_, moved_;
-  Wrenches<Space> while_moving_, forward_, backward_;
+  Wrenches<Space> at_rest_, forward_, backward_;
   double speed_ = 0;
   Rates bound_;
   std::vector<Components> roots_;  ///< of owned bodies

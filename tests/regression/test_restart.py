@@ -380,5 +380,62 @@ class DiskFull(RestartTest):
         self.assertTrue((self.folder / "b/history.csv").read_text().endswith("\n"))
 
 
+class RealDiskFull(RestartTest):
+    """A file system of 64 MB that is full; needs the right to mount one."""
+
+    def setUp(self):
+        super().setUp()
+        self.disk = self.folder / "b"
+        self.disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "tmpfs", str(self.disk)], capture_output=True).returncode:
+            self.skipTest("cannot mount a small file system (root may)")
+        self.addCleanup(subprocess.run, ["umount", str(self.disk)], check=True)
+
+    def fill(self, left):
+        """A file that leaves so many bytes."""
+        free = os.statvfs(self.disk)
+        with open(self.disk / "filler", "wb") as file:
+            file.write(bytes(free.f_bavail * free.f_frsize - left))
+
+    def full(self, left, *options):
+        """What a run says that goes on from the checkpoint with so many bytes left."""
+        self.fill(left)
+        before = (self.disk / "checkpoint.h5").read_bytes()
+        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", *options, dir="b"), 1)
+        self.assertIn("floe: cannot write", said)
+        self.assertIn("No space left on device", said)
+        self.assertNotIn("internal", said)
+        self.assertEqual((self.disk / "checkpoint.h5").read_bytes(), before)
+        self.assertEqual(list(self.disk.glob("*.part")), [])
+        self.assertTrue((self.disk / "history.csv").read_text().endswith("\n"))
+        self.assertGreater(sum(key.endswith("@time") for key in contents(self.disk / "fields.h5")), 0)
+        (self.disk / "filler").unlink()
+        return said
+
+    def test_a_run_goes_on_once_there_is_room(self):
+        def checkpoint():
+            return (self.disk / "checkpoint.h5").stat().st_size - 4096
+
+        for options, left, name in ((("-output_fields", "20"), lambda: 8 << 10, r"history\.csv"),
+                                    (("-output_history", "1", "-output_fields", "0.05"), lambda: 200 << 10,
+                                     r"fields\.(h5|xmf)"),
+                                    (("-output_fields", "20", "-output_history", "0.5", "-checkpoint_every", "0.05"),
+                                     checkpoint, r"checkpoint\.h5")):
+            with self.subTest(name):
+                straight = self.run_whole(*options, dir="a")
+                for file in self.disk.iterdir():
+                    file.unlink()
+                process = self.begin(*options, dir="b")
+                while process.poll() is None and not (self.disk / "history.csv").exists():
+                    time.sleep(0.002)
+                time.sleep(0.1)
+                (self.disk / "STOP").touch()
+                self.finish(process, INTERRUPTED)
+                self.assertRegex(self.full(left(), *options), name)
+                if "fields" in name:  # the frames that came after the checkpoint are left out by a copy
+                    self.assertIn("fields.h5.part: No space", self.full(50 << 10, *options))
+                self.assert_same(straight, self.go_on(*options))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -4,9 +4,10 @@ restarts of rk; and which of the options are refused, with the reason.
 """
 import csv
 import json
+import subprocess
 import unittest
 
-from test_restart import INTERRUPTED, RestartTest, contents, stop_file
+from test_restart import INTERRUPTED, REPOSITORY, RestartTest, contents, stop_file
 
 PULL = """integrator: explicit
 forces: [beam]
@@ -157,6 +158,34 @@ class Restarts(RestartTest):
         self.run_whole(*RK4, "-time_end", "1", dir="c")
         said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", dir="c"), 2)
         self.assertIn("is of ts_type 'rk'", said)
+
+
+# A block under water, pushed faster and faster: the step shrinks with the speed.
+PUSHED = """integrator: explicit
+forces: [drag]
+lattice_file: block.h5
+water: {drag_coefficient: 1.2}
+initial: {names: [i], i: {set: all, velocity: [5, 0, 0]}}
+load: {names: [p], p: {set: all, force: [2e6, 0, 0], ramp: 4000}}
+time: {end: 4200}
+limit: {energy_error: 10}
+output: {history: 2}
+checkpoint: {every: 1000}
+"""
+
+
+class ChangingSteps(RestartTest):
+    def test_go_on_bit_for_bit(self):
+        (self.folder / "scene.yaml").write_text(PUSHED)
+        subprocess.run([REPOSITORY / "tools/make_lattice", "block", "--size", "2", "2", "0.5", "--height", "-5",
+                        "block.h5"], cwd=self.folder, check=True, capture_output=True)
+        for dir, kind in (("b", ()), ("c", RK4)):
+            straight = self.run_whole(*kind, dir="a")
+            summary = json.loads((straight / "summary.json").read_text())
+            self.assertLess(summary["dt"], summary["stable_dt"])
+            self.assertGreater(summary["steps"], 5000)  # about 1000 at the first step
+            self.finish(self.interrupted(stop_file, *kind, dir=dir), INTERRUPTED)
+            self.assert_same(straight, self.go_on(*kind, dir=dir))
 
 
 class Refused(TsTest):

@@ -11,7 +11,8 @@
 #include <vector>
 
 #include "floe/build.h"
-#include "support/lattices.h"
+#include "support/box.h"
+#include "support/dynamics.h"
 #include "support/record.h"
 
 namespace floe::test {
@@ -22,23 +23,9 @@ constexpr double side = 4, thickness = 1, ice = 920, water = 1010, gravity = 9.8
 constexpr double area = side * side, mass = ice * area * thickness;
 constexpr double floating = thickness * (0.5 - ice / water);  // height of the centroid [m]
 
-/// One box, its centroid at the given height.
+/// The block, its centroid at the given height.
 Lattice block(double height, const Point3& velocity, const Point3& spin = {}) {
-  Lattice one = frame({{0, 0, height}}, {});
-  one.bodies.mass = {mass};
-  const double plate = mass * (side * side + thickness * thickness) / 12;
-  one.bodies.inertia = {{plate, plate, mass * side * side / 6}};
-  one.bodies.velocity = {velocity};
-  one.bodies.angular_velocity = {spin};
-  for (const double z : {-thickness / 2, thickness / 2}) {
-    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
-      one.shapes.vertices.push_back({x * side / 2, y * side / 2, z});
-  }
-  one.shapes.corners = {3, 2, 1, 0, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
-  one.shapes.corner_of = {0, 4, 8, 12, 16, 20, 24};
-  one.shapes.face_of = {0, 6};
-  one.shapes.vertex_of = {0, 8};
-  return one;
+  return box({side, side, thickness}, ice, height, velocity, spin);
 }
 
 Scene afloat() {
@@ -200,6 +187,19 @@ TEST(Drag, DecayOfVelocity) {
                "over exp(-c A t/(m + rho_w V))");
   for (const Course* r : {&linear, &half, &quadratic, &heavier})
     EXPECT_LT(r->worst_error(), 1e-6 * r->drag.back());
+}
+
+/// What tests step by hand (support/dynamics.h) takes the water along as well.
+TEST(AddedMass, SlowsAFallStepByStep) {
+  Scene scene;
+  scene.forces.gravity = true;
+  scene.added_mass = 1;
+  Dynamics falling(scene, block(-2, {0, 0, 0}));
+  const double dt = 1e-3;
+  falling.set_step(dt);
+  falling.steps(100);
+  EXPECT_NEAR(falling.state().record(0)[Spatial::velocity + 2] / (-gravity * 99.5 * dt),
+              ice / (ice + water), 1e-12);
 }
 
 TEST(Drag, BlockDriftsWithTheCurrent) {

@@ -16,8 +16,9 @@ namespace floe {
 /// user gave that cannot be used raises InputError.
 class Hdf5File {
  public:
-  /// A new file that will be called `path` once close() has been called.
-  static Hdf5File create(const std::string& path);
+  /// A new file that will be called `path` once close() has been called. \param room  bytes that
+  /// the file system must have left
+  static Hdf5File create(const std::string& path, std::uintmax_t room = 0);
   /// A file that grows and is flushed sample by sample (fields.h5); starts empty.
   static Hdf5File create_growing(const std::string& path);
   /// An existing file that goes on growing. \throws FileError if it cannot be opened

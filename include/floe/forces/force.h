@@ -65,9 +65,9 @@ class Force {
   /// step, and never take one back, can use the force.
   virtual bool has_history() const { return false; }
   /// A cheap measure of the fastest rate at which the force alone moves or stops one of this rank's
-  /// bodies [1/s], of forces for which that changes in a run (bodies come to the water, contacts
-  /// come, drag grows with the speed). Once it is a fifth above what it was, over all ranks, the
-  /// stable step is found anew. Alike on all ranks: all give a number, or none does.
+  /// bodies [1/s], of forces for which that changes in a run (bodies come to the water, beams are
+  /// pressed, drag grows with the speed). Where the sum over forces has grown, the stable step is
+  /// found anew in time. Alike on all ranks: all give a number, or none does.
   virtual std::optional<double> fastest_rate(const State<Space>& /*state*/) const { return {}; }
 
   /// Power on this rank's bodies of what no potential of the force accounts for, in its last

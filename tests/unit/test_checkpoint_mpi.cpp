@@ -1,0 +1,206 @@
+// What a checkpoint keeps comes back to the last bit; what is not there, or of another lattice, is
+// refused.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "floe/build.h"
+#include "floe/solve/checkpoint.h"
+#include "support/lattices.h"
+
+namespace floe::test {
+namespace {
+
+/// A checkpoint file that is removed when the test ends.
+class Kept {
+ public:
+  explicit Kept(const std::string& lattice = "of a lattice") {
+    options.file = options.restart =
+        (std::filesystem::temp_directory_path() /
+         ("floe_checkpoint_" + std::to_string(size()) + std::to_string(first_rank()) + ".h5"))
+            .string();
+    options.stop_file = options.file + ".stop";
+    options.scene = lattice;
+    options.options = "forces: [beam]\n";
+  }
+  ~Kept() {
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank() == 0) std::filesystem::remove(options.file);
+  }
+  Kept(const Kept&) = delete;
+  Kept& operator=(const Kept&) = delete;
+  CheckpointOptions options;
+
+ private:
+  static int first_rank() {
+    int id = getpid();
+    MPI_Bcast(&id, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    return id;
+  }
+};
+
+/// Numbers of every kind that something remembers.
+struct Remembered {
+  double number = 0;
+  std::int64_t count = 0;
+  bool yes = false;
+  std::string words;
+  std::vector<double> list;
+  double share = 0;
+  std::vector<double> rows;
+
+  void remember(Memory& memory, const std::vector<std::int32_t>& bodies) {
+    memory.enter("a");
+    memory.common("number", number);
+    memory.common("count", count);
+    memory.common("yes", yes);
+    memory.common("words", words);
+    memory.enter("b");
+    memory.common("list", list);
+    memory.share("share", share);
+    memory.rows("rows", bodies, rows, 3);
+  }
+};
+
+class Checkpoint : public testing::Test {
+ protected:
+  Part part = partition(sheet(6, 5, 1), PETSC_COMM_WORLD);
+  std::vector<std::int32_t> owned = std::vector<std::int32_t>(static_cast<std::size_t>(part.owned));
+  Checkpoint() { std::iota(owned.begin(), owned.end(), 0); }
+
+  Remembered some() const {
+    Remembered r{std::nextafter(0.1, 1),  (std::int64_t{1} << 62) + 1, true, "two words",
+                 {1e-308, -0.0, 1.0 / 3}, 0.1 * (rank() + 1),          {}};
+    for (const std::int32_t body : owned) {
+      const double g = part.global[static_cast<std::size_t>(body)];
+      r.rows.insert(r.rows.end(), {g, std::sin(g), 1 / (g + 1)});
+    }
+    return r;
+  }
+};
+
+TEST_F(Checkpoint, GivesBackWhatItWasGiven) {
+  const Kept kept;
+  Remembered before = some();
+  Checkpoints(kept.options, part).save([&](Memory& m) { before.remember(m, owned); });
+  Remembered after;
+  after.rows.resize(3 * owned.size());
+  Checkpoints(kept.options, part).load([&](Memory& m) {
+    EXPECT_TRUE(m.loading());
+    after.remember(m, owned);
+  });
+  const Remembered as_it_was = some();
+  EXPECT_EQ(after.number, as_it_was.number);
+  EXPECT_EQ(after.count, as_it_was.count);
+  EXPECT_EQ(after.yes, as_it_was.yes);
+  EXPECT_EQ(after.words, as_it_was.words);
+  EXPECT_EQ(after.list, as_it_was.list);
+  EXPECT_TRUE(std::signbit(after.list[1]));
+  EXPECT_EQ(after.share, as_it_was.share);
+  EXPECT_EQ(after.rows, as_it_was.rows);
+}
+
+TEST_F(Checkpoint, RowsAndSharesComeToOneRankFromMany) {
+  const Kept kept;
+  Remembered before = some();
+  Checkpoints(kept.options, part).save([&](Memory& m) { before.remember(m, owned); });
+  // Every rank alone reads the file, as a run on one rank would.
+  const Part whole = partition(sheet(6, 5, 1), PETSC_COMM_SELF);
+  std::vector<std::int32_t> all(static_cast<std::size_t>(whole.owned));
+  std::iota(all.begin(), all.end(), 0);
+  Remembered after;
+  after.rows.resize(3 * all.size());
+  MPI_Barrier(PETSC_COMM_WORLD);
+  Checkpoints(kept.options, whole).load([&](Memory& m) { after.remember(m, all); });
+  EXPECT_NEAR(after.share, 0.1 * size() * (size() + 1) / 2, 1e-15);
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    const double g = whole.global[b];
+    EXPECT_EQ(after.rows[3 * b], g);
+    EXPECT_EQ(after.rows[3 * b + 1], std::sin(g));
+  }
+}
+
+TEST_F(Checkpoint, RefusesWhatIsNotThereAndWhatIsOfAnotherLattice) {
+  const Kept kept;
+  Remembered r = some();
+  Checkpoints(kept.options, part).save([&](Memory& m) { r.remember(m, owned); });
+  EXPECT_THROW(Checkpoints(kept.options, part).load([](Memory& m) {
+    double missing = 0;
+    m.enter("a");
+    m.common("missing", missing);
+  }),
+               InputError);
+  EXPECT_THROW(Checkpoints(kept.options, part).load([](Memory& m) {
+    double one = 0;
+    m.enter("b");
+    m.common("list", one);
+  }),
+               InputError);
+  CheckpointOptions other = kept.options;
+  other.scene = "of another";
+  EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
+  other = kept.options;
+  other.restart += ".nowhere";
+  EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
+}
+
+TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
+  const Kept kept;
+  const Lattice lattice = sheet(6, 5, 1, true);
+  Scene scene;
+  scene.forces.beam = scene.forces.gravity = scene.forces.buoyancy = scene.forces.drag = true;
+  scene.beam.damping_ratio = 0.3;
+  scene.drag.linear = 200;
+  Load load;
+  load.name = "p", load.point = Point2{0.4, 0.7}, load.force = {1e3, 0, -1e4};
+  load.moment = {0, 2e3, 0}, load.ramp.seconds = 1;
+  scene.loads = {load};
+  const auto make = [&] {
+    auto model =
+        std::make_unique<Model<Spatial>>(lattice, PETSC_COMM_WORLD, std::vector<Boundary>{});
+    add_forces(scene, place_loads(scene, lattice), *model);
+    return model;
+  };
+  const auto remember = [](Model<Spatial>& model) {
+    return [&model](Memory& m) {
+      for (std::size_t k = 0; k < model.forces().size(); ++k) {
+        m.enter("force_" + std::to_string(k));
+        model.forces()[k]->remember(m);
+      }
+    };
+  };
+  const auto model = make(), other = make();
+  const auto local = static_cast<std::size_t>(model->part().local);
+  State<Spatial> state(local);
+  Wrenches<Spatial> wrenches(local);
+  const auto move = [&](Model<Spatial>& which, int step) {
+    for (std::size_t b = 0; b < local; ++b) {
+      const double g = which.part().global[b], s = 1e-4 * (step + std::sin(g));
+      double* r = state.record(b);
+      r[0] = s, r[1] = -s, r[2] = 2 * s;
+      r[Spatial::velocity] = 10 * s, r[Spatial::velocity + 2] = -s;
+    }
+    state.time = 0.1 * step;
+    which.evaluate(state, wrenches);
+    for (const auto& force : which.forces()) force->commit(state, 0.1);
+  };
+  for (int step = 1; step <= 3; ++step) move(*model, step);
+  Checkpoints(kept.options, model->part()).save(remember(*model));
+  Checkpoints(kept.options, other->part()).load(remember(*other));
+  // From here on both are the same, to the last bit.
+  other->evaluate(state, wrenches);
+  EXPECT_EQ(model->report(state), other->report(state));
+  move(*model, 4), move(*other, 4);
+  const auto report = model->report(state);
+  EXPECT_EQ(report, other->report(state));
+  for (const auto& [name, value] : report) EXPECT_NE(value, 0) << name;
+}
+
+}  // namespace
+}  // namespace floe::test
