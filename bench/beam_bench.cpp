@@ -1,4 +1,4 @@
-// ns per beam of the beam forces on a regular-ordered sheet: FloeBench --benchmark_filter=beam
+// ns per beam of the beam forces: build/release/bench/beam_bench --benchmark_filter=planar
 #include <benchmark/benchmark.h>
 
 #include "floe/forces/beam.h"
@@ -8,11 +8,12 @@ namespace {
 
 using namespace floe;
 
+template <class Space>
 void beam(benchmark::State& run, double damping) {
-  bench::Sheet c(run.range(0));
+  bench::Sheet<Space> c(run.range(0));
   BeamOptions options;
   options.damping_ratio = damping;
-  const auto force = make_beam_force<Spatial>(c.part, options);
+  const auto force = make_beam_force<Space>(c.part, options);
   for (auto _ : run) {
     force->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
@@ -21,8 +22,16 @@ void beam(benchmark::State& run, double damping) {
       static_cast<double>(c.part.beams.size()) * 1e-9,
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK_CAPTURE(beam, undamped, 0.0)->Arg(1460)->Arg(29561)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(beam, damped, 1.0)->Arg(1460)->Arg(29561)->Unit(benchmark::kMicrosecond);
+void spatial(benchmark::State& run, double damping) { beam<Spatial>(run, damping); }
+void planar(benchmark::State& run, double damping) { beam<Planar>(run, damping); }
+
+void sizes(benchmark::internal::Benchmark* run) {
+  run->Arg(1460)->Arg(29561)->Unit(benchmark::kMicrosecond);
+}
+BENCHMARK_CAPTURE(spatial, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(spatial, damped, 1.0)->Apply(sizes);
+BENCHMARK_CAPTURE(planar, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(planar, damped, 1.0)->Apply(sizes);
 
 }  // namespace
 

@@ -24,23 +24,27 @@ inline Lattice meshed_sheet(std::int64_t bodies, const SheetSection& section = {
   return lattice;
 }
 
-inline void deform(const Part& part, State<Spatial>& state) {
+template <class Space>
+void deform(const Part& part, State<Space>& state) {
+  constexpr int turns = Space::unknowns - Space::translations;
+  constexpr int first = Space::rotation + (turns == 3 ? 1 : 0);  // after a quaternion's w
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
     const Point3& x = part.bodies.position[b];
     double* r = state.record(b);
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < Space::translations; ++k) {
       r[k] = 1e-3 * std::sin(x[0] + k) * std::cos(x[1]);
-      r[Spatial::rotation + 1 + k] = 1e-3 * std::cos(x[0] - k);
-      r[Spatial::velocity + k] = 1e-2 * std::sin(x[1] + k);
+      r[Space::velocity + k] = 1e-2 * std::sin(x[1] + k);
     }
+    for (int k = 0; k < turns; ++k) r[first + k] = 1e-3 * std::cos(x[0] - k);
   }
 }
 
 /// The sheet on one process.
+template <class Space>
 struct Sheet {
   Part part;
-  State<Spatial> state;
-  Wrenches<Spatial> wrenches;
+  State<Space> state;
+  Wrenches<Space> wrenches;
   explicit Sheet(std::int64_t bodies)
       : part(partition(meshed_sheet(bodies), PETSC_COMM_SELF)),
         state(static_cast<std::size_t>(part.local)),

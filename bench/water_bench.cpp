@@ -9,7 +9,7 @@ namespace {
 
 using namespace floe;
 
-void evaluate(benchmark::State& run, const Force<Spatial>& force, bench::Sheet& c) {
+void evaluate(benchmark::State& run, const Force<Spatial>& force, bench::Sheet<Spatial>& c) {
   for (auto _ : run) {
     force.add(c.state, c.wrenches);
     benchmark::DoNotOptimize(c.wrenches.values.data());
@@ -20,15 +20,15 @@ void evaluate(benchmark::State& run, const Force<Spatial>& force, bench::Sheet& 
 }
 
 void buoyancy(benchmark::State& run) {
-  bench::Sheet c(run.range(0));
+  bench::Sheet<Spatial> c(run.range(0));
   evaluate(run, *make_buoyancy<Spatial>(c.part, 1010 * 9.81), c);
 }
 void drag_linear(benchmark::State& run) {
-  bench::Sheet c(run.range(0));
+  bench::Sheet<Spatial> c(run.range(0));
   evaluate(run, *make_drag<Spatial>(c.part, {.linear = 100}), c);
 }
 void drag_quadratic(benchmark::State& run) {
-  bench::Sheet c(run.range(0));
+  bench::Sheet<Spatial> c(run.range(0));
   evaluate(run, *make_drag<Spatial>(c.part, {.coefficient = 1}), c);
 }
 BENCHMARK(buoyancy)->Arg(1460)->Arg(29561);

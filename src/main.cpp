@@ -28,33 +28,37 @@ void say(const std::string& text, std::FILE* where = stdout) {
 }
 
 /// The initial state, kept until the output folder is there.
+template <class Space>
 struct First {
-  floe::State<floe::Spatial> state;
-  floe::Wrenches<floe::Spatial> wrenches;
+  floe::State<Space> state;
+  floe::Wrenches<Space> wrenches;
   std::vector<std::pair<std::string, double>> columns, forces;
 };
 
-int run(const std::string& path) {
+/// What a run starts from.
+struct Start {
+  double time;
+  floe::MeshReport mesh;
+  floe::Lattice lattice;
+  floe::Skips skips;
+};
+
+template <class Space>
+int run(const floe::Scene& scene, Start& start) {
   using namespace floe;
-  const double start = MPI_Wtime();
-
-  // 1. The scene
-  const Scene scene = read_scene(path);
-  check_reports(scene);
-
-  // 2. Sheet -> lattice
-  MeshReport mesh;
-  Lattice lattice = make_lattice(scene, PETSC_COMM_WORLD, mesh);
-  set_initial(scene, lattice);
+  Lattice& lattice = start.lattice;
 
   // 3. The model: this rank's part of the lattice, boundaries, forces
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
-  Model<Spatial> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
+  Model<Space> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
   add_forces(scene, loads, model);
   add_contact(scene, lattice, model);
-  if (scene.integrator == Integrator::quasistatic) hold_free_motions(scene, lattice, model);
+  const bool is_static = scene.integrator == Integrator::quasistatic;
+  if (is_static) hold_free_motions(scene, lattice, model);
+  OutOfPlane rest;
+  if (is_static && start.skips.planar) rest = out_of_plane(scene, lattice, loads, model.part());
   if (scene.check_only) {
-    if (scene.integrator == Integrator::quasistatic) check_solver_options(model);
+    if (is_static) check_solver_options(model);
     say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
         std::to_string(model.part().global_beams) + " beams\n");
     return done;
@@ -63,9 +67,9 @@ int run(const std::string& path) {
   // 4. Output, opened once a step has shown that every option was understood: bad input leaves no
   // folder behind
   const std::string lattice_id = fingerprint(lattice);
-  std::optional<Output> output;
+  std::optional<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
-  std::optional<First> first;
+  std::optional<First<Space>> first;
   const auto open = [&] {
     reject_unused_options();
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
@@ -80,9 +84,9 @@ int run(const std::string& path) {
   const auto prepare = [&] {
     if (!output) open();
   };
-  const auto observe = [&](const Accepted<Spatial>& accepted) {
+  const auto observe = [&](const Accepted<Space>& accepted) {
     if (accepted.step == 0) {
-      first = First{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
+      first = First<Space>{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
       return;
     }
     prepare();
@@ -95,13 +99,13 @@ int run(const std::string& path) {
       OutputMemory(output->memory()).remember(checkpoint);
     }
   };
-  const RunResult result = integrate(scene, model, lattice_id, observe, prepare, remember);
+  const RunResult result = integrate(scene, model, rest, lattice_id, observe, prepare, remember);
   prepare();  // a run that found not even a first state leaves a summary that says so
   if (!result.stopped) output->finish();  // a stopped run goes on where it was
 
   // 6. Results
-  const Summary summary =
-      summarise(scene, model, mesh, result, output->first(), output->last(), MPI_Wtime() - start);
+  const Summary summary = summarise(scene, start.skips, model, start.mesh, result, output->first(),
+                                    output->last(), MPI_Wtime() - start.time);
   if (rank() == 0) write_whole(scene.output.dir + "/summary.json", summary.json);
   say(summary.text);
   const std::string how = result.stopped ? "; go on with: floe " + scene.path +
@@ -114,6 +118,24 @@ int run(const std::string& path) {
         stderr);
   warn_unused_options();
   return result.done ? done : result.stopped ? stopped : failed;
+}
+
+int run(const std::string& path) {
+  using namespace floe;
+  Start start{MPI_Wtime(), {}, {}, {}};
+
+  // 1. The scene
+  const Scene scene = read_scene(path);
+  check_reports(scene);
+
+  // 2. Sheet -> lattice, and what it does not need
+  start.lattice = make_lattice(scene, PETSC_COMM_WORLD, start.mesh);
+  set_initial(scene, start.lattice);
+  start.skips = skips_of(scene, start.lattice);
+  const std::string& why = start.skips.needs_space;
+  say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
+
+  return start.skips.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
 }
 
 }  // namespace

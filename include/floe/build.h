@@ -31,14 +31,26 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
 /// Sets the velocities of the scene's `initial` sections. \throws InputError for an unknown set
 void set_initial(const Scene& scene, Lattice& lattice);
 
+/// What a scene does not need, decided once.
+struct Skips {
+  bool planar = false;      ///< nothing loads, moves or prescribes anything out of the plane
+  std::string needs_space;  ///< why it is not planar; empty if it is, or need not be
+  std::string text;         ///< one line: "planar, linear, undamped, no water, no contact"
+};
+/// \throws InputError if the scene says `planar: true` and cannot be
+Skips skips_of(const Scene& scene, const Lattice& lattice);
+
 /// Where an explicit run writes its checkpoints.
 std::string checkpoint_file(const Scene& scene);
 
-/// Runs the scene's integrator. Collective. \param lattice_id  its fingerprint, for checkpoints
+/// Runs the scene's integrator. Collective. \param rest  what a planar model leaves out
+/// \param lattice_id  its fingerprint, for checkpoints
 /// \param prepare  opens the output that a checkpoint goes with, if it is not open
 /// \param others  what checkpoints keep beside the integrator's state
-RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string& lattice_id,
-                    const Observer<Spatial>& observer, const std::function<void()>& prepare,
+template <class Space>
+RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane& rest,
+                    const std::string& lattice_id, const ObserverOf<Space>& observer,
+                    const std::function<void()>& prepare,
                     const std::function<void(Memory&)>& others);
 
 /// The scene's loads on the lattice's bodies. \throws InputError for an unknown set
@@ -46,15 +58,22 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);
 
 /// Adds the forces that the scene names to the model, and its loads.
 /// \throws InputError if the lattice cannot carry one (buoyancy without shapes)
-void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model);
+template <class Space>
+void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model);
 
 /// Adds contacts, if the scene names them. \param lattice  whole
 /// \throws InputError if bodies have no shapes or are not convex
-void add_contact(const Scene& scene, const Lattice& lattice, Model<Spatial>& model);
+template <class Space>
+void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model);
 
 /// Takes free rigid motions out of a static problem.
 /// \throws InputError if a load pushes one of them: the scene has no equilibrium
-void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model);
+template <class Space>
+void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Space>& model);
+
+/// What a planar model of a static problem leaves out.
+OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
+                        const std::vector<PlacedLoad>& loads, const Part& part);
 
 /// \throws InputError if the scene is not the test that it wants reported
 void check_reports(const Scene& scene);
@@ -63,8 +82,9 @@ void check_reports(const Scene& scene);
 struct Summary {
   std::string json, text;
 };
-Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
-                  const RunResult& result, const Sample& first, const Sample& last,
-                  double wall_seconds);
+template <class Space>
+Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& model,
+                  const MeshReport& mesh, const RunResult& result, const Sample& first,
+                  const Sample& last, double wall_seconds);
 
 }  // namespace floe

@@ -22,6 +22,9 @@ namespace floe {
 
 enum class Integrator { quasistatic, leapfrog, implicit };
 
+/// Whether a model may leave out what does not move: by itself, always (or refuse), never.
+enum class Planarity { automatic, always, never };
+
 struct Region {
   std::string name;
   std::array<double, 6> box{};  ///< x0, x1, y0, y1, z0, z1 [m]
@@ -42,6 +45,7 @@ struct Scene {
   std::string path;  ///< the scene file
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
+  Planarity planar = Planarity::automatic;
   struct {
     bool beam = false, fracture = false, gravity = false, buoyancy = false, drag = false,
          contact = false;

@@ -1,31 +1,50 @@
 #include "floe/forces/beam.h"
 
+#include "forces/beam_planar_blocks.h"
 #include "forces/spatial_beams.h"
 
 namespace floe {
 namespace {
 
-template <Kinematics kinematics>
-std::unique_ptr<BeamForce<Spatial>> make_spatial(const Part& part, const BeamOptions& options) {
-  const bool damped = options.damping_ratio > 0;
-  if (is_flat(part)) {
-    if (damped) return std::make_unique<SpatialBeams<kinematics, true, FlatFrame>>(part, options);
-    return std::make_unique<SpatialBeams<kinematics, false, FlatFrame>>(part, options);
-  }
-  if (damped) return std::make_unique<SpatialBeams<kinematics, true, AnyFrame>>(part, options);
-  return std::make_unique<SpatialBeams<kinematics, false, AnyFrame>>(part, options);
+template <class Beam>
+std::unique_ptr<BeamForce<typename Beam::Space>> make(const Part& part,
+                                                      const BeamOptions& options) {
+  if (options.damping_ratio > 0) return std::make_unique<LatticeBeams<Beam, true>>(part, options);
+  return std::make_unique<LatticeBeams<Beam, false>>(part, options);
 }
 
-/// Moment of inertia at rest of a local body about a world axis.
-double inertia_about(const Part& part, std::int32_t body, const Vec3<double>& axis) {
-  const auto b = static_cast<std::size_t>(body);
-  const auto [w, x, y, z] = part.bodies.orientation[b];
-  const Vec3<double> a = triad(Quat<double>{w, x, y, z}).to_local(axis);
-  const Point3& inertia = part.bodies.inertia[b];
-  return inertia[0] * a.x * a.x + inertia[1] * a.y * a.y + inertia[2] * a.z * a.z;
+template <class Space, Kinematics kinematics>
+std::unique_ptr<BeamForce<Space>> make(const Part& part, const BeamOptions& options) {
+  if constexpr (std::is_same_v<Space, Planar>) {
+    return make<PlanarLanes<kinematics>>(part, options);
+  } else {
+    if (all_flat(part)) return make<SpatialLanes<kinematics, FlatFrame>>(part, options);
+    return make<SpatialLanes<kinematics, AnyFrame>>(part, options);
+  }
 }
 
 }  // namespace
+
+Triad<double> beam_triad(const Bodies& bodies, const Beams& beams, std::int32_t m) {
+  const auto k = static_cast<std::size_t>(m);
+  const auto [i, j] = beams.bodies[k];
+  const Point3& xi = bodies.position[static_cast<std::size_t>(i)];
+  const Point3& xj = bodies.position[static_cast<std::size_t>(j)];
+  const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
+  const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
+  const Point3& axis = beams.axis_y[k];
+  Vec3<double> e2{axis[0], axis[1], axis[2]};
+  e2 = e2 - dot(e2, e1) * e1;
+  e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
+  return {e1, e2, cross(e1, e2)};
+}
+
+bool is_flat(const Bodies& bodies, const Beams& beams, std::int32_t m) {
+  constexpr double rounding = 2e-15;  // of two vectors made unit and orthogonal
+  const auto [e1, e2, e3] = beam_triad(bodies, beams, m);
+  return e1.z == 0 && std::abs(e2.z) <= rounding && std::abs(e2.x + e1.y) <= rounding &&
+         std::abs(e2.y - e1.x) <= rounding;
+}
 
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear) {
   const auto k = static_cast<std::size_t>(m);
@@ -57,9 +76,10 @@ BeamStiffness beam_damping(const Part& part, std::int32_t m, const BeamStiffness
   };
   const double mass = harmonic(part.bodies.mass[static_cast<std::size_t>(i)],
                                part.bodies.mass[static_cast<std::size_t>(j)]);
-  const Triad<double> t = beam_triad(part, m);
+  const Triad<double> t = beam_triad(part.bodies, part.beams, m);
   const auto turning = [&](const Vec3<double>& axis) {
-    return harmonic(inertia_about(part, i, axis), inertia_about(part, j, axis));
+    const Point3 a{axis.x, axis.y, axis.z};
+    return harmonic(inertia_about(part.bodies, i, a), inertia_about(part.bodies, j, a));
   };
   if (options.damping_modes == DampingModes::axial) return {dashpot(mass, k.kn), 0, 0, 0, 0, 0};
   return {dashpot(mass, k.kn),           dashpot(mass, k.ksz),
@@ -70,11 +90,13 @@ BeamStiffness beam_damping(const Part& part, std::int32_t m, const BeamStiffness
 template <class Space>
 std::unique_ptr<BeamForce<Space>> make_beam_force(const Part& part, const BeamOptions& options) {
   if (options.kinematics == Kinematics::linear)
-    return make_spatial<Kinematics::linear>(part, options);
-  return make_spatial<Kinematics::corotational>(part, options);
+    return make<Space, Kinematics::linear>(part, options);
+  return make<Space, Kinematics::corotational>(part, options);
 }
 
 template std::unique_ptr<BeamForce<Spatial>> make_beam_force<Spatial>(const Part&,
                                                                       const BeamOptions&);
+template std::unique_ptr<BeamForce<Planar>> make_beam_force<Planar>(const Part&,
+                                                                    const BeamOptions&);
 
 }  // namespace floe

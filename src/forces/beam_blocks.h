@@ -73,6 +73,11 @@ struct alignas(64) DashpotBlock {
     for (std::size_t k = 0; k < 6; ++k) c[k] = values[k][lane];
     return c;
   }
+  void set(std::size_t lane, const BeamStiffness& c, bool counts_here) {
+    const std::array<double, 6> all{c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz};
+    for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
+    counts[lane] = counts_here ? 1.0 : 0.0;
+  }
 };
 
 /// A block's bodies, one per lane.

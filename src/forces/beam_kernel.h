@@ -311,6 +311,7 @@ BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stre
 /// The kernel for one choice of kinematics, picked outside the loop over beams.
 template <Kinematics kinematics>
 struct BeamKernel {
+  static constexpr bool is_linear = kinematics == Kinematics::linear;
   template <class T, class Constants>
   static BeamStrains<T> strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
                                 const Quat<T>& qj) {

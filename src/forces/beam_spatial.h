@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <unsupported/Eigen/AutoDiff>
 
+#include <algorithm>
 #include <array>
 
 #include "floe/forces/beam.h"
@@ -13,38 +14,33 @@
 
 namespace floe {
 
-/// The triad of beam m of a part at rest.
-inline Triad<double> beam_triad(const Part& part, std::int32_t m) {
-  const auto k = static_cast<std::size_t>(m);
-  const auto [i, j] = part.beams.bodies[k];
-  const Point3& xi = part.bodies.position[static_cast<std::size_t>(i)];
-  const Point3& xj = part.bodies.position[static_cast<std::size_t>(j)];
-  const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
-  const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
-  const Point3& axis = part.beams.axis_y[k];
-  Vec3<double> e2{axis[0], axis[1], axis[2]};
-  e2 = e2 - dot(e2, e1) * e1;
-  e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
-  return {e1, e2, cross(e1, e2)};
-}
-
 template <Kinematics kinematics>
 struct SpatialBeam {
   using Space = Spatial;
   using Constants = BeamConstants<double>;
+  using Dashpots = BeamDashpots;
   using Kernel = BeamKernel<kinematics>;
   static constexpr int n = Space::unknowns;
 
   /// Constants of beam m of a part.
   static Constants make(const Part& part, std::int32_t m, Shear shear) {
     Constants c{};
-    const auto [e1, e2, e3] = beam_triad(part, m);
+    const auto [e1, e2, e3] = beam_triad(part.bodies, part.beams, m);
     c.rest = {e1, e2, e3};
     c.l0 = part.beams.length[static_cast<std::size_t>(m)];
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
     return c;
   }
+  /// Of unit length, without stiffness.
+  static Constants none() {
+    Constants c{};
+    c.rest = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    c.l0 = 1;
+    return c;
+  }
+  /// The larger one.
+  static double shear_stiffness(const Constants& c) { return std::max(c.ksy, c.ksz); }
 
   static BeamStrains<double> strains(const Constants& c, const double* i, const double* j) {
     return Kernel::strains(c, relative(i, j), rotation_of(i), rotation_of(j));
@@ -56,9 +52,8 @@ struct SpatialBeam {
 
   static bool is_folded(const Constants& c, const double* i, const double* j) {
     if constexpr (kinematics == Kinematics::linear) return false;
-    constexpr double smallest_cosine = 0.2;
     const BeamStrains<double> s = strains(c, i, j);
-    return !(s.chord.x > smallest_cosine * s.l);
+    return !(s.chord.x > folded_cosine * s.l);
   }
 
   static BeamSection section(const Constants& c, const double* i, const double* j) {

@@ -132,7 +132,7 @@ template <Kinematics kinematics>
 BreakableForce make_kinematic(const Part& part, const BeamOptions& beams,
                               const FractureOptions& fracture) {
   const bool damped = beams.damping_ratio > 0;
-  if (is_flat(part))
+  if (all_flat(part))
     return damped ? make_with<kinematics, true, FlatFrame>(part, beams, fracture)
                   : make_with<kinematics, false, FlatFrame>(part, beams, fracture);
   return damped ? make_with<kinematics, true, AnyFrame>(part, beams, fracture)

@@ -1,15 +1,24 @@
 #include "floe/forces/load.h"
 
+#include <Eigen/Core>
+
 #include <limits>
 
 namespace floe {
 namespace {
 
+/// The axis that an unknown turns a body about.
+template <class Space>
+constexpr int turns_about(int unknown) {
+  return Space::components[static_cast<std::size_t>(unknown)] - 3;
+}
+
 /// Dead load F with the moment M: wrench (F, a x F + M) on each body, a = R r the turned arm.
 /// Potential -F.(u + a) of the force; a dead moment has none, which the exact tangent K shows as a
 /// skew part. With linear kinematics a = r in the wrench, which is constant then, and r + theta x r
 /// in the potential.
-class DeadLoad final : public Force<Spatial> {
+template <class Space>
+class DeadLoad final : public Force<Space> {
  public:
   DeadLoad(const Part& part, PlacedLoad placed, Kinematics kinematics)
       : load_(std::move(placed.load)), part_(part), linear_(kinematics == Kinematics::linear) {
@@ -26,37 +35,42 @@ class DeadLoad final : public Force<Spatial> {
 
   std::string_view name() const override { return "load"; }
 
-  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+  void add(const State<Space>& state, Wrenches<Space>& wrenches) const override {
     const Vec3<double> f = force(state.time), m = moment(state.time);
     for (const std::int32_t body : bodies_) {
       const auto b = static_cast<std::size_t>(body);
-      const Vec3<double> total = m + cross(linear_ ? arm_ : turned_arm(state, b), f);
-      double* w = wrenches.of(b);
-      w[0] += f.x, w[1] += f.y, w[2] += f.z;
-      w[3] += total.x, w[4] += total.y, w[5] += total.z;
+      floe::add(wrenches, b, f, m + cross(linear_ ? arm_ : turned_arm(state, b), f));
     }
   }
 
   /// Second variation of -F.a along a spin t: (F.a)|t|^2 - (F.t)(a.t).
-  bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+  bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
     if (linear_) return false;
     const Vec3<double> f = force(state.time);
     for (const std::int32_t body : bodies_) {
       const Vec3<double> a = turned_arm(state, static_cast<std::size_t>(body));
       const std::array<double, 3> fs{f.x, f.y, f.z}, as{a.x, a.y, a.z};
-      Tangent<Spatial>::Block block{};
-      for (std::size_t r = 0; r < 3; ++r) {
-        for (std::size_t c = 0; c < 3; ++c)
-          block[(3 + r) * 6 + 3 + c] =
-              (r == c ? dot(f, a) : 0.0) - 0.5 * (fs[r] * as[c] + as[r] * fs[c]);
+      Eigen::Matrix3d k;
+      for (int r = 0; r < 3; ++r) {
+        for (int s = 0; s < 3; ++s) {
+          const auto i = static_cast<std::size_t>(r), j = static_cast<std::size_t>(s);
+          k(r, s) = (r == s ? dot(f, a) : 0.0) - 0.5 * (fs[i] * as[j] + as[i] * fs[j]);
+        }
       }
       if (!tangent.symmetric()) {
         // K = H - skew(g)/2 with g = -(a x F) the force's moment gradient (the applied moment
         // itself is constant).
         const Vec3<double> g = cross(f, a);
-        block[3 * 6 + 4] += 0.5 * g.z, block[4 * 6 + 3] -= 0.5 * g.z;
-        block[3 * 6 + 5] -= 0.5 * g.y, block[5 * 6 + 3] += 0.5 * g.y;
-        block[4 * 6 + 5] += 0.5 * g.x, block[5 * 6 + 4] -= 0.5 * g.x;
+        k(0, 1) += 0.5 * g.z, k(1, 0) -= 0.5 * g.z;
+        k(0, 2) -= 0.5 * g.y, k(2, 0) += 0.5 * g.y;
+        k(1, 2) += 0.5 * g.x, k(2, 1) -= 0.5 * g.x;
+      }
+      typename Tangent<Space>::Block block{};
+      constexpr int n = Space::unknowns;
+      for (int r = Space::translations; r < n; ++r) {
+        for (int s = Space::translations; s < n; ++s)
+          block[static_cast<std::size_t>(r * n + s)] =
+              k(turns_about<Space>(r), turns_about<Space>(s));
       }
       tangent.add_body(body, block);
     }
@@ -66,7 +80,7 @@ class DeadLoad final : public Force<Spatial> {
   double stiffness_bound(std::int32_t) const override { return 0; }
 
   /// Work over the step by the trapezoidal rule; moments on the rotation of the step.
-  void commit(const State<Spatial>& state, double) override {
+  void commit(const State<Space>& state, double) override {
     const Vec3<double> f = force(state.time), m = moment(state.time);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const Place now = place_of(state, bodies_[k]);
@@ -78,17 +92,14 @@ class DeadLoad final : public Force<Spatial> {
     last_moment_ = m;
   }
 
-  double power(const State<Spatial>& state) const override {
+  double power(const State<Space>& state) const override {
     const Vec3<double> f = force(state.time), m = moment(state.time);
     double sum = 0;
     for (const std::int32_t body : bodies_) {
       const auto b = static_cast<std::size_t>(body);
-      const double* r = state.record(b);
-      const double* v = r + Spatial::velocity;
-      const double* w = r + Spatial::angular_velocity;
-      const Vec3<double> spin{w[0], w[1], w[2]};
+      const Vec3<double> spin = angular_velocity(state, b);
       const Vec3<double> arm = linear_ ? arm_ : turned_arm(state, b);
-      sum += dot(f, Vec3<double>{v[0], v[1], v[2]} + cross(spin, arm)) + dot(m, spin);
+      sum += dot(f, velocity(state, b) + cross(spin, arm)) + dot(m, spin);
     }
     return sum;
   }
@@ -115,7 +126,7 @@ class DeadLoad final : public Force<Spatial> {
   }
 
   /// Potential of the dead force; applied moments are left out, they have none.
-  void report(const State<Spatial>& state, Columns& columns) const override {
+  void report(const State<Space>& state, Columns& columns) const override {
     const Vec3<double> f = force(state.time);
     double energy = 0;
     for (const std::int32_t body : bodies_) {
@@ -135,10 +146,9 @@ class DeadLoad final : public Force<Spatial> {
     const double s = share_ * load_.ramp.value(time);
     return {s * load_.moment[0], s * load_.moment[1], s * load_.moment[2]};
   }
-  Vec3<double> turned_arm(const State<Spatial>& state, std::size_t body) const {
-    const Quat<double> q = rotation(state, body);
-    if (linear_) return arm_ + 2.0 * cross(Vec3<double>{q.x, q.y, q.z}, arm_);
-    return rotate(q, arm_);
+  Vec3<double> turned_arm(const State<Space>& state, std::size_t body) const {
+    if (linear_) return arm_ + cross(linear_rotation(state, body), arm_);
+    return rotate(rotation(state, body), arm_);
   }
 
   /// Displacement of the point where the force acts, and rotation, of one body.
@@ -146,7 +156,7 @@ class DeadLoad final : public Force<Spatial> {
     Vec3<double> at{0, 0, 0};
     Quat<double> q{1, 0, 0, 0};
   };
-  Place place_of(const State<Spatial>& state, std::int32_t body) const {
+  Place place_of(const State<Space>& state, std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
     return {displacement(state, b) + (turned_arm(state, b) - arm_), normalised(rotation(state, b))};
   }
@@ -183,10 +193,12 @@ PlacedLoad place(const Load& load, const Lattice& lattice) {
   return placed;
 }
 
-template <>
-std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part& part, PlacedLoad load,
-                                                   Kinematics kinematics) {
-  return std::make_unique<DeadLoad>(part, std::move(load), kinematics);
+template <class Space>
+std::unique_ptr<Force<Space>> make_load(const Part& part, PlacedLoad load, Kinematics kinematics) {
+  return std::make_unique<DeadLoad<Space>>(part, std::move(load), kinematics);
 }
+
+template std::unique_ptr<Force<Spatial>> make_load<Spatial>(const Part&, PlacedLoad, Kinematics);
+template std::unique_ptr<Force<Planar>> make_load<Planar>(const Part&, PlacedLoad, Kinematics);
 
 }  // namespace floe

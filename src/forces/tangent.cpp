@@ -1,6 +1,7 @@
 #include "floe/forces/tangent.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace floe {
 namespace {
@@ -42,8 +43,9 @@ template <class Space>
 Tangent<Space>::Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
                         double held_diagonal, const TangentOptions& options)
     : part_(part), held_(held), held_diagonal_(held_diagonal), symmetric_(options.symmetric) {
-  for (int k = 0; k < n; ++k)
-    scale_[static_cast<std::size_t>(k)] = k < Space::translations ? 1.0 : 1.0 / length_scale;
+  set_scale(length_scale);
+  unknowns_.resize(n);
+  std::iota(unknowns_.begin(), unknowns_.end(), std::size_t{0});
   const RowCounts counts = count_blocks(part);
   check(MatCreate(part.comm, matrix_.put()));
   check(MatSetSizes(matrix_, n * part.owned, n * part.owned, PETSC_DETERMINE, PETSC_DETERMINE));
@@ -58,6 +60,24 @@ Tangent<Space>::Tangent(const Part& part, std::span<const std::uint8_t> held, do
   check(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(matrix_.get()), &upper_only,
                                   MATSEQSBAIJ, MATMPISBAIJ, ""));
   if (upper_only) check(MatSetOption(matrix_, MAT_IGNORE_LOWER_TRIANGULAR, PETSC_TRUE));
+}
+
+template <class Space>
+Tangent<Space>::Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
+                        double held_diagonal, Mat matrix, std::uint8_t unknowns)
+    : part_(part), held_(held), held_diagonal_(held_diagonal), symmetric_(true) {
+  set_scale(length_scale);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
+    if ((unknowns >> k & 1U) != 0) unknowns_.push_back(k);
+  }
+  check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
+  *matrix_.put() = matrix;
+}
+
+template <class Space>
+void Tangent<Space>::set_scale(double length_scale) {
+  for (int k = 0; k < n; ++k)
+    scale_[static_cast<std::size_t>(k)] = k < Space::translations ? 1.0 : 1.0 / length_scale;
 }
 
 template <class Space>
@@ -118,6 +138,30 @@ void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int
   }
 }
 
+/// Adds blocks of the unknowns that the matrix has. \param block  (bodies x n) by (bodies x n),
+/// row-major; used up
+template <class Space>
+void Tangent<Space>::insert(std::span<const std::int32_t> rows,
+                            std::span<const std::int32_t> columns, double* block) {
+  const std::size_t width = unknowns_.size(), all = n;
+  if (width < all) {  // kept entries move to the front, never ahead of one that is still to move
+    double* to = block;
+    for (std::size_t r = 0; r < rows.size() * width; ++r) {
+      const double* row = block + (r / width * all + unknowns_[r % width]) * columns.size() * all;
+      for (std::size_t c = 0; c < columns.size() * width; ++c)
+        *to++ = row[c / width * all + unknowns_[c % width]];
+    }
+  }
+  std::array<PetscInt, 2> row{}, column{};
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    row[k] = part_.row[static_cast<std::size_t>(rows[k])];
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    column[k] = part_.row[static_cast<std::size_t>(columns[k])];
+  check(MatSetValuesBlocked(matrix_, static_cast<PetscInt>(rows.size()), row.data(),
+                            static_cast<PetscInt>(columns.size()), column.data(), block,
+                            ADD_VALUES));
+}
+
 template <class Space>
 void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
   if (body >= part_.owned) return;
@@ -137,8 +181,7 @@ void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
       entry = 0;
     }
   }
-  const PetscInt row = part_.row[static_cast<std::size_t>(body)];
-  check(MatSetValuesBlocked(matrix_, 1, &row, 1, &row, a.data(), ADD_VALUES));
+  insert({&body, 1}, {&body, 1}, a.data());
 }
 
 template <class Space>
@@ -166,27 +209,24 @@ void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& b
       entry = 0;
     }
   }
-  const std::array<PetscInt, 2> rows{part_.row[static_cast<std::size_t>(i)],
-                                     part_.row[static_cast<std::size_t>(j)]};
   const bool own_i = i < part_.owned, own_j = j < part_.owned;
   if (own_i && own_j) {
-    check(MatSetValuesBlocked(matrix_, 2, rows.data(), 2, rows.data(), a.data(), ADD_VALUES));
+    insert(body, body, a.data());
   } else if (own_i) {
-    check(MatSetValuesBlocked(matrix_, 1, &rows[0], 2, rows.data(), a.data(), ADD_VALUES));
+    insert({&i, 1}, body, a.data());
   } else if (own_j) {
-    check(MatSetValuesBlocked(matrix_, 1, &rows[1], 2, rows.data(), a.data() + half, ADD_VALUES));
+    insert({&j, 1}, body, a.data() + half);
   }
 }
 
 template <class Space>
 void Tangent<Space>::end() {
   weigh(1, {});
-  Block diagonal{};
   for (std::int32_t body = 0; body < part_.owned; ++body) {
+    Block diagonal{};
     for (int k = 0; k < n; ++k)
       diagonal[static_cast<std::size_t>(k * n + k)] = is_held(body, k) ? held_diagonal_ : 0.0;
-    const PetscInt row = part_.row[static_cast<std::size_t>(body)];
-    check(MatSetValuesBlocked(matrix_, 1, &row, 1, &row, diagonal.data(), ADD_VALUES));
+    insert({&body, 1}, {&body, 1}, diagonal.data());
   }
   check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(matrix_, MAT_FINAL_ASSEMBLY));

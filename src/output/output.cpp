@@ -47,9 +47,10 @@ void make_folder(const std::string& dir, MPI_Comm comm) {
 
 }  // namespace
 
-struct Output::Impl {
+template <class Space>
+struct Output<Space>::Impl {
   const OutputOptions options;
-  const Model<Spatial>& model;
+  const Model<Space>& model;
   const Part& part;
   std::vector<LoadPoint> loads;
   std::vector<std::pair<std::size_t, Point3>>
@@ -60,10 +61,10 @@ struct Output::Impl {
   std::optional<History> history;     ///< rank 0
   std::optional<CrackLog> cracks;     ///< if beams may break
   OutputMemory memory;
-  std::optional<State<Spatial>> pending;  ///< accepted, but not in fields.h5
+  std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
   bool header_checked = true;
 
-  Impl(const OutputOptions& o, const Model<Spatial>& m)
+  Impl(const OutputOptions& o, const Model<Space>& m)
       : options(o),
         model(m),
         part(m.part()),
@@ -84,15 +85,16 @@ struct Output::Impl {
   }
 
   void open_files(const Lattice& lattice, const std::string& options_yaml, bool restarted);
-  Sample sample(const Accepted<Spatial>& accepted);
+  Sample sample(const Accepted<Space>& accepted);
   void check_header();
   void write_row(const Sample& sample);
-  void write_frame(const State<Spatial>& state);
+  void write_frame(const State<Space>& state);
 };
 
-Output::Output(const OutputOptions& options, const Lattice& lattice, const Model<Spatial>& model,
-               const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
-               const OutputMemory* restart) {
+template <class Space>
+Output<Space>::Output(const OutputOptions& options, const Lattice& lattice,
+                      const Model<Space>& model, const std::vector<PlacedLoad>& loads,
+                      const std::string& options_yaml, const OutputMemory* restart) {
   const Timed timed(Event::output);
   make_folder(options.dir, model.part().comm);
   impl_ = std::make_unique<Impl>(options, model);
@@ -128,8 +130,9 @@ Output::Output(const OutputOptions& options, const Lattice& lattice, const Model
   throw_verdict(verdict, model.part().comm);
 }
 
-void Output::Impl::open_files(const Lattice& lattice, const std::string& options_yaml,
-                              bool restarted) {
+template <class Space>
+void Output<Space>::Impl::open_files(const Lattice& lattice, const std::string& options_yaml,
+                                     bool restarted) {
   const std::string& dir = options.dir;
   if (!restarted) {
     // What an earlier run left would contradict this one until its own is written.
@@ -143,13 +146,24 @@ void Output::Impl::open_files(const Lattice& lattice, const std::string& options
   write_whole(dir + "/options.yaml", options_yaml);
 }
 
-Output::~Output() = default;
+template <class Space>
+Output<Space>::~Output() = default;
 
-const OutputMemory& Output::memory() const { return impl_->memory; }
-const Sample& Output::first() const { return impl_->memory.first; }
-const Sample& Output::last() const { return impl_->memory.last; }
+template <class Space>
+const OutputMemory& Output<Space>::memory() const {
+  return impl_->memory;
+}
+template <class Space>
+const Sample& Output<Space>::first() const {
+  return impl_->memory.first;
+}
+template <class Space>
+const Sample& Output<Space>::last() const {
+  return impl_->memory.last;
+}
 
-Sample Output::Impl::sample(const Accepted<Spatial>& accepted) {
+template <class Space>
+Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
   Sample s;
   s.time = accepted.state.time;
   for (std::size_t k = 0; k < model.boundaries().size(); ++k) {
@@ -159,7 +173,7 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) {
     for (const std::int32_t body : placed.bodies) {
       if (body >= part.owned) continue;
       const auto b = static_cast<std::size_t>(body);
-      const double* w = accepted.wrenches.of(b);
+      const std::array<double, 6> w = components_of(accepted.wrenches, b);
       Vec3<double> force{0, 0, 0}, moment{0, 0, 0};
       if (placed.boundary.fixed[0]) force.x = -w[0];
       if (placed.boundary.fixed[1]) force.y = -w[1];
@@ -189,10 +203,9 @@ Sample Output::Impl::sample(const Accepted<Spatial>& accepted) {
     for (const std::int32_t body : load.bodies) {
       if (body >= part.owned) continue;
       const auto b = static_cast<std::size_t>(body);
-      const Quat<double> q = rotation(accepted.state, b);
       const bool linear = model.kinematics() == Kinematics::linear;
-      const Vec3<double> turn = linear ? 2.0 * cross(Vec3<double>{q.x, q.y, q.z}, load.arm)
-                                       : rotate(q, load.arm) - load.arm;
+      const Vec3<double> turn = linear ? cross(linear_rotation(accepted.state, b), load.arm)
+                                       : rotate(rotation(accepted.state, b), load.arm) - load.arm;
       const Vec3<double> u = displacement(accepted.state, b) + turn;
       mine = {mine[0] + share * u.x, mine[1] + share * u.y, mine[2] + share * u.z};
     }
@@ -221,7 +234,8 @@ std::string header_of(const Sample& s) {
 }
 
 /// After a restart: the rows go on in the same columns. Collective.
-void Output::Impl::check_header() {
+template <class Space>
+void Output<Space>::Impl::check_header() {
   header_checked = true;
   const bool differs =
       history && !history->header().empty() && history->header() != header_of(memory.last);
@@ -231,7 +245,8 @@ void Output::Impl::check_header() {
                 part.comm);
 }
 
-void Output::Impl::write_row(const Sample& s) {
+template <class Space>
+void Output<Space>::Impl::write_row(const Sample& s) {
   ++memory.rows;
   if (!history) return;
   if (history->header().empty()) history->write_header(header_of(s));
@@ -252,17 +267,17 @@ void Output::Impl::write_row(const Sample& s) {
   history->write(line + "\n");
 }
 
-void Output::Impl::write_frame(const State<Spatial>& state) {
+template <class Space>
+void Output<Space>::Impl::write_frame(const State<Space>& state) {
   const auto owned = static_cast<std::size_t>(part.owned);
   std::vector<double> u, q, vector;
   for (std::size_t b = 0; b < owned; ++b) {
-    const double* r = state.record(b);
-    u.insert(u.end(), r, r + 3);
-    q.insert(q.end(), r + Spatial::rotation, r + Spatial::rotation + 4);
+    const Vec3<double> place = displacement(state, b);
     const Quat<double> now = rotation(state, b);
-    const Vec3<double> t = model.kinematics() == Kinematics::linear
-                               ? Vec3<double>{2 * now.x, 2 * now.y, 2 * now.z}
-                               : log_rotation(now);
+    const Vec3<double> t =
+        model.kinematics() == Kinematics::linear ? linear_rotation(state, b) : log_rotation(now);
+    u.insert(u.end(), {place.x, place.y, place.z});
+    q.insert(q.end(), {now.w, now.x, now.y, now.z});
     vector.insert(vector.end(), {t.x, t.y, t.z});
   }
   Frame frame{state.time, bodies(u, 3), bodies(q, 4), bodies(vector, 3), {}, {}};
@@ -286,7 +301,8 @@ void Output::Impl::write_frame(const State<Spatial>& state) {
   if (fields) fields->write(frame);
 }
 
-void Output::accept(const Accepted<Spatial>& accepted) {
+template <class Space>
+void Output<Space>::accept(const Accepted<Space>& accepted) {
   const Timed timed(Event::output);
   Impl& me = *impl_;
   const double time = accepted.state.time;
@@ -315,13 +331,17 @@ void Output::accept(const Accepted<Spatial>& accepted) {
   }
 }
 
-void Output::finish() {
+template <class Space>
+void Output<Space>::finish() {
   const Timed timed(Event::output);
   if (impl_->memory.row_pending) impl_->write_row(impl_->memory.last);
   impl_->memory.row_pending = false;
   if (impl_->pending) impl_->write_frame(*impl_->pending);
   impl_->pending.reset();
 }
+
+template class Output<Spatial>;
+template class Output<Planar>;
 
 void write_whole(const std::string& path, const std::string& text) {
   const std::string temporary = path + ".part";

@@ -15,6 +15,8 @@
 namespace floe {
 namespace {
 
+constexpr std::uint8_t z_rx_ry = 0b011100;  ///< of x y z rx ry rz, those out of plane
+
 /// A floating sheet's mid-plane: its draft is h rho_i/rho_w; without buoyancy it lies at z = 0.
 double mid_plane(const Scene& scene) {
   if (!scene.forces.buoyancy) return 0;
@@ -107,11 +109,13 @@ void set_initial(const Scene& scene, Lattice& lattice) {
 
 std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/checkpoint.h5"; }
 
-RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string& lattice_id,
-                    const Observer<Spatial>& observer, const std::function<void()>& prepare,
+template <class Space>
+RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane& rest,
+                    const std::string& lattice_id, const ObserverOf<Space>& observer,
+                    const std::function<void()>& prepare,
                     const std::function<void(Memory&)>& others) {
   if (scene.integrator == Integrator::quasistatic)
-    return run_quasistatic(model, {scene.time.end, scene.time.dt}, observer);
+    return run_quasistatic(model, {scene.time.end, scene.time.dt}, observer, &rest);
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = scene.time.dt;
@@ -128,7 +132,9 @@ RunResult integrate(const Scene& scene, Model<Spatial>& model, const std::string
                         scene.options_yaml,
                         prepare,
                         others};
-  if (scene.integrator == Integrator::implicit) return run_implicit(model, options, observer);
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    if (scene.integrator == Integrator::implicit) return run_implicit(model, options, observer);
+  }
   options.safety = scene.time.safety;
   options.allow_unstable = scene.time.allow_unstable;
   return run_explicit(model, options, observer);
@@ -146,37 +152,78 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
   return placed;
 }
 
-void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Spatial>& model) {
+template <class Space>
+void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model) {
   const Part& part = model.part();
-  if (scene.forces.fracture) {
-    BreakableForce breakable = make_breakable_beams(part, scene.beam, scene.fracture);
-    model.set_fracture(breakable.fracture);
-    model.set_beams(std::move(breakable.force), scene.beam.kinematics);
-  } else if (scene.forces.beam) {
-    model.set_beams(make_beam_force<Spatial>(part, scene.beam), scene.beam.kinematics);
+  if constexpr (std::is_same_v<Space, Spatial>) {  // cracks and what acts along z
+    if (scene.forces.fracture) {
+      BreakableForce breakable = make_breakable_beams(part, scene.beam, scene.fracture);
+      model.set_fracture(breakable.fracture);
+      model.set_beams(std::move(breakable.force), scene.beam.kinematics);
+    }
   }
-  if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
-  if (scene.forces.buoyancy)
-    model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
-  if (scene.forces.drag) model.add_force(make_drag<Spatial>(part, scene.drag));
+  if (scene.forces.beam && !scene.forces.fracture)
+    model.set_beams(make_beam_force<Space>(part, scene.beam), scene.beam.kinematics);
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
+    if (scene.forces.buoyancy)
+      model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
+  }
+  if (scene.forces.drag) model.add_force(make_drag<Space>(part, scene.drag));
   if (scene.added_mass > 0)
     model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));
   for (const PlacedLoad& load : loads)
-    model.add_force(make_load<Spatial>(part, load, scene.beam.kinematics));
+    model.add_force(make_load<Space>(part, load, scene.beam.kinematics));
 }
 
-void add_contact(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {
-  if (scene.forces.contact)
-    model.add_force(make_contact(model.part(), lattice, scene.contact, scene.obstacles));
+template <class Space>
+void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    if (scene.forces.contact)
+      model.add_force(make_contact(model.part(), lattice, scene.contact, scene.obstacles));
+  }
 }
 
-void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Spatial>& model) {
-  const std::vector<std::uint8_t> prescribed = prescribed_components(lattice, scene.boundaries);
+template <class Space>
+void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
+  std::vector<std::uint8_t> prescribed = prescribed_components(lattice, scene.boundaries);
+  if constexpr (std::is_same_v<Space, Planar>) {
+    for (std::uint8_t& bits : prescribed) bits |= z_rx_ry;
+  }
   const std::vector<std::uint8_t> floating =
       scene.forces.buoyancy ? bodies_at_surface(lattice) : std::vector<std::uint8_t>{};
   const FreeMotions free = free_motions(lattice, prescribed, floating);
   require_balance(model, lattice, free, scene.time.end);
   model.pin(free.pins);
 }
+
+OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
+                        const std::vector<PlacedLoad>& loads, const Part& part) {
+  OutOfPlane rest;
+  rest.forces.push_back(make_beam_force<Spatial>(part, scene.beam));
+  for (const PlacedLoad& load : loads)
+    rest.forces.push_back(make_load<Spatial>(part, load, scene.beam.kinematics));
+  std::vector<std::uint8_t> prescribed = prescribed_components(lattice, scene.boundaries);
+  for (std::uint8_t& bits : prescribed) bits |= static_cast<std::uint8_t>(~z_rx_ry & 0b111111);
+  for (const Pin& pin : free_motions(lattice, prescribed, {}).pins)
+    prescribed[static_cast<std::size_t>(pin.body)] |=
+        static_cast<std::uint8_t>(1U << pin.component);
+  for (const std::int32_t body : part.global)
+    rest.held.push_back(prescribed[static_cast<std::size_t>(body)]);
+  return rest;
+}
+
+template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane&, const std::string&,
+                             const Observer<Spatial>&, const std::function<void()>&,
+                             const std::function<void(Memory&)>&);
+template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane&, const std::string&,
+                             const Observer<Planar>&, const std::function<void()>&,
+                             const std::function<void(Memory&)>&);
+template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);
+template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);
+template void add_contact(const Scene&, const Lattice&, Model<Spatial>&);
+template void add_contact(const Scene&, const Lattice&, Model<Planar>&);
+template void hold_free_motions(const Scene&, const Lattice&, Model<Spatial>&);
+template void hold_free_motions(const Scene&, const Lattice&, Model<Planar>&);
 
 }  // namespace floe

@@ -14,6 +14,10 @@ constexpr std::array table{
         "integrator", choice, "quasistatic", "", "quasistatic | explicit | implicit",
         "how the state moves on: static equilibrium at each load step, or in time by leapfrog "
         "or by the generalised-alpha method"},
+    OptionSpec{
+        "model: planar", choice, "auto", "", "auto | true | false",
+        "three unknowns per body where nothing loads, moves or prescribes anything out of the "
+        "x-y plane; true: an error where something does, false: always six"},
     OptionSpec{"forces", choices, "(required)", "",
                "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},

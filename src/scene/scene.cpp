@@ -391,6 +391,7 @@ Scene read_scene(const std::string& path) {
   scene.path = path;
   scene.name = std::filesystem::path(path).stem().string();
   scene.integrator = options.choice<Integrator>("integrator");
+  scene.planar = options.choice<Planarity>("model: planar");
   read_forces(options, scene);
   read_lattice_source(options, scene);
   read_regions_and_cuts(options, scene);

@@ -34,7 +34,8 @@ std::string line(const char* format, auto... values) {
 }
 
 /// Mean x at rest of a boundary's bodies [m]. Collective.
-double mean_x(const Model<Spatial>& model, const Boundary& boundary) {
+template <class Space>
+double mean_x(const Model<Space>& model, const Boundary& boundary) {
   std::array<double, 2> mine{}, all{};  // sum and number
   for (const PlacedBoundary& placed : model.boundaries()) {
     if (placed.boundary.name != boundary.name) continue;
@@ -51,7 +52,8 @@ double mean_x(const Model<Spatial>& model, const Boundary& boundary) {
 /// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width
 /// h (paper). The same with the gauge length, between the edge cells' centroids that u acts on,
 /// for L, is what tends to the modulus of a large sheet.
-void add_tension(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
+template <class Space>
+void add_tension(const Scene& scene, const Model<Space>& model, const MeshReport& mesh,
                  const Sample& last, Json& json, std::string& text) {
   const BoundarySample& left = last.boundaries.at(boundary_on(scene, "left")->name);
   const BoundarySample& right = last.boundaries.at(boundary_on(scene, "right")->name);
@@ -171,8 +173,10 @@ void check_reports(const Scene& scene) {
   }
 }
 
-Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshReport& mesh,
-                  const RunResult& result, const Sample& first, const Sample& last, double wall) {
+template <class Space>
+Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& model,
+                  const MeshReport& mesh, const RunResult& result, const Sample& first,
+                  const Sample& last, double wall) {
   Json json;
   std::string text;
   json["status"] = result.done ? "done" : result.stopped ? "stopped" : "failed";
@@ -183,6 +187,7 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
   const bool stepped = scene.integrator == Integrator::leapfrog;
   constexpr std::array names{"quasistatic", "explicit", "implicit"};
   json["integrator"] = names[static_cast<std::size_t>(scene.integrator)];
+  json["model"] = skips.text;
   json["time"] = last.time;
   json["steps"] = result.steps;
   json["dt"] = result.dt;
@@ -195,6 +200,7 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
                                                  static_cast<double>(model.part().global_beams));
   } else {
     json["newton_iterations"] = result.newton_iterations;
+    if (scene.integrator == Integrator::quasistatic) json["factorisations"] = result.factorisations;
     if (result.unstable_modes >= 0) json["stable"] = result.unstable_modes == 0;
   }
   if (scene.has_sheet) {
@@ -244,5 +250,10 @@ Summary summarise(const Scene& scene, const Model<Spatial>& model, const MeshRep
       wall_seconds(Event::output), memory, size(), size() == 1 ? "" : "s");
   return {json.dump(2) + "\n", text};
 }
+
+template Summary summarise(const Scene&, const Skips&, const Model<Spatial>&, const MeshReport&,
+                           const RunResult&, const Sample&, const Sample&, double);
+template Summary summarise(const Scene&, const Skips&, const Model<Planar>&, const MeshReport&,
+                           const RunResult&, const Sample&, const Sample&, double);
 
 }  // namespace floe

@@ -80,6 +80,12 @@ void DynamicRun<Space>::remember(Memory& memory) {
     throw InputError("checkpoint: restart: '" + options_.checkpoint.restart + "' is of ts_type '" +
                      type + "', which keeps its state in another way than this run's '" + type_ +
                      "'");
+  const std::string space = std::is_same_v<Space, Planar> ? "planar" : "spatial";
+  std::string model = space;
+  memory.common("model", model);
+  if (model != space)
+    throw InputError("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
+                     " model, this run's is " + space + " (model: planar)");
   memory.common("step", done_);
   memory.common("steps", steps_);
   memory.common("time", state_.time);
@@ -296,5 +302,6 @@ std::string DynamicRun<Space>::where() const {
 }
 
 template class DynamicRun<Spatial>;
+template class DynamicRun<Planar>;
 
 }  // namespace floe

@@ -11,8 +11,6 @@
 namespace floe {
 namespace {
 
-constexpr std::size_t reference_size = 7;  // q_ref (w x y z) and the rotation sum there (x y z)
-
 /// Diagonal of the box around all bodies, and at least a body's own size [m].
 double extent(const Part& part) {
   std::array<double, 7> mine, all;  // high, minus low, radius of gyration
@@ -30,18 +28,18 @@ double extent(const Part& part) {
 
 }  // namespace
 
-Equilibrium::Equilibrium(Model<Spatial>& model)
+template <class Space>
+Equilibrium<Space>::Equilibrium(Model<Space>& model)
     : model_(model),
       part_(model.part()),
       state_(static_cast<std::size_t>(part_.local)),
       wrenches_(static_cast<std::size_t>(part_.local)),
       share_(static_cast<std::size_t>(part_.local)),
-      reference_(static_cast<std::size_t>(part_.owned) * reference_size, 0.0),
+      rotations_(static_cast<std::size_t>(part_.owned), model.kinematics()),
       turned2_(static_cast<std::size_t>(part_.owned), 0.0),
       tangent_(part_, model.held(), model.length_scale(), typical_stiffness(model),
                tangent_options()) {
   for (std::int32_t b = 0; b < part_.owned; ++b) {
-    reference_[static_cast<std::size_t>(b) * reference_size] = 1;
     double sum = 0;
     for (const auto& force : model.forces()) sum += force->stiffness_bound(b);
     stiffness_.push_back(sum);
@@ -58,7 +56,8 @@ Equilibrium::Equilibrium(Model<Spatial>& model)
 }
 
 /// Defaults that PETSc's own options override.
-void Equilibrium::set_defaults() {
+template <class Space>
+void Equilibrium<Space>::set_defaults() {
   set_newton_defaults(snes_);
   check(SNESSetTolerances(snes_, PETSC_DEFAULT, 1e-10, 0.0, 30, PETSC_DEFAULT));
   KSP ksp = nullptr;
@@ -70,71 +69,56 @@ void Equilibrium::set_defaults() {
   PetscBool lag_given = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, "-snes_lag_jacobian", &lag_given));
   adaptive_ = lag_given == PETSC_FALSE;
-  // On several ranks MUMPS counts negative pivots (unstable_modes) only if its root front is not
-  // shared out.
-  if (size(part_.comm) == 1) return;
-  PetscBool cholesky = PETSC_FALSE;
-  MatSolverType package = nullptr;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
-  check(PCFactorGetMatSolverType(pc, &package));
-  if (cholesky == PETSC_FALSE || package == nullptr || std::strcmp(package, MATSOLVERMUMPS) != 0)
-    return;
-  Mat factor = nullptr;
   check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
-  check(PCFactorSetUpMatSolverType(pc));
-  check(PCFactorGetMatrix(pc, &factor));
-  check(MatMumpsSetIcntl(factor, 13, 1));
+  let_mumps_count(ksp);
 }
 
-void Equilibrium::take(Vec x) {
+template <class Space>
+std::array<double, Equilibrium<Space>::turns> Equilibrium<Space>::turn_of(
+    const PetscScalar* unknowns) const {
+  std::array<double, turns> t;
+  const double scale = 1.0 / model_.length_scale();
+  for (std::size_t k = 0; k < turns; ++k) t[k] = scale * unknowns[Space::translations + k];
+  return t;
+}
+
+template <class Space>
+void Equilibrium<Space>::take(Vec x) {
   const PetscScalar* values = nullptr;
   check(VecGetArrayRead(x, &values));
-  const double scale = 1.0 / model_.length_scale();
   for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
     const PetscScalar* v = values + b * n;
     double* record = state_.record(b);
-    for (std::size_t k = 0; k < 3; ++k) record[k] = v[k];
-    double* q = record + Spatial::rotation;
-    turned2_[b] = scale * scale * (v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
-    if (model_.kinematics() == Kinematics::linear) {
-      q[0] = 1;
-      for (std::size_t k = 0; k < 3; ++k) q[1 + k] = 0.5 * scale * v[3 + k];
-      continue;
-    }
-    const double* r = &reference_[b * reference_size];
-    const Vec3<double> spin{scale * v[3] - r[4], scale * v[4] - r[5], scale * v[5] - r[6]};
-    const Quat<double> now =
-        normalised(product(exp_rotation(spin), Quat<double>{r[0], r[1], r[2], r[3]}));
-    q[0] = now.w, q[1] = now.x, q[2] = now.y, q[3] = now.z;
+    std::copy_n(v, Space::translations, record);
+    const auto turn = turn_of(v);
+    turned2_[b] = 0;
+    for (const double t : turn) turned2_[b] += t * t;
+    rotations_.take(b, turn, record);
   }
   check(VecRestoreArrayRead(x, &values));
-  part_.ghosts.update(state_.records, Spatial::record);
+  part_.ghosts.update(state_.records, Space::record);
 }
 
-void Equilibrium::rebase(Vec x) {
+template <class Space>
+void Equilibrium<Space>::rebase(Vec x) {
   const PetscScalar* values = nullptr;
   check(VecGetArrayRead(x, &values));
-  const double scale = 1.0 / model_.length_scale();
-  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
-    const double* q = state_.record(b) + Spatial::rotation;
-    double* r = &reference_[b * reference_size];
-    std::copy(q, q + 4, r);
-    for (std::size_t k = 0; k < 3; ++k) r[4 + k] = scale * values[b * n + 3 + k];
-  }
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b)
+    rotations_.rebase(b, turn_of(values + b * n), state_.record(b));
   check(VecRestoreArrayRead(x, &values));
 }
 
 /// Wrenches force by force: the size of what must balance is the external forces' and the
 /// reactions'.
-void Equilibrium::fill_residual(Vec f) {
+template <class Space>
+void Equilibrium<Space>::fill_residual(Vec f) {
   const Timed timed(Event::forces);
-  const double scale = 1.0 / model_.length_scale();
   external2_ = model_.evaluate_apart(state_, wrenches_, share_);
   const auto owned = static_cast<std::size_t>(part_.owned) * n;
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(f, &values));
   for (std::size_t k = 0; k < owned; ++k) {
-    const double value = -wrenches_.at(k) * (k % n < 3 ? 1.0 : scale);
+    const double value = -wrenches_.at(k) * weight(k);
     const bool held = (model_.held()[k / n] >> (k % n) & 1U) != 0;
     if (held) external2_ += value * value;
     values[k] = held ? 0.0 : value;
@@ -142,14 +126,21 @@ void Equilibrium::fill_residual(Vec f) {
   check(VecRestoreArrayWrite(f, &values));
 }
 
-void Equilibrium::assemble(std::span<const double> increments) {
+template <class Space>
+void Equilibrium<Space>::assemble(std::span<const double> increments) {
   const Timed timed(Event::tangent);
   tangent_.begin(increments);
-  for (const auto& force : model_.forces()) (void)force->add_tangent(state_, tangent_);
+  constant_ = model_.kinematics() == Kinematics::linear && model_.fracture() == nullptr;
+  for (const auto& force : model_.forces()) {
+    const bool has_tangent = force->add_tangent(state_, tangent_);
+    if (force.get() != model_.beams() && has_tangent) constant_ = false;
+  }
   tangent_.end();
+  ++assemblies_;
 }
 
-PetscErrorCode Equilibrium::residual(SNES snes, Vec x, Vec f, void* self) noexcept {
+template <class Space>
+PetscErrorCode Equilibrium<Space>::residual(SNES snes, Vec x, Vec f, void* self) noexcept {
   auto& me = *static_cast<Equilibrium*>(self);
   me.take(x);
   me.fill_residual(f);
@@ -161,14 +152,16 @@ PetscErrorCode Equilibrium::residual(SNES snes, Vec x, Vec f, void* self) noexce
 
 /// A factorisation costs a dozen solves. The one of the prediction serves on while each iteration
 /// takes a digit off the residual; after a prediction that turned bodies far it is not even tried.
-bool Equilibrium::keeps_factorisation() const {
+template <class Space>
+bool Equilibrium<Space>::keeps_factorisation() const {
   constexpr double a_digit = 0.1;
   return adaptive_ && small_turns_ && contraction_ <= a_digit;
 }
 
-PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept {
+template <class Space>
+PetscErrorCode Equilibrium<Space>::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept {
   auto& me = *static_cast<Equilibrium*>(self);
-  if (me.keeps_factorisation()) return 0;
+  if (me.constant_ || me.keeps_factorisation()) return 0;
   me.take(x);
   me.rebase(x);
   me.assemble();
@@ -177,7 +170,8 @@ PetscErrorCode Equilibrium::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept
 
 /// Relative to the forces that balance (external ones and reactions), never below the rounding of
 /// the beams' own.
-Equilibrium::Scale Equilibrium::scale_of_forces() const {
+template <class Space>
+typename Equilibrium<Space>::Scale Equilibrium<Space>::scale_of_forces() const {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   double noise2 = 0;
   const double l = model_.length_scale();
@@ -193,7 +187,8 @@ Equilibrium::Scale Equilibrium::scale_of_forces() const {
 
 /// So far from rest that rounding hides any load: an overloaded sheet that sinks for ever is no
 /// equilibrium.
-bool Equilibrium::is_lost() const {
+template <class Space>
+bool Equilibrium<Space>::is_lost() const {
   constexpr double far = 100;  // times the lattice's extent
   double mine = 0, all = 0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
@@ -204,8 +199,10 @@ bool Equilibrium::is_lost() const {
   return std::sqrt(all) > far * (extent_ + prescribed_);
 }
 
-PetscErrorCode Equilibrium::converged(SNES snes, PetscInt it, PetscReal, PetscReal, PetscReal norm,
-                                      SNESConvergedReason* reason, void* self) noexcept {
+template <class Space>
+PetscErrorCode Equilibrium<Space>::converged(SNES snes, PetscInt it, PetscReal, PetscReal,
+                                             PetscReal norm, SNESConvergedReason* reason,
+                                             void* self) noexcept {
   auto& me = *static_cast<Equilibrium*>(self);
   me.contraction_ = it > 0 && me.last_norm_ > 0 ? norm / me.last_norm_ : 0.0;
   me.last_norm_ = norm;
@@ -221,31 +218,62 @@ PetscErrorCode Equilibrium::converged(SNES snes, PetscInt it, PetscReal, PetscRe
   return 0;
 }
 
-/// Brings prescribed unknowns to their values at the new time, and all others along: one linear
-/// solve with the tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
-bool Equilibrium::predict(double time) {
+/// What prescribed unknowns lack of their values at a time, n per local body; empty if nothing
+/// moves. Notes the largest displacement that is prescribed.
+template <class Space>
+std::vector<double> Equilibrium<Space>::increments_to(double time) {
   std::vector<double> target(static_cast<std::size_t>(part_.local) * n),
       increments(target.size(), 0.0);
   model_.prescribe(time, target);
   const double l = model_.length_scale();
-  // Ghosts' unknowns are wanted too: their present values come with their owners' increments.
-  PetscScalar* x = nullptr;
-  check(VecGetArray(x_, &x));
+  const PetscScalar* x = nullptr;
+  check(VecGetArrayRead(x_, &x));
   double moves = 0, size = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
     if ((model_.prescribed()[k / n] >> (k % n) & 1U) == 0) continue;
-    increments[k] = target[k] * (k % n < 3 ? 1.0 : l) - x[k];
+    increments[k] = target[k] * (k % n < Space::translations ? 1.0 : l) - x[k];
     if (increments[k] != 0) moves = 1;
-    if (k % n < 3) size = std::max(size, std::abs(target[k]));
+    if (k % n < Space::translations) size = std::max(size, std::abs(target[k]));
   }
-  check(VecRestoreArray(x_, &x));
-  part_.ghosts.update(increments, n);
+  check(VecRestoreArrayRead(x_, &x));
   const std::array<double, 2> mine{moves, size};
   std::array<double, 2> all{};
   MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part_.comm);
-  const bool anyone_moves = all[0] > 0;
   prescribed_ = all[1];
+  if (all[0] == 0) return {};
+  part_.ghosts.update(increments, n);  // their present values come with their owners' increments
+  return increments;
+}
 
+/// Right-hand side of the linear step. With a new tangent, -F_f - K_fc d_c; with a constant one
+/// that is factorised, prescribed unknowns are moved first, and -F_f is all.
+template <class Space>
+void Equilibrium<Space>::fill_right_hand_side(std::vector<double>& increments) {
+  if (constant_) {
+    PetscScalar* x = nullptr;
+    check(VecGetArray(x_, &x));
+    for (std::size_t k = 0; k < increments.size() && k < tangent_.lift().size(); ++k)
+      x[k] += increments[k];
+    check(VecRestoreArray(x_, &x));
+    increments.clear();
+    take(x_);
+    fill_residual(f_);
+    check(VecScale(f_, -1.0));
+    return;
+  }
+  rebase(x_);
+  assemble(increments);
+  PetscScalar* f = nullptr;
+  check(VecGetArray(f_, &f));
+  for (std::size_t k = 0; k < tangent_.lift().size(); ++k) f[k] = -f[k] - tangent_.lift()[k];
+  check(VecRestoreArray(f_, &f));
+}
+
+/// Brings prescribed unknowns to their values at the new time, and all others along: one linear
+/// solve with the tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
+template <class Space>
+bool Equilibrium<Space>::predict(double time) {
+  std::vector<double> increments = increments_to(time);
   state_.time = time;
   take(x_);
   fill_residual(f_);
@@ -254,14 +282,9 @@ bool Equilibrium::predict(double time) {
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, nullptr, nullptr));
   small_turns_ = false;
-  if (!anyone_moves && norm <= scale_of_forces().tolerance(rtol, atol)) return true;
+  if (increments.empty() && norm <= scale_of_forces().tolerance(rtol, atol)) return true;
 
-  rebase(x_);
-  assemble(increments);
-  PetscScalar* f = nullptr;
-  check(VecGetArray(f_, &f));
-  for (std::size_t k = 0; k < tangent_.lift().size(); ++k) f[k] = -f[k] - tangent_.lift()[k];
-  check(VecRestoreArray(f_, &f));
+  fill_right_hand_side(increments);
   const Timed timed(Event::solve);
   KSP ksp = nullptr;
   check(SNESGetKSP(snes_, &ksp));
@@ -278,8 +301,8 @@ bool Equilibrium::predict(double time) {
   double turn = 0;
   check(VecGetArray(step_, &d));
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
-    if ((model_.held()[k / n] >> (k % n) & 1U) != 0) d[k] = increments[k];
-    if (k % n >= 3) turn = std::max(turn, std::abs(d[k]) / l);
+    if ((model_.held()[k / n] >> (k % n) & 1U) != 0) d[k] = increments.empty() ? 0 : increments[k];
+    if (k % n >= Space::translations) turn = std::max(turn, std::abs(d[k]) / model_.length_scale());
   }
   check(VecRestoreArray(step_, &d));
   double largest_turn = 0;
@@ -290,8 +313,9 @@ bool Equilibrium::predict(double time) {
   return true;
 }
 
-Equilibrium::Saved Equilibrium::save() const {
-  Saved saved{state_, reference_, {}};
+template <class Space>
+typename Equilibrium<Space>::Saved Equilibrium<Space>::save() const {
+  Saved saved{state_, rotations_, {}};
   const PetscScalar* x = nullptr;
   check(VecGetArrayRead(x_, &x));
   saved.x.assign(x, x + static_cast<std::size_t>(part_.owned) * n);
@@ -299,9 +323,10 @@ Equilibrium::Saved Equilibrium::save() const {
   return saved;
 }
 
-void Equilibrium::restore(const Saved& saved) {
+template <class Space>
+void Equilibrium<Space>::restore(const Saved& saved) {
   state_ = saved.state;
-  reference_ = saved.reference;
+  rotations_ = saved.rotations;
   PetscScalar* x = nullptr;
   check(VecGetArrayWrite(x_, &x));
   std::copy(saved.x.begin(), saved.x.end(), x);
@@ -309,7 +334,8 @@ void Equilibrium::restore(const Saved& saved) {
   fill_residual(f_);
 }
 
-bool Equilibrium::solve(double time, double overload_limit) {
+template <class Space>
+bool Equilibrium<Space>::solve(double time, double overload_limit) {
   const Saved before = save();
   why_.clear();
   collapsed_ = false;
@@ -325,29 +351,35 @@ bool Equilibrium::solve(double time, double overload_limit) {
 /// Beams break one at a time, the most overloaded first, and others soften, each time to a new
 /// balance: states that are in balance but for the beams that break, as slow loading passes
 /// through them.
-bool Equilibrium::let_break(double time, double overload_limit) {
-  Fracture& fracture = *model_.fracture();
-  if (const double overload = fracture.overload(state_); overload > overload_limit) {
-    why_ = "a beam would be loaded to " + std::to_string(overload) + " times its strength";
-    return false;
+template <class Space>
+bool Equilibrium<Space>::let_break(double time, double overload_limit) {
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    Fracture& fracture = *model_.fracture();
+    if (const double overload = fracture.overload(state_); overload > overload_limit) {
+      why_ = "a beam would be loaded to " + std::to_string(overload) + " times its strength";
+      return false;
+    }
+    constexpr int most_rounds = 1000;  // of softening without a break
+    int rounds = 0;
+    for (Advance done = fracture.advance(state_); done != Advance::none;
+         done = fracture.advance(state_)) {
+      rounds = done == Advance::broke ? 0 : rounds + 1;
+      if (rounds <= most_rounds && balance(time)) continue;
+      if (why_.empty()) why_ = "damage does not come to rest";
+      collapsed_ = true;
+      fracture.retreat();
+      return false;
+    }
+    return true;
+  } else {  // planar beams do not break
+    return (void)time, (void)overload_limit, true;
   }
-  constexpr int most_rounds = 1000;  // of softening without a break
-  int rounds = 0;
-  for (Advance done = fracture.advance(state_); done != Advance::none;
-       done = fracture.advance(state_)) {
-    rounds = done == Advance::broke ? 0 : rounds + 1;
-    if (rounds <= most_rounds && balance(time)) continue;
-    if (why_.empty()) why_ = "damage does not come to rest";
-    collapsed_ = true;
-    fracture.retreat();
-    return false;
-  }
-  return true;
 }
 
 /// Newton's method from the present state to equilibrium at `time`; leaves the state anywhere if it
 /// fails.
-bool Equilibrium::balance(double time) {
+template <class Space>
+bool Equilibrium<Space>::balance(double time) {
   if (!predict(time)) return false;
   const Timed timed(Event::solve);
   check(SNESSolve(snes_, nullptr, x_));
@@ -371,7 +403,8 @@ bool Equilibrium::balance(double time) {
   return true;
 }
 
-std::int64_t Equilibrium::count_folded() const {
+template <class Space>
+std::int64_t Equilibrium<Space>::count_folded() const {
   if (model_.beams() == nullptr) return 0;
   const std::int64_t mine = model_.beams()->folded(state_);
   std::int64_t all = 0;
@@ -379,36 +412,55 @@ std::int64_t Equilibrium::count_folded() const {
   return all;
 }
 
-std::int64_t Equilibrium::unstable_modes() {
+/// The tangent on z, rx, ry at a planar state, into the planar one's matrix, whose size and pattern
+/// it has, so that MUMPS need not analyse it again. No entry couples these with x, y, rz (mirror
+/// symmetry); so the negative eigenvalues of both together are those of the spatial tangent
+/// (Sylvester's law of inertia).
+template <class Space>
+void Equilibrium<Space>::assemble_out_of_plane(const OutOfPlane& rest) {
+  const Timed timed(Event::tangent);
+  if constexpr (std::is_same_v<Space, Planar>) {
+    constexpr std::uint8_t z_rx_ry = 0b011100;
+    Tangent<Spatial> tangent(part_, rest.held, model_.length_scale(), typical_stiffness(model_),
+                             tangent_.matrix(), z_rx_ry);
+    const State<Spatial> all = in_space(state_, false);
+    tangent.begin();
+    for (const auto& force : rest.forces) (void)force->add_tangent(all, tangent);
+    tangent.end();
+    ++assemblies_;
+  }
+}
+
+template <class Space>
+std::int64_t Equilibrium<Space>::unstable_modes(const OutOfPlane* rest) {
   KSP ksp = nullptr;
-  PC pc = nullptr;
-  Mat factor = nullptr;
-  MatSolverType package = nullptr;
-  PetscBool cholesky = PETSC_FALSE;
   check(SNESGetKSP(snes_, &ksp));
-  check(KSPGetPC(ksp, &pc));
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
-  if (cholesky == PETSC_FALSE) return -1;
-  check(PCFactorGetMatSolverType(pc, &package));
-  if (package == nullptr || std::strcmp(package, MATSOLVERMUMPS) != 0) return -1;
-  rebase(x_);
-  assemble();
+  const auto use_tangent = [&] {
+    check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+  };
+  use_tangent();
+  if (mumps_cholesky(ksp) == nullptr) return -1;
+  if (!constant_) {
+    rebase(x_);
+    assemble();
+    use_tangent();
+  }
   const Timed timed(Event::solve);
-  check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
-  check(KSPSetUp(ksp));
-  check(PCFactorGetMatrix(pc, &factor));
-  PetscInt negative = 0;
-  constexpr PetscInt number_of_negative_pivots = 12;  // MUMPS users' guide, INFOG(12)
-  check(MatMumpsGetInfog(factor, number_of_negative_pivots, &negative));
+  std::int64_t negative = negative_pivots(ksp);
+  // With linear kinematics forces in the plane have no effect out of it.
+  if (rest == nullptr || model_.kinematics() == Kinematics::linear) return negative;
+  assemble_out_of_plane(*rest);
+  use_tangent();
+  negative += negative_pivots(ksp);
   return negative;
 }
 
-double Equilibrium::pin_reaction() const {
-  const double scale = 1.0 / model_.length_scale();
+template <class Space>
+double Equilibrium<Space>::pin_reaction() const {
   double largest = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
     const bool pinned = ((model_.held()[k / n] & ~model_.prescribed()[k / n]) >> (k % n) & 1U) != 0;
-    if (pinned) largest = std::max(largest, std::abs(wrenches_.at(k)) * (k % n < 3 ? 1.0 : scale));
+    if (pinned) largest = std::max(largest, std::abs(wrenches_.at(k)) * weight(k));
   }
   double all = 0;
   MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
@@ -416,5 +468,8 @@ double Equilibrium::pin_reaction() const {
   return all > size.rounding ? all / size.forces
                              : 0.0;  // without any load all reactions are rounding
 }
+
+template class Equilibrium<Spatial>;
+template class Equilibrium<Planar>;
 
 }  // namespace floe

@@ -2,26 +2,32 @@
 /// The nonlinear equations of static equilibrium as a SNES problem.
 ///
 /// Unknowns x (blocks of n per body, PETSc's rows): displacement u [m] and the running sum of
-/// rotation increments times the model's length scale. Rotations follow q = exp((x - x_ref)/length)
-/// q_ref; whenever a tangent is formed the reference moves to the present state, so that there
-/// increments are spins and the tangent is exact. The residual is minus the wrenches (moments
+/// rotation increments times the model's length scale; whenever a tangent is formed increments are
+/// spins, so that it is exact (RotationUnknowns). The residual is minus the wrenches (moments
 /// divided by the length scale), zero where unknowns are prescribed.
+///
+/// Where all forces are linear in the unknowns the tangent is one and the same: it is assembled and
+/// factorised once in a run, and a load step is one solve.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "floe/solve/model.h"
+#include "floe/solve/integrator.h"
+#include "solve/rotation_unknowns.h"
 
 namespace floe {
 
+template <class Space>
 class Equilibrium {
  public:
-  static constexpr int n = Spatial::unknowns;
+  static constexpr int n = Space::unknowns;
 
-  explicit Equilibrium(Model<Spatial>& model);
+  explicit Equilibrium(Model<Space>& model);
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
@@ -31,9 +37,10 @@ class Equilibrium {
   /// of undamaged beams before the first of them breaks: above it the step is refused
   bool solve(double time, double overload_limit = std::numeric_limits<double>::infinity());
 
-  const State<Spatial>& state() const { return state_; }
-  const Wrenches<Spatial>& wrenches() const { return wrenches_; }
+  const State<Space>& state() const { return state_; }
+  const Wrenches<Space>& wrenches() const { return wrenches_; }
   std::int64_t newton_iterations() const { return iterations_; }
+  std::int64_t factorisations() const { return assemblies_; }
   const std::string& why() const { return why_; }
   /// Whether the last failure came after beams had broken: the way on is dynamic.
   bool collapsed() const { return collapsed_; }
@@ -41,14 +48,15 @@ class Equilibrium {
   /// pushes a motion that nothing holds.
   double pin_reaction() const;
   /// Number of negative eigenvalues of the tangent at the present state: more than none is an
-  /// unstable equilibrium. Costs a factorisation; -1 if the solver is not Cholesky by MUMPS, which
-  /// tells.
-  std::int64_t unstable_modes();
+  /// unstable equilibrium. Costs a factorisation if forces are not linear, and one more for what a
+  /// planar model leaves out; -1 if the solver is not Cholesky by MUMPS, which tells. To be asked
+  /// last.
+  std::int64_t unstable_modes(const OutOfPlane* rest);
 
  private:
   struct Saved {
-    State<Spatial> state;
-    std::vector<double> reference;
+    State<Space> state;
+    RotationUnknowns<Space> rotations;
     std::vector<PetscScalar> x;
   };
 
@@ -66,11 +74,21 @@ class Equilibrium {
   static PetscErrorCode converged(SNES, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal f,
                                   SNESConvergedReason*, void* self) noexcept;
 
+  static constexpr std::size_t turns = n - Space::translations;
+
   void set_defaults();
   void take(Vec x);    ///< state of the unknowns, ghosts included
   void rebase(Vec x);  ///< moves the reference of the rotations to the present state
   void fill_residual(Vec f);
+  /// Forces' share of a component of the residual [N].
+  double weight(std::size_t k) const {
+    return k % n < Space::translations ? 1.0 : 1.0 / model_.length_scale();
+  }
+  std::array<double, turns> turn_of(const PetscScalar* unknowns) const;
   void assemble(std::span<const double> increments = {});
+  void assemble_out_of_plane(const OutOfPlane& rest);
+  std::vector<double> increments_to(double time);
+  void fill_right_hand_side(std::vector<double>& increments);
   bool predict(double time);
   bool balance(double time);
   bool let_break(double time, double overload_limit);
@@ -81,11 +99,11 @@ class Equilibrium {
   Saved save() const;
   void restore(const Saved& saved);
 
-  Model<Spatial>& model_;
+  Model<Space>& model_;
   const Part& part_;
-  State<Spatial> state_;
-  Wrenches<Spatial> wrenches_, share_;
-  std::vector<double> reference_;  ///< owned bodies: q_ref (4) and the rotation sum at it (3)
+  State<Space> state_;
+  Wrenches<Space> wrenches_, share_;
+  RotationUnknowns<Space> rotations_;
   /// Owned bodies: square of the rotation so far [rad^2]. A full turn counts as one, although its
   /// quaternion is that of rest: what it took to get there has left rounding.
   std::vector<double> turned2_;
@@ -97,10 +115,11 @@ class Equilibrium {
   double external2_ = 0;  ///< squared norm of each external force's wrenches, summed, this rank
   double extent_ = 0,
          prescribed_ = 0;  ///< of the lattice; largest displacement that is prescribed [m]
-  Tangent<Spatial> tangent_;
+  Tangent<Space> tangent_;
   Handle<Vec> x_, f_, step_;
   Handle<SNES> snes_;
-  std::int64_t iterations_ = 0;
+  std::int64_t iterations_ = 0, assemblies_ = 0;
+  bool constant_ = false;  ///< the assembled tangent is that of any state
   std::string why_;
   bool collapsed_ = false;
 };

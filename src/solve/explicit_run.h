@@ -14,10 +14,11 @@ namespace floe {
 /// half of what `safety` leaves is used up, and takes shorter steps from there on; a given step
 /// ends the run when it is no longer stable. A run whose stable step does not fall so far goes on
 /// as if nobody had looked, to the last bit.
-class ExplicitRun : public DynamicRun<Spatial> {
+template <class Space>
+class ExplicitRun : public DynamicRun<Space> {
  public:
-  ExplicitRun(std::string_view type, Model<Spatial>& model, const ExplicitOptions& options,
-              const Observer<Spatial>& observer);
+  ExplicitRun(std::string_view type, Model<Space>& model, const ExplicitOptions& options,
+              const Observer<Space>& observer);
 
  protected:
   /// At the state, whose wrenches must be known afterwards as they were before.

@@ -170,13 +170,14 @@ FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> h
   return free;
 }
 
-void require_balance(const Model<Spatial>& model, const Lattice& lattice, const FreeMotions& free,
+template <class Space>
+void require_balance(const Model<Space>& model, const Lattice& lattice, const FreeMotions& free,
                      double time) {
   if (free.motions.empty()) return;
   const Part& part = model.part();
-  State<Spatial> rest(static_cast<std::size_t>(part.local));
+  State<Space> rest(static_cast<std::size_t>(part.local));
   rest.time = time;
-  Wrenches<Spatial> wrenches(static_cast<std::size_t>(part.local));
+  Wrenches<Space> wrenches(static_cast<std::size_t>(part.local));
   model.evaluate(rest, wrenches);
 
   // Work of the loads on the six rigid motions of each piece, and of their absolute values, to
@@ -192,7 +193,7 @@ void require_balance(const Model<Spatial>& model, const Lattice& lattice, const 
     if (found == slot.end()) continue;
     const FreeMotion& motion = *first[found->second];
     const Point3& x = lattice.bodies.position[static_cast<std::size_t>(body)];
-    const double* w = wrenches.of(static_cast<std::size_t>(local));
+    const std::array<double, 6> w = components_of(wrenches, static_cast<std::size_t>(local));
     const Vec3<double> arm{x[0] - motion.centre[0], x[1] - motion.centre[1],
                            x[2] - motion.centre[2]};
     const Vec3<double> moment = cross(arm, Vec3<double>{w[0], w[1], w[2]});
@@ -232,5 +233,8 @@ void require_balance(const Model<Spatial>& model, const Lattice& lattice, const 
                      ", but the loads push it; prescribe that motion with `fix`");
   }
 }
+
+template void require_balance(const Model<Spatial>&, const Lattice&, const FreeMotions&, double);
+template void require_balance(const Model<Planar>&, const Lattice&, const FreeMotions&, double);
 
 }  // namespace floe

@@ -7,6 +7,18 @@
 #include "floe/base/petsc.h"
 
 namespace floe {
+namespace {
+
+/// Bits of a space's unknowns from bits of x y z rx ry rz.
+template <class Space>
+std::uint8_t bits_of_unknowns(std::uint8_t components) {
+  unsigned bits = 0;
+  for (std::size_t k = 0; k < Space::components.size(); ++k)
+    bits |= (components >> Space::components[k] & 1U) << k;
+  return static_cast<std::uint8_t>(bits);
+}
+
+}  // namespace
 
 std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
                                                 const std::vector<Boundary>& boundaries) {
@@ -50,7 +62,7 @@ Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Bou
     : part_(partition(lattice, comm)), inertial_mass_(part_.bodies.mass) {
   const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
   for (const std::int32_t body : part_.global)
-    prescribed_.push_back(all[static_cast<std::size_t>(body)]);
+    prescribed_.push_back(bits_of_unknowns<Space>(all[static_cast<std::size_t>(body)]));
   held_ = prescribed_;
   for (const Boundary& boundary : boundaries)
     boundaries_.push_back(
@@ -113,7 +125,8 @@ void Model<Space>::pin(const std::vector<Pin>& pins) {
   for (const Pin& p : pins) {
     const std::int32_t local = part_.local_index(p.body);
     if (local >= 0)
-      held_[static_cast<std::size_t>(local)] |= static_cast<std::uint8_t>(1U << p.component);
+      held_[static_cast<std::size_t>(local)] |=
+          bits_of_unknowns<Space>(static_cast<std::uint8_t>(1U << p.component));
   }
 }
 
@@ -137,8 +150,10 @@ void Model<Space>::spread(Prescription motion, double time, std::span<double> va
   for (const PlacedBoundary& placed : boundaries_) {
     const std::array<double, 6> value = (placed.boundary.*motion)(time);
     for (const std::int32_t body : placed.bodies) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (placed.boundary.fixed[k]) values[static_cast<std::size_t>(body) * n + k] = value[k];
+      for (std::size_t k = 0; k < n; ++k) {
+        const auto component = static_cast<std::size_t>(Space::components[k]);
+        if (placed.boundary.fixed[component])
+          values[static_cast<std::size_t>(body) * n + k] = value[component];
       }
     }
   }
@@ -167,5 +182,6 @@ std::vector<std::pair<std::string, double>> Model<Space>::report(const State<Spa
 }
 
 template class Model<Spatial>;
+template class Model<Planar>;
 
 }  // namespace floe

@@ -17,7 +17,8 @@ TangentOptions tangent_options() {
   return options;
 }
 
-double typical_stiffness(const Model<Spatial>& model) {
+template <class Space>
+double typical_stiffness(const Model<Space>& model) {
   double mine = 0;
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
     for (const auto& force : model.forces()) mine = std::max(mine, force->stiffness_bound(b));
@@ -27,6 +28,14 @@ double typical_stiffness(const Model<Spatial>& model) {
   return all > 0 ? all : 1.0;
 }
 
+void set_cholesky(KSP ksp) {
+  PC pc = nullptr;
+  check(KSPSetType(ksp, KSPPREONLY));
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCCHOLESKY));
+  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+}
+
 void set_newton_defaults(SNES snes) {
   check(SNESSetType(snes, SNESNEWTONLS));
   SNESLineSearch search = nullptr;
@@ -34,22 +43,19 @@ void set_newton_defaults(SNES snes) {
   check(SNESLineSearchSetType(
       search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
   KSP ksp = nullptr;
-  PC pc = nullptr;
   check(SNESGetKSP(snes, &ksp));
-  check(KSPSetType(ksp, KSPPREONLY));
-  check(KSPGetPC(ksp, &pc));
-  check(PCSetType(pc, PCCHOLESKY));
-  check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  set_cholesky(ksp);
 }
 
-void attach_rigid_modes(const Model<Spatial>& model, std::span<const std::uint8_t> held,
-                        Mat matrix) {
-  constexpr std::size_t n = Spatial::unknowns;
+template <class Space>
+void attach_rigid_modes(const Model<Space>& model, std::span<const std::uint8_t> held, Mat matrix) {
+  constexpr std::size_t n = Space::unknowns;
   const Part& part = model.part();
-  std::array<Handle<Vec>, 6> modes;
+  std::array<Handle<Vec>, n> modes;
   std::vector<Vec> list;
-  for (int m = 0; m < 6; ++m) {
-    auto& mode = modes[static_cast<std::size_t>(m)];
+  for (std::size_t k = 0; k < n; ++k) {
+    const int m = Space::components[k];
+    auto& mode = modes[k];
     check(MatCreateVecs(matrix, mode.put(), nullptr));
     PetscScalar* values = nullptr;
     check(VecGetArrayWrite(mode, &values));
@@ -62,8 +68,10 @@ void attach_rigid_modes(const Model<Spatial>& model, std::span<const std::uint8_
       const Vec3<double> u = m < 3 ? axis : cross(axis, Vec3<double>{p[0], p[1], p[2]});
       const double l = model.length_scale();
       const std::array<double, 6> entries{u.x, u.y, u.z, l * turn.x, l * turn.y, l * turn.z};
-      for (std::size_t k = 0; k < 6; ++k)
-        values[b * n + k] = (held[b] >> k & 1U) != 0 ? 0.0 : entries[k];
+      for (std::size_t a = 0; a < n; ++a) {
+        const auto component = static_cast<std::size_t>(Space::components[a]);
+        values[b * n + a] = (held[b] >> a & 1U) != 0 ? 0.0 : entries[component];
+      }
     }
     check(VecRestoreArrayWrite(mode, &values));
     for (const Vec earlier : list) {
@@ -82,5 +90,43 @@ void attach_rigid_modes(const Model<Spatial>& model, std::span<const std::uint8_
                            space.put()));
   check(MatSetNearNullSpace(matrix, space));
 }
+
+Mat mumps_cholesky(KSP ksp) {
+  PC pc = nullptr;
+  Mat factor = nullptr;
+  MatSolverType package = nullptr;
+  PetscBool cholesky = PETSC_FALSE;
+  check(KSPGetPC(ksp, &pc));
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(pc), PCCHOLESKY, &cholesky));
+  if (cholesky == PETSC_FALSE) return nullptr;
+  check(PCFactorGetMatSolverType(pc, &package));
+  if (package == nullptr || std::strcmp(package, MATSOLVERMUMPS) != 0) return nullptr;
+  check(PCFactorSetUpMatSolverType(pc));
+  check(PCFactorGetMatrix(pc, &factor));
+  return factor;
+}
+
+void let_mumps_count(KSP ksp) {
+  constexpr PetscInt root_front = 13;  // MUMPS users' guide, ICNTL(13)
+  MPI_Comm comm = MPI_COMM_NULL;
+  check(PetscObjectGetComm(reinterpret_cast<PetscObject>(ksp), &comm));
+  if (size(comm) == 1) return;
+  if (Mat factor = mumps_cholesky(ksp)) check(MatMumpsSetIcntl(factor, root_front, 1));
+}
+
+std::int64_t negative_pivots(KSP ksp) {
+  const Mat factor = mumps_cholesky(ksp);
+  if (factor == nullptr) return -1;
+  check(KSPSetUp(ksp));
+  PetscInt negative = 0;
+  constexpr PetscInt number_of_negative_pivots = 12;  // MUMPS users' guide, INFOG(12)
+  check(MatMumpsGetInfog(factor, number_of_negative_pivots, &negative));
+  return negative;
+}
+
+template double typical_stiffness(const Model<Spatial>&);
+template double typical_stiffness(const Model<Planar>&);
+template void attach_rigid_modes(const Model<Spatial>&, std::span<const std::uint8_t>, Mat);
+template void attach_rigid_modes(const Model<Planar>&, std::span<const std::uint8_t>, Mat);
 
 }  // namespace floe

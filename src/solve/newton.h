@@ -16,14 +16,29 @@ TangentOptions tangent_options();
 
 /// A typical diagonal of the free unknowns for the prescribed ones, so that the matrix stays well
 /// scaled [N/m]. Collective.
-double typical_stiffness(const Model<Spatial>& model);
+template <class Space>
+double typical_stiffness(const Model<Space>& model);
+
+/// Preonly + Cholesky by MUMPS.
+void set_cholesky(KSP ksp);
 
 /// Newton without line search, preonly + Cholesky by MUMPS: options read later win.
 void set_newton_defaults(SNES snes);
 
-/// The six rigid modes as near-nullspace: what algebraic multigrid needs to know of an elastic
-/// body. \param held  n bits per local body: unknowns that do not move
-void attach_rigid_modes(const Model<Spatial>& model, std::span<const std::uint8_t> held,
-                        Mat matrix);
+/// The rigid modes (six, in the plane three) as near-nullspace: what algebraic multigrid needs to
+/// know of an elastic body. \param held  n bits per local body: unknowns that do not move
+template <class Space>
+void attach_rigid_modes(const Model<Space>& model, std::span<const std::uint8_t> held, Mat matrix);
+
+/// The factor of a solver that is Cholesky by MUMPS and has its operators; null for any other.
+Mat mumps_cholesky(KSP ksp);
+
+/// Before the first factorisation: on several ranks MUMPS counts negative pivots only if its root
+/// front is not shared out.
+void let_mumps_count(KSP ksp);
+
+/// Number of negative eigenvalues of a solver's matrix, which is factorised if it is not yet; -1 if
+/// the solver does not tell. Collective.
+std::int64_t negative_pivots(KSP ksp);
 
 }  // namespace floe

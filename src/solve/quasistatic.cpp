@@ -18,11 +18,15 @@ constexpr double pin_tolerance =
 
 }  // namespace
 
-void check_solver_options(Model<Spatial>& model) { const Equilibrium equilibrium(model); }
+template <class Space>
+void check_solver_options(Model<Space>& model) {
+  const Equilibrium<Space> equilibrium(model);
+}
 
-RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
-                          const Observer<Spatial>& observer) {
-  Equilibrium equilibrium(model);
+template <class Space>
+RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
+                          const ObserverOf<Space>& observer, const OutOfPlane* rest) {
+  Equilibrium<Space> equilibrium(model);
   RunResult result;
   const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
   const auto accept = [&](std::int64_t step) {
@@ -82,8 +86,16 @@ RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
     dt = std::min(given, 2 * dt);
   }
   result.done = true;
-  result.unstable_modes = equilibrium.unstable_modes();
+  result.unstable_modes = equilibrium.unstable_modes(rest);
+  result.factorisations = equilibrium.factorisations();
   return result;
 }
+
+template void check_solver_options(Model<Spatial>&);
+template void check_solver_options(Model<Planar>&);
+template RunResult run_quasistatic(Model<Spatial>&, const TimeSpan&, const Observer<Spatial>&,
+                                   const OutOfPlane*);
+template RunResult run_quasistatic(Model<Planar>&, const TimeSpan&, const Observer<Planar>&,
+                                   const OutOfPlane*);
 
 }  // namespace floe

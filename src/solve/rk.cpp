@@ -19,7 +19,7 @@
 namespace floe {
 namespace {
 
-class RkRun final : public ExplicitRun {
+class RkRun final : public ExplicitRun<Spatial> {
  public:
   RkRun(Model<Spatial>& model, const ExplicitOptions& options, const Observer<Spatial>& observer)
       : ExplicitRun(TSRK, model, options, observer), equations_(model) {

@@ -17,12 +17,14 @@ using Vector = Eigen::VectorXd;
 
 /// M^-1/2 K M^-1/2 and M^-1/2 C M^-1/2 on vectors of this rank's share of mass-weighted
 /// coordinates.
+template <class Space>
 class Operators {
  public:
-  static constexpr int n = Spatial::unknowns;
-  using Rates = Force<Spatial>::Rates;
+  static constexpr int n = Space::unknowns;
+  using Components = std::array<double, static_cast<std::size_t>(n)>;
+  using Rates = typename Force<Space>::Rates;
 
-  Operators(const Model<Spatial>& model, const State<Spatial>& state)
+  Operators(const Model<Space>& model, const State<Space>& state)
       : model_(model),
         part_(model.part()),
         base_(state),
@@ -31,12 +33,14 @@ class Operators {
         at_rest_(static_cast<std::size_t>(part_.local)),
         forward_(at_rest_),
         backward_(at_rest_) {
+    for (std::int32_t b = 0; b < part_.owned; ++b) roots_.push_back(roots(b));
     // Stiffness without the velocities of the moment, so that dashpots have no part in it.
     double fastest2 = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b) {
-      double* v = base_.record(b) + Spatial::velocity;
-      fastest2 = std::max(fastest2, v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-      std::fill_n(v, 9, 0.0);
+      double* v = base_.record(b) + Space::velocity;
+      const Vec3<double> speed = velocity(base_, b);
+      fastest2 = std::max(fastest2, floe::dot(speed, speed));
+      std::fill_n(v, Space::record - Space::velocity, 0.0);
     }
     MPI_Allreduce(MPI_IN_PLACE, &fastest2, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
     speed_ = std::sqrt(fastest2);
@@ -59,18 +63,16 @@ class Operators {
     return all;
   }
 
-  /// World components of body b from mass-weighted ones along its principal axes, prescribed ones
-  /// left out.
-  std::array<double, 6> unweighted(const Vector& z, std::int32_t body) const {
+  /// World components of body b from mass-weighted ones, those of rotations along its principal
+  /// axes; prescribed ones left out.
+  Components unweighted(const Vector& z, std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
-    const double mass = std::sqrt(model_.inertial_mass()[b]);
-    const Point3& inertia = part_.bodies.inertia[b];
     const auto i = static_cast<Eigen::Index>(body) * n;
-    const Vec3<double> turn =
-        axes(b).to_world({z[i + 3] / std::sqrt(inertia[0]), z[i + 4] / std::sqrt(inertia[1]),
-                          z[i + 5] / std::sqrt(inertia[2])});
-    std::array<double, 6> x{z[i] / mass, z[i + 1] / mass, z[i + 2] / mass, turn.x, turn.y, turn.z};
-    for (std::size_t k = 0; k < 6; ++k) {
+    const Components& root = roots_[b];
+    Components x;
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] = z[i + static_cast<Eigen::Index>(k)] / root[k];
+    turn<true>(b, x);
+    for (std::size_t k = 0; k < x.size(); ++k) {
       if ((model_.prescribed()[b] >> k & 1U) != 0) x[k] = 0;
     }
     return x;
@@ -82,8 +84,9 @@ class Operators {
     double mine = 0, largest = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b) {
       const auto x = unweighted(z, b);
-      for (std::size_t k = 0; k < 6; ++k)
-        mine = std::max(mine, std::abs(x[k]) / (k < 3 ? model_.length_scale() : 1.0));
+      for (std::size_t k = 0; k < x.size(); ++k)
+        mine = std::max(mine,
+                        std::abs(x[k]) / (k < Space::translations ? model_.length_scale() : 1.0));
     }
     MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
     const double step = largest > 0 ? 1e-6 / largest : 0.0;
@@ -118,68 +121,95 @@ class Operators {
     damping = weighted(forward_, backward_, -0.5 / change);
   }
 
-  void evaluate(const State<Spatial>& state, Wrenches<Spatial>& wrenches) {
+  void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) {
     std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
     for (const auto& force : model_.forces()) {
       if (force->own_rates().stiffness == 0) force->add(state, wrenches);
     }
     ++evaluations_;
   }
-  Triad<double> axes(std::size_t b) const {
-    const auto [w, x, y, z] = part_.bodies.orientation[b];
-    return triad(product(normalised(rotation(base_, b)), Quat<double>{w, x, y, z}));
+  /// Rotation components from a body's principal axes to the world, or the other way. In the plane
+  /// they are one and the same.
+  template <bool to_world>
+  void turn(std::size_t b, Components& x) const {
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      const auto [w, qx, qy, qz] = part_.bodies.orientation[b];
+      const Triad<double> axes =
+          triad(product(normalised(rotation(base_, b)), Quat<double>{w, qx, qy, qz}));
+      const Vec3<double> t{x[3], x[4], x[5]};
+      const Vec3<double> turned = to_world ? axes.to_world(t) : axes.to_local(t);
+      x[3] = turned.x, x[4] = turned.y, x[5] = turned.z;
+    }
   }
-
-  void displace(const Vector& z, double by, double velocity) {
-    for (std::int32_t body = 0; body < part_.owned; ++body) {
-      const auto b = static_cast<std::size_t>(body);
-      const auto x = unweighted(z, body);
-      double* r = moved_.record(b);
-      std::copy_n(base_.record(b), Spatial::record, r);
-      for (std::size_t k = 0; k < 3; ++k) r[k] += by * x[k];
-      const Vec3<double> turn{by * x[3], by * x[4], by * x[5]};
+  /// Square roots of the masses and of the moments of inertia.
+  Components roots(std::int32_t body) const {
+    const auto b = static_cast<std::size_t>(body);
+    Components root;
+    root.fill(std::sqrt(model_.inertial_mass()[b]));
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      for (std::size_t k = 0; k < 3; ++k) root[3 + k] = std::sqrt(part_.bodies.inertia[b][k]);
+    } else {
+      root[2] = std::sqrt(inertia_about(part_.bodies, body, {0, 0, 1}));
+    }
+    return root;
+  }
+  /// Turns the rotation of a record.
+  void turn_record(std::size_t b, const Components& x, double by, double* r) const {
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      const Vec3<double> spin{by * x[3], by * x[4], by * x[5]};
       Quat<double> q = rotation(base_, b);
       if (model_.kinematics() == Kinematics::linear) {
-        q = {1, q.x + 0.5 * turn.x, q.y + 0.5 * turn.y, q.z + 0.5 * turn.z};
+        q = {1, q.x + 0.5 * spin.x, q.y + 0.5 * spin.y, q.z + 0.5 * spin.z};
       } else {
-        q = product(exp_rotation(turn), q);
+        q = product(exp_rotation(spin), q);
       }
       r[3] = q.w, r[4] = q.x, r[5] = q.y, r[6] = q.z;
-      constexpr auto at = static_cast<std::size_t>(Spatial::velocity);
-      for (std::size_t k = 0; k < 6; ++k)
-        r[at + k] = velocity != 0 ? moving_.record(b)[at + k] + velocity * x[k] : 0.0;
+    } else {
+      r[Space::rotation] += by * x[2];
     }
-    part_.ghosts.update(moved_.records, Spatial::record);
+  }
+
+  void displace(const Vector& z, double by, double speed) {
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      const auto b = static_cast<std::size_t>(body);
+      const Components x = unweighted(z, body);
+      double* r = moved_.record(b);
+      std::copy_n(base_.record(b), Space::record, r);
+      for (std::size_t k = 0; k < Space::translations; ++k) r[k] += by * x[k];
+      turn_record(b, x, by, r);
+      constexpr auto at = static_cast<std::size_t>(Space::velocity);
+      for (std::size_t k = 0; k < x.size(); ++k)
+        r[at + k] = speed != 0 ? moving_.record(b)[at + k] + speed * x[k] : 0.0;
+    }
+    part_.ghosts.update(moved_.records, Space::record);
   }
 
   /// factor M^-1/2 (a - b), prescribed components left out.
-  Vector weighted(const Wrenches<Spatial>& a, const Wrenches<Spatial>& b, double factor) const {
+  Vector weighted(const Wrenches<Space>& a, const Wrenches<Space>& b, double factor) const {
     Vector y(size());
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const auto index = static_cast<std::size_t>(body);
-      std::array<double, 6> f{};
-      for (std::size_t k = 0; k < 6; ++k) {
+      Components f{};
+      for (std::size_t k = 0; k < f.size(); ++k) {
         if ((model_.prescribed()[index] >> k & 1U) == 0)
           f[k] = factor * (a.of(index)[k] - b.of(index)[k]);
       }
-      const Vec3<double> moment = axes(index).to_local({f[3], f[4], f[5]});
-      const double mass = std::sqrt(model_.inertial_mass()[index]);
-      const Point3& inertia = part_.bodies.inertia[index];
-      const auto i = static_cast<Eigen::Index>(body) * n;
-      y[i] = f[0] / mass, y[i + 1] = f[1] / mass, y[i + 2] = f[2] / mass;
-      y[i + 3] = moment.x / std::sqrt(inertia[0]), y[i + 4] = moment.y / std::sqrt(inertia[1]);
-      y[i + 5] = moment.z / std::sqrt(inertia[2]);
+      turn<false>(index, f);
+      for (std::size_t k = 0; k < f.size(); ++k)
+        y[static_cast<Eigen::Index>(body) * n + static_cast<Eigen::Index>(k)] =
+            f[k] / roots_[index][k];
     }
     return y;
   }
 
-  const Model<Spatial>& model_;
+  const Model<Space>& model_;
   const Part& part_;
   static constexpr double slow = 1e-6;  // [m/s]: no quadratic drag to speak of
-  State<Spatial> base_, moving_, moved_;
-  Wrenches<Spatial> at_rest_, forward_, backward_;
+  State<Space> base_, moving_, moved_;
+  Wrenches<Space> at_rest_, forward_, backward_;
   double speed_ = 0;
   Rates bound_;
+  std::vector<Components> roots_;  ///< of owned bodies
   int evaluations_ = 0;
 };
 
@@ -251,14 +281,16 @@ class Extreme {
 };
 
 /// The body that moves most in a mode, and whether it moves or turns.
-std::string describe(const Operators& a, const Model<Spatial>& model, const Vector& z) {
+template <class Space>
+std::string describe(const Operators<Space>& a, const Model<Space>& model, const Vector& z) {
+  constexpr int n = Space::unknowns;
   struct {
     double value = -1;
     int rank = 0;
   } mine, best;
   Eigen::Index at = 0;
-  for (Eigen::Index b = 0; b < a.size() / Operators::n; ++b) {
-    const double share = z.segment<6>(b * Operators::n).squaredNorm();
+  for (Eigen::Index b = 0; b < a.size() / n; ++b) {
+    const double share = z.segment<n>(b * n).squaredNorm();
     if (share > mine.value) {
       mine.value = share;
       at = b;
@@ -270,10 +302,13 @@ std::string describe(const Operators& a, const Model<Spatial>& model, const Vect
   std::array<double, 5> facts{};
   if (best.rank == mine.rank) {
     const auto b = static_cast<std::size_t>(at);
-    const auto v = z.segment<6>(at * Operators::n);
+    const auto v = z.segment<n>(at * n);
     const Point3& x = model.part().bodies.position[b];
     facts = {static_cast<double>(model.part().global[b]), x[0], x[1], x[2],
-             v.head<3>().squaredNorm() < v.tail<3>().squaredNorm() ? 1.0 : 0.0};
+             v.template head<Space::translations>().squaredNorm() <
+                     v.template tail<n - Space::translations>().squaredNorm()
+                 ? 1.0
+                 : 0.0};
   }
   MPI_Bcast(facts.data(), 5, MPI_DOUBLE, best.rank, comm);
   std::ostringstream text;
@@ -283,13 +318,15 @@ std::string describe(const Operators& a, const Model<Spatial>& model, const Vect
 }
 
 /// The same vector on any number of ranks: by global index.
-Vector random_vector(const Operators& a, const Part& part) {
+template <class Space>
+Vector random_vector(const Operators<Space>& a, const Part& part) {
+  constexpr int n = Space::unknowns;
   Vector start(a.size());
   for (std::int32_t b = 0; b < part.owned; ++b) {
     std::minstd_rand random(static_cast<unsigned>(part.global[static_cast<std::size_t>(b)]) + 1U);
     random.discard(3);
-    for (int k = 0; k < Operators::n; ++k)
-      start[b * Operators::n + k] =
+    for (int k = 0; k < n; ++k)
+      start[b * n + k] =
           static_cast<double>(random()) / static_cast<double>(std::minstd_rand::max()) - 0.5;
   }
   return start;
@@ -297,7 +334,8 @@ Vector random_vector(const Operators& a, const Part& part) {
 
 /// Locally optimal conjugate gradients for the top mode of what `search` weights; empty if nothing
 /// acts.
-std::optional<Trial> top_mode(Operators& a, Vector start, auto& search) {
+template <class Space>
+std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
   const auto make = [&](Vector z) {
     Trial t{std::move(z), {}, {}};
     a.apply(t.z, t.k, t.c);
@@ -363,8 +401,9 @@ std::optional<Trial> top_mode(Operators& a, Vector start, auto& search) {
 
 }  // namespace
 
-StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state) {
-  Operators a(model, state);
+template <class Space>
+StableStep stable_step(const Model<Space>& model, const State<Space>& state) {
+  Operators<Space> a(model, state);
   CriticalStep search;
   StableStep result;
   const auto mode = top_mode(a, random_vector(a, model.part()), search);
@@ -385,7 +424,7 @@ StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state)
 
 VibrationMode extreme_mode(const Model<Spatial>& model, const State<Spatial>& state,
                            const Weights& weights, const VibrationMode* start) {
-  Operators a(model, state);
+  Operators<Spatial> a(model, state);
   Extreme search(weights);
   // A little of everything beside the mode to start from, which may be another's.
   Vector first = random_vector(a, model.part());
@@ -395,5 +434,8 @@ VibrationMode extreme_mode(const Model<Spatial>& model, const State<Spatial>& st
   return {search.value(),  a.dot(mode->z, mode->k),     a.dot(mode->z, mode->c),
           a.evaluations(), describe(a, model, mode->z), mode->z};
 }
+
+template StableStep stable_step(const Model<Spatial>&, const State<Spatial>&);
+template StableStep stable_step(const Model<Planar>&, const State<Planar>&);
 
 }  // namespace floe

@@ -24,7 +24,8 @@ struct StableStep {
 /// by a locally optimal conjugate gradient iteration (Knyazev 2001) in which dt is solved for in
 /// the three-dimensional trial space of each iteration; dt falls towards the limit. K and C act
 /// through differences of the forces at the given state, so all forces count. Collective.
-StableStep stable_step(const Model<Spatial>& model, const State<Spatial>& state);
+template <class Space>
+StableStep stable_step(const Model<Space>& model, const State<Space>& state);
 
 /// Of a stiffness [1/s^2] and a damping [1/s], both per mass.
 struct Weights {

@@ -9,24 +9,25 @@
 #include <string>
 
 #include "floe/build.h"
-#include "solve/motion.h"
+#include "solve/planar_motion.h"
 #include "support/frames.h"
 
 namespace floe::test {
 
 /// Between steps the wrenches are those of the state: positions at t_n, velocities at t_n - dt/2.
-class Dynamics {
+template <class Space>
+class DynamicsIn {
  public:
-  Dynamics(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
+  DynamicsIn(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
       : model_(lattice, comm, scene.boundaries), motion_(with_forces(scene, lattice, model_)) {
     const auto local = static_cast<std::size_t>(model_.part().local);
-    state_ = State<Spatial>(local);
-    wrenches_ = Wrenches<Spatial>(local);
+    state_ = State<Space>(local);
+    wrenches_ = Wrenches<Space>(local);
     motion_.start(state_, model_.part().bodies.velocity, model_.part().bodies.angular_velocity);
     evaluate();
   }
-  Dynamics(const Dynamics&) = delete;
-  Dynamics& operator=(const Dynamics&) = delete;
+  DynamicsIn(const DynamicsIn&) = delete;
+  DynamicsIn& operator=(const DynamicsIn&) = delete;
 
   /// To be called once, before the first step.
   void set_step(double dt) {
@@ -52,12 +53,12 @@ class Dynamics {
     for (long n = 0; n < count; ++n) (void)step();
   }
 
-  Model<Spatial>& model() { return model_; }
-  State<Spatial>& state() { return state_; }
-  const Wrenches<Spatial>& wrenches() const { return wrenches_; }
-  const Motion& motion() const { return motion_; }
+  Model<Space>& model() { return model_; }
+  State<Space>& state() { return state_; }
+  const Wrenches<Space>& wrenches() const { return wrenches_; }
+  const MotionOf<Space>& motion() const { return motion_; }
   void evaluate() {
-    model_.part().ghosts.update(state_.records, Spatial::record);
+    model_.part().ghosts.update(state_.records, Space::record);
     model_.evaluate(state_, wrenches_);
   }
 
@@ -72,19 +73,20 @@ class Dynamics {
 
  private:
   /// Forces first: water that bodies take along adds to what Motion moves.
-  static const Model<Spatial>& with_forces(const Scene& scene, const Lattice& lattice,
-                                           Model<Spatial>& model) {
+  static const Model<Space>& with_forces(const Scene& scene, const Lattice& lattice,
+                                         Model<Space>& model) {
     add_forces(scene, place_loads(scene, lattice), model);
     add_contact(scene, lattice, model);
     return model;
   }
 
-  Model<Spatial> model_;
-  Motion motion_;
-  State<Spatial> state_;
-  Wrenches<Spatial> wrenches_;
+  Model<Space> model_;
+  MotionOf<Space> motion_;
+  State<Space> state_;
+  Wrenches<Space> wrenches_;
   double dt_ = 0;
 };
+using Dynamics = DynamicsIn<Spatial>;
 
 /// Gives a frame of equal beams the masses of its material: half beams to either end, rotary
 /// inertias of its section (about axis 1 the polar one). Beams lie along x, axis 2 along y.

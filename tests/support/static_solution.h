@@ -28,34 +28,42 @@ class PetscOption {
 
 /// Every accepted state of a static run on one process; bodies and beams are numbered as in the
 /// lattice.
-struct StaticSolution {
-  std::unique_ptr<Model<Spatial>> model;
+template <class Space>
+struct StaticSolutionIn {
+  std::unique_ptr<Model<Space>> model;
   std::vector<PlacedLoad> loads;
-  std::vector<State<Spatial>> states;  ///< the first at time 0, then one per load step
-  Wrenches<Spatial> wrenches;          ///< of the last state; minus the reactions where held
+  std::vector<State<Space>> states;  ///< the first at time 0, then one per load step
+  Wrenches<Space> wrenches;          ///< of the last state; minus the reactions where held
   RunResult result;
 
-  const State<Spatial>& first() const { return states.front(); }
-  const State<Spatial>& last() const { return states.back(); }
+  const State<Space>& first() const { return states.front(); }
+  const State<Space>& last() const { return states.back(); }
 };
+using StaticSolution = StaticSolutionIn<Spatial>;
 
 /// \param pins  hold these instead of what hold_free_motions would choose
-inline StaticSolution solve_static(const Scene& scene, const Lattice& lattice,
-                                   const std::vector<Pin>* pins = nullptr) {
-  StaticSolution s;
+template <class Space = Spatial>
+StaticSolutionIn<Space> solve_static(const Scene& scene, const Lattice& lattice,
+                                     const std::vector<Pin>* pins = nullptr) {
+  StaticSolutionIn<Space> s;
   s.loads = place_loads(scene, lattice);
-  s.model = std::make_unique<Model<Spatial>>(lattice, PETSC_COMM_SELF, scene.boundaries);
+  s.model = std::make_unique<Model<Space>>(lattice, PETSC_COMM_SELF, scene.boundaries);
   add_forces(scene, s.loads, *s.model);
   if (pins != nullptr) {
     s.model->pin(*pins);
   } else {
     hold_free_motions(scene, lattice, *s.model);
   }
-  s.result =
-      run_quasistatic(*s.model, {scene.time.end, scene.time.dt}, [&](const Accepted<Spatial>& a) {
+  OutOfPlane rest;
+  if constexpr (std::is_same_v<Space, Planar>)
+    rest = out_of_plane(scene, lattice, s.loads, s.model->part());
+  s.result = run_quasistatic(
+      *s.model, {scene.time.end, scene.time.dt},
+      [&](const Accepted<Space>& a) {
         s.states.push_back(a.state);
         s.wrenches = a.wrenches;
-      });
+      },
+      &rest);
   EXPECT_TRUE(s.result.done) << s.result.message;
   return s;
 }

@@ -50,6 +50,10 @@ class Tangent {
   /// \param held_diagonal what stands on the diagonal of a prescribed unknown [N/m]
   Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
           double held_diagonal, const TangentOptions& options);
+  /// Some of the unknowns only, into a matrix that is there: H in blocks of their number.
+  /// \param unknowns  a bit for each of a body's that the matrix has
+  Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
+          double held_diagonal, Mat matrix, std::uint8_t unknowns);
 
   bool symmetric() const { return symmetric_; }
   Mat matrix() const { return matrix_; }
@@ -74,9 +78,12 @@ class Tangent {
   std::span<const double> lift() const { return lift_; }
 
  private:
+  void set_scale(double length_scale);
   void prepare_rows(std::int32_t body, std::span<double> rows, int columns);
   void turn_rows(std::int32_t body, std::span<double> rows, int columns) const;
   void turn_columns(std::int32_t body, std::span<double> block, int first, int columns) const;
+  void insert(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
+              double* block);
   bool is_held(std::int32_t body, int k) const {
     return (held_[static_cast<std::size_t>(body)] >> k & 1U) != 0;
   }
@@ -86,6 +93,7 @@ class Tangent {
   double held_diagonal_;
   std::array<double, static_cast<std::size_t>(n)> scale_;
   bool symmetric_;
+  std::vector<std::size_t> unknowns_;  ///< those that the matrix has
   Handle<Mat> matrix_;
   double factor_ = 1;
   std::span<const TurnFrame> frames_;

@@ -27,6 +27,9 @@ struct Bodies {
   std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
 };
 
+/// Moment of inertia at rest of a body about a unit vector in the world [kg m^2].
+double inertia_about(const Bodies& bodies, std::int32_t body, const Point3& axis);
+
 /// Beams as a structure of arrays; beam m joins the centroids of bodies[m][0] < bodies[m][1],
 /// sorted so. Local axes: 1 along the beam, 2 = axis_y (made orthogonal to 1), 3 = 1 x 2. In a
 /// sheet axis 2 lies in the plane, axis 3 is up: inertia_y resists out-of-plane bending, inertia_z

@@ -3,6 +3,7 @@
 /// traits.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,24 +17,27 @@ namespace floe {
 /// linear kinematics q is the linearised quaternion (1, theta/2).
 struct Spatial {
   static constexpr int unknowns = 6;  ///< ux uy uz, rotations about x y z
-  static constexpr int wrench = 8;    ///< doubles per wrench: the unknowns' number, padded
+  static constexpr std::array<int, 6> components{0, 1, 2, 3, 4, 5};  ///< of x y z rx ry rz
+  static constexpr int wrench = 8;  ///< doubles per wrench: the unknowns' number, padded
   static constexpr int translations = 3;
   static constexpr int record = 16;
   static constexpr int displacement = 0, rotation = 3, velocity = 7, angular_velocity = 10,
                        angular_momentum = 13;
-  static constexpr int rotation_size = 4;
+  static constexpr int velocities = 6;  ///< numbers from `velocity` on that are rates
   static void at_rest(double* record) { record[rotation] = 1; }
 };
 
-/// Three unknowns per body, for scenes where nothing moves out of plane: ux uy theta, vx vy omega,
-/// two of padding.
+/// Three unknowns per body, for scenes where nothing moves out of plane. A record of 8 doubles, one
+/// cache line, which fours of doubles can step: displacement ux uy, angle theta about z, and their
+/// rates vx vy omega, one of padding after each three.
 struct Planar {
-  static constexpr int unknowns = 3;
+  static constexpr int unknowns = 3;  ///< ux uy, rotation about z
+  static constexpr std::array<int, 3> components{0, 1, 5};
   static constexpr int wrench = 4;
   static constexpr int translations = 2;
   static constexpr int record = 8;
-  static constexpr int displacement = 0, rotation = 2, velocity = 3, angular_velocity = 5;
-  static constexpr int rotation_size = 1;
+  static constexpr int displacement = 0, rotation = 2, velocity = 4, angular_velocity = 6;
+  static constexpr int velocities = 3;
   static void at_rest(double*) {}
 };
 
@@ -55,10 +59,45 @@ inline Vec3<double> displacement(const State<Spatial>& state, std::size_t body) 
   const double* r = state.record(body) + Spatial::displacement;
   return {r[0], r[1], r[2]};
 }
+inline Vec3<double> displacement(const State<Planar>& state, std::size_t body) {
+  const double* r = state.record(body) + Planar::displacement;
+  return {r[0], r[1], 0};
+}
+/// Rotation from rest; linearised if kinematics are and the state is spatial.
 inline Quat<double> rotation(const State<Spatial>& state, std::size_t body) {
   const double* r = state.record(body) + Spatial::rotation;
   return {r[0], r[1], r[2], r[3]};
 }
+inline Quat<double> rotation(const State<Planar>& state, std::size_t body) {
+  const double half = 0.5 * state.record(body)[Planar::rotation];
+  return {std::cos(half), 0, 0, std::sin(half)};
+}
+/// Rotation vector where kinematics are linear.
+inline Vec3<double> linear_rotation(const State<Spatial>& state, std::size_t body) {
+  const double* r = state.record(body) + Spatial::rotation;
+  return {2 * r[1], 2 * r[2], 2 * r[3]};
+}
+inline Vec3<double> linear_rotation(const State<Planar>& state, std::size_t body) {
+  return {0, 0, state.record(body)[Planar::rotation]};
+}
+inline Vec3<double> velocity(const State<Spatial>& state, std::size_t body) {
+  const double* v = state.record(body) + Spatial::velocity;
+  return {v[0], v[1], v[2]};
+}
+inline Vec3<double> velocity(const State<Planar>& state, std::size_t body) {
+  const double* v = state.record(body) + Planar::velocity;
+  return {v[0], v[1], 0};
+}
+inline Vec3<double> angular_velocity(const State<Spatial>& state, std::size_t body) {
+  const double* w = state.record(body) + Spatial::angular_velocity;
+  return {w[0], w[1], w[2]};
+}
+inline Vec3<double> angular_velocity(const State<Planar>& state, std::size_t body) {
+  return {0, 0, state.record(body)[Planar::angular_velocity]};
+}
+
+/// The same state of a spatial model. \param linear  whether its rotations are linearised
+State<Spatial> in_space(const State<Planar>& state, bool linear);
 
 /// Force and moment on each local body, in the order of the unknowns [N, N m]; world axes, about
 /// the centroid. Those of ghosts are left unfinished: their owners have them.
@@ -73,5 +112,22 @@ struct Wrenches {
   double& at(std::size_t k) { return of(k / Space::unknowns)[k % Space::unknowns]; }
   double at(std::size_t k) const { return of(k / Space::unknowns)[k % Space::unknowns]; }
 };
+
+/// A wrench in space; what a planar one does not have is 0.
+template <class Space>
+std::array<double, 6> components_of(const Wrenches<Space>& wrenches, std::size_t body) {
+  std::array<double, 6> all{};
+  for (std::size_t k = 0; k < Space::components.size(); ++k)
+    all[static_cast<std::size_t>(Space::components[k])] = wrenches.of(body)[k];
+  return all;
+}
+/// Adds a force and a moment; of a planar wrench what lies in the plane.
+template <class Space>
+void add(Wrenches<Space>& wrenches, std::size_t body, const Vec3<double>& force,
+         const Vec3<double>& moment) {
+  const std::array<double, 6> all{force.x, force.y, force.z, moment.x, moment.y, moment.z};
+  for (std::size_t k = 0; k < Space::components.size(); ++k)
+    wrenches.of(body)[k] += all[static_cast<std::size_t>(Space::components[k])];
+}
 
 }  // namespace floe

@@ -48,7 +48,9 @@ struct OutputMemory {
   void remember(Memory& memory);
 };
 
-/// Takes every accepted state; writes on rank 0. Collective throughout.
+/// Takes every accepted state; writes on rank 0. Files of planar runs are those of spatial ones,
+/// with zeros. Collective throughout.
+template <class Space>
 class Output {
  public:
   /// Makes the folder and writes lattice.h5 and options.yaml.
@@ -56,14 +58,14 @@ class Output {
   /// \param restart  what a checkpoint says, or null: the files of that run are cut back to it and
   /// go on
   /// \throws InputError if the folder cannot be made, or does not hold the files to go on with
-  Output(const OutputOptions& options, const Lattice& lattice, const Model<Spatial>& model,
+  Output(const OutputOptions& options, const Lattice& lattice, const Model<Space>& model,
          const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
          const OutputMemory* restart = nullptr);
   ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
-  void accept(const Accepted<Spatial>& accepted);
+  void accept(const Accepted<Space>& accepted);
   /// Writes the last accepted state if it is not on file yet.
   void finish();
 

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,7 @@ struct RunResult {
   std::int64_t steps = 0;      ///< since time 0
   std::int64_t steps_now = 0;  ///< explicit: since the start or restart
   std::int64_t newton_iterations = 0;
+  std::int64_t factorisations = 0;   ///< quasistatic: of tangents
   std::string stepper;               ///< explicit: the type that stepped
   double dt = 0;                     ///< last step taken
   double stable_dt = 0;              ///< explicit: the largest stable step
@@ -48,13 +51,24 @@ struct TimeSpan {
 
 template <class Space>
 using Observer = std::function<void(const Accepted<Space>&)>;
+/// Where the space follows from a model, so that a lambda will do.
+template <class Space>
+using ObserverOf = std::type_identity_t<Observer<Space>>;
+
+/// What a planar model leaves out, for one question at the end of a static run: whether the
+/// equilibrium would stand a disturbance out of plane.
+struct OutOfPlane {
+  std::vector<std::unique_ptr<Force<Spatial>>> forces;
+  std::vector<std::uint8_t> held;  ///< per local body, bits of x y z rx ry rz: prescribed or pinned
+};
 
 /// Equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the exact
 /// tangent, the step halved when Newton fails. All of PETSc's -snes_*, -ksp_*, -pc_*, -mat_*
 /// options apply; the default is Newton with preonly + Cholesky by MUMPS on blocked symmetric
-/// storage. Collective.
-RunResult run_quasistatic(Model<Spatial>& model, const TimeSpan& time,
-                          const Observer<Spatial>& observer);
+/// storage. Collective. \param rest  of a planar model: its unstable modes count too
+template <class Space>
+RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
+                          const ObserverOf<Space>& observer, const OutOfPlane* rest = nullptr);
 
 /// What an integrator that moves bodies is told.
 struct DynamicOptions {
@@ -77,8 +91,12 @@ struct ExplicitOptions : DynamicOptions {
 /// sample goes to the observer. Stops, with the last sample as last good state, when a velocity or
 /// the energy balance crosses its limit or a number is not finite. Collective. \throws InputError
 /// for a dt above the stable step, and for options of solvers that explicit dynamics does not use
-RunResult run_explicit(Model<Spatial>& model, const ExplicitOptions& options,
-                       const Observer<Spatial>& observer);
+template <class Space>
+RunResult run_explicit(Model<Space>& model, const ExplicitOptions& options,
+                       const ObserverOf<Space>& observer);
+
+/// Why the stepper that the options choose takes spatial models only; empty if it does not.
+std::string explicit_needs_space();
 
 /// Newton's equations by PETSc's TS: own type `liealpha`, generalised-alpha on the rotation group,
 /// with the exact tangent; any step. All of PETSc's -ts_adapt_*, -snes_*, -ksp_*, -pc_* and -mat_*
@@ -90,6 +108,7 @@ RunResult run_implicit(Model<Spatial>& model, const DynamicOptions& options,
 
 /// Sets the static solver up and gives it up again: for -check. \throws InputError for a solver
 /// PETSc does not have
-void check_solver_options(Model<Spatial>& model);
+template <class Space>
+void check_solver_options(Model<Space>& model);
 
 }  // namespace floe

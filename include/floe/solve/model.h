@@ -95,7 +95,8 @@ class Model {
   /// Prescribed unknowns, n bits per local body; held() includes the pins.
   std::span<const std::uint8_t> prescribed() const { return prescribed_; }
   std::span<const std::uint8_t> held() const { return held_; }
-  /// Takes the pins of free motions over.
+  /// Takes the pins of free motions over; those of components that the space does not have say
+  /// nothing.
   void pin(const std::vector<Pin>& pins);
   /// Prescribed values at a time [m, rad] into n entries per local body; those that are free or
   /// pinned are left as they are.
@@ -131,7 +132,8 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
 /// Checks that no load pushes a free motion, which would have no static equilibrium. Collective.
 /// \param time  at which the loads are taken
 /// \throws InputError naming the motion and the force on it
-void require_balance(const Model<Spatial>& model, const Lattice& lattice, const FreeMotions& free,
+template <class Space>
+void require_balance(const Model<Space>& model, const Lattice& lattice, const FreeMotions& free,
                      double time);
 
 }  // namespace floe
