@@ -27,6 +27,14 @@ void say(const std::string& text, std::FILE* where = stdout) {
   }
 }
 
+/// Arrays above 1 MB come from the system and go back to it when they are freed, or the peak of a
+/// large sheet's set-up would be kept for the whole run. After MPI_Init: Open MPI switches that
+/// off.
+void give_memory_back() {
+  mallopt(M_MMAP_MAX, 1 << 16);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+}
+
 /// The initial state, kept until the output folder is there.
 template <class Space>
 struct First {
@@ -151,14 +159,12 @@ int main(int argc, char** argv) {
     case floe::Help::none:
       break;
   }
-  // Arrays above this size go back to the system when they are freed (by default the limit grows
-  // up to 32 MB, and the peak of a large sheet's set-up is kept for the whole run).
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
   floe::Mpi mpi(argc, argv);
   try {
     const std::string path = floe::check_command_line(argc, argv);
     floe::read_scene_text(path);
     floe::Session session(argc, argv, path);
+    give_memory_back();
     try {
       return run(path);
     } catch (const floe::InputError& error) {  // before PETSc ends, so that only rank 0 speaks

@@ -41,6 +41,21 @@ void require(bool good, const std::string& what, const std::string& path) {
                   (why != 0 ? std::strerror(why) : ""));
 }
 
+template <class T>
+hid_t native();
+template <>
+hid_t native<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+hid_t native<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+hid_t native<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+
 void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 }  // namespace
@@ -147,34 +162,68 @@ std::pair<std::int64_t, std::string> Hdf5File::place(const std::string& name) co
   return {staged_, name == staged_name_ ? "." : name.substr(staged_name_.size() + 1)};
 }
 
-void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count,
-                         int columns, std::int64_t type) {
-  const std::array<hsize_t, 2> extent{static_cast<hsize_t>(count / columns),
-                                      static_cast<hsize_t>(columns)};
+std::int64_t Hdf5File::create_dataset(const std::string& name, std::int64_t rows, int columns,
+                                      std::int64_t type) {
+  const std::array<hsize_t, 2> extent{static_cast<hsize_t>(rows), static_cast<hsize_t>(columns)};
   const Id space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
   const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
   const auto [where, relative] = place(name);
   errno = 0;
-  const Id data(H5Dcreate2(where, relative.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                H5Dclose);
+  const hid_t data =
+      H5Dcreate2(where, relative.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT);
   require(data >= 0, "write " + name + " to", path_);
+  return data;
+}
+
+void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count,
+                         int columns, std::int64_t type) {
+  const Id data(create_dataset(name, count / columns, columns, type), H5Dclose);
   if (count > 0)
     require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0,
             "write " + name + " to", path_);
 }
 
+template <class T>
+void Hdf5File::write_blocks(const std::string& name, std::int64_t rows, int columns,
+                            const std::function<void(std::int64_t, std::span<T>)>& make) {
+  constexpr std::int64_t block = 1 << 14;  // rows: stays in the cache
+  const std::int64_t type = native<T>();
+  const Id data(create_dataset(name, rows, columns, type), H5Dclose);
+  const Id file(H5Dget_space(data), H5Sclose);
+  std::vector<T> values;
+  for (std::int64_t first = 0; first < rows; first += block) {
+    const std::int64_t count = std::min(block, rows - first);
+    values.resize(static_cast<std::size_t>(count * columns));
+    make(first, values);
+    const std::array<hsize_t, 2> start{static_cast<hsize_t>(first), 0},
+        extent{static_cast<hsize_t>(count), static_cast<hsize_t>(columns)};
+    const Id memory(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
+    require(H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, extent.data(),
+                                nullptr) >= 0 &&
+                H5Dwrite(data, type, memory, file, H5P_DEFAULT, values.data()) >= 0,
+            "write " + name + " to", path_);
+  }
+}
+template void Hdf5File::write_blocks(const std::string&, std::int64_t, int,
+                                     const std::function<void(std::int64_t, std::span<double>)>&);
+template void Hdf5File::write_blocks(const std::string&, std::int64_t, int,
+                                     const std::function<void(std::int64_t, std::span<float>)>&);
+template void Hdf5File::write_blocks(
+    const std::string&, std::int64_t, int,
+    const std::function<void(std::int64_t, std::span<std::int32_t>)>&);
+
 void Hdf5File::write(const std::string& name, std::span<const double> values, int columns) {
   write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
-            H5T_NATIVE_DOUBLE);
+            native<double>());
 }
 void Hdf5File::write(const std::string& name, std::span<const float> values, int columns) {
   write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
-            H5T_NATIVE_FLOAT);
+            native<float>());
 }
 void Hdf5File::write(const std::string& name, std::span<const std::int32_t> values, int columns) {
   write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
-            H5T_NATIVE_INT32);
+            native<std::int32_t>());
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {

@@ -1,8 +1,10 @@
 #include "output/fields.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <sstream>
 
 #include "floe/base/rotation.h"
@@ -38,11 +40,19 @@ std::string attribute(const std::string& name, const std::string& group, std::si
          item(group + "/" + name, dimensions, "Float", precision) + "</Attribute>\n";
 }
 
+std::span<const double> numbers(const std::vector<Point3>& rows) {
+  return {rows.empty() ? nullptr : rows[0].data(), 3 * rows.size()};
+}
+
 }  // namespace
 
 Fields::Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep)
     : dir_(dir), lattice_(lattice) {
-  set_topology();
+  const Shapes& s = lattice.shapes;
+  const std::size_t n = lattice.bodies.position.size();  // points, if bodies have no shapes
+  points_ = s.empty() ? n : s.vertices.size();
+  faces_ = s.empty() ? n : s.corner_of.size() - 1;
+  topology_ = s.empty() ? n : s.corners.size() + 2 * faces_;
   if (keep >= 0) {
     cut_back(static_cast<std::size_t>(keep));
     write_xmf();  // a run killed before its first frame's name was written has none yet
@@ -52,39 +62,45 @@ Fields::Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep
   }
 }
 
-void Fields::set_topology() {
-  const Shapes& s = lattice_.shapes;
-  std::vector<std::int32_t>& topology = topology_of_faces_;
-  for (std::int32_t b = 0; b < s.bodies(); ++b) {
-    const auto body = static_cast<std::size_t>(b);
-    for (std::int32_t f = s.face_of[body]; f < s.face_of[body + 1]; ++f) {
-      const auto face = static_cast<std::size_t>(f);
-      topology.push_back(xdmf_polygon);
-      topology.push_back(s.corner_of[face + 1] - s.corner_of[face]);
-      topology.insert(topology.end(), s.corners.begin() + s.corner_of[face],
-                      s.corners.begin() + s.corner_of[face + 1]);
-      body_of_face_.push_back(b);
-    }
-  }
-  if (s.empty()) {  // bodies without a shape are shown as points
-    for (std::int32_t b = 0; b < lattice_.bodies.size(); ++b) {
-      topology.push_back(b);
-      body_of_face_.push_back(b);
-    }
-  }
-  points_ = s.empty() ? lattice_.bodies.position.size() : s.vertices.size();
-  topology_ = topology.size();
-}
-
 void Fields::write_mesh() {
-  file_->write("/mesh/topology", topology_of_faces_);
-  file_->write("/mesh/body", body_of_face_);
+  const Shapes& s = lattice_.shapes;
+  // What comes next: corner `corner` of face `face`, after the face's code and number of corners.
+  std::size_t face = 0;
+  std::int32_t corner = -2;
+  file_->write_blocks<std::int32_t>(
+      "/mesh/topology", static_cast<std::int64_t>(topology_), 1,
+      [&](std::int64_t first, std::span<std::int32_t> values) {
+        if (s.empty()) std::iota(values.begin(), values.end(), static_cast<std::int32_t>(first));
+        if (s.empty()) return;
+        for (std::int32_t& value : values) {
+          const std::int32_t begin = s.corner_of[face], count = s.corner_of[face + 1] - begin;
+          value = corner == -2   ? xdmf_polygon
+                  : corner == -1 ? count
+                                 : s.corners[static_cast<std::size_t>(begin + corner)];
+          if (++corner < count) continue;
+          corner = -2;
+          ++face;
+        }
+      });
+  std::int32_t body = 0;
+  file_->write_blocks<std::int32_t>("/mesh/body", static_cast<std::int64_t>(faces_), 1,
+                                    [&](std::int64_t first, std::span<std::int32_t> values) {
+                                      for (std::int32_t& value : values)
+                                        value = body = body_of_face(first++, body);
+                                    });
   if (lattice_.beams.size() > 0)
     file_->write("/mesh/beams",
                  std::span<const std::int32_t>(lattice_.beams.bodies[0].data(),
                                                2 * lattice_.beams.bodies.size()),
                  2);
   file_->flush();
+}
+
+/// \param from  a body whose faces begin at `face` or before
+std::int32_t Fields::body_of_face(std::int64_t face, std::int32_t from) const {
+  if (lattice_.shapes.empty()) return static_cast<std::int32_t>(face);
+  while (face >= lattice_.shapes.face_of[static_cast<std::size_t>(from) + 1]) ++from;
+  return from;
 }
 
 /// Keeps the mesh and the first frames. Later ones are left behind in the old file, whose copy
@@ -132,73 +148,96 @@ void Fields::write(const Frame& frame) {
 }
 
 void Fields::write_bodies(const std::string& group, const Frame& frame) {
-  const std::size_t n = lattice_.bodies.position.size();
-  std::vector<double> centres(3 * n), points;
-  points.reserve(3 * points_);
-  for (std::size_t b = 0; b < n; ++b) {
-    for (std::size_t k = 0; k < 3; ++k)
-      centres[3 * b + k] = lattice_.bodies.position[b][k] + frame.displacement[3 * b + k];
-    if (lattice_.shapes.empty()) continue;
-    const auto [w, x, y, z] = lattice_.bodies.orientation[b];
-    const double* q = &frame.rotation[4 * b];
-    const Triad<double> axes =
-        triad(product(normalised({q[0], q[1], q[2], q[3]}), Quat<double>{w, x, y, z}));
-    for (std::int32_t v = lattice_.shapes.vertex_of[b]; v < lattice_.shapes.vertex_of[b + 1]; ++v) {
-      const Point3& r = lattice_.shapes.vertices[static_cast<std::size_t>(v)];
-      const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
-      points.insert(points.end(),
-                    {centres[3 * b] + p.x, centres[3 * b + 1] + p.y, centres[3 * b + 2] + p.z});
-    }
-  }
-  file_->write(group + "/centres", centres, 3);
-  file_->write(group + "/points", lattice_.shapes.empty() ? centres : points, 3);
-  file_->write(group + "/bodies_displacement", frame.displacement, 3);
-  file_->write(group + "/bodies_rotation", frame.rotation_vector, 3);
-  std::vector<float> displacement, rotation;
-  displacement.reserve(3 * body_of_face_.size());
-  rotation.reserve(3 * body_of_face_.size());
-  for (const std::int32_t body : body_of_face_) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      displacement.push_back(
-          static_cast<float>(frame.displacement[3 * static_cast<std::size_t>(body) + k]));
-      rotation.push_back(
-          static_cast<float>(frame.rotation_vector[3 * static_cast<std::size_t>(body) + k]));
-    }
-  }
-  file_->write(group + "/face_displacement", displacement, 3);
-  file_->write(group + "/face_rotation", rotation, 3);
+  const std::vector<Point3>& rest = lattice_.bodies.position;
+  const auto centre = [&](std::size_t b, std::size_t k) {
+    return rest[b][k] + frame.displacement[b][k];
+  };
+  const auto centres = [&](std::int64_t first, std::span<double> values) {
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] = centre(static_cast<std::size_t>(first) + k / 3, k % 3);
+  };
+  const auto rows = static_cast<std::int64_t>(rest.size());
+  file_->write_blocks<double>(group + "/centres", rows, 3, centres);
+  const Shapes& s = lattice_.shapes;
+  std::size_t body = 0;
+  file_->write_blocks<double>(group + "/points", static_cast<std::int64_t>(points_), 3,
+                              [&](std::int64_t first, std::span<double> values) {
+                                if (s.empty()) return centres(first, values);
+                                Triad<double> axes = axes_of(body, frame);
+                                for (std::size_t k = 0; k < values.size(); k += 3) {
+                                  const auto v = static_cast<std::size_t>(first) + k / 3;
+                                  if (v >= static_cast<std::size_t>(s.vertex_of[body + 1])) {
+                                    while (v >= static_cast<std::size_t>(s.vertex_of[body + 1]))
+                                      ++body;
+                                    axes = axes_of(body, frame);
+                                  }
+                                  const Point3& r = s.vertices[v];
+                                  const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
+                                  values[k] = centre(body, 0) + p.x;
+                                  values[k + 1] = centre(body, 1) + p.y;
+                                  values[k + 2] = centre(body, 2) + p.z;
+                                }
+                              });
+  file_->write(group + "/bodies_displacement", numbers(frame.displacement), 3);
+  file_->write(group + "/bodies_rotation", numbers(frame.rotation_vector), 3);
+  write_on_faces(group + "/face_displacement", frame.displacement);
+  write_on_faces(group + "/face_rotation", frame.rotation_vector);
+}
+
+Triad<double> Fields::axes_of(std::size_t body, const Frame& frame) const {
+  const auto [w, x, y, z] = lattice_.bodies.orientation[body];
+  const auto& q = frame.rotation[body];
+  return triad(product(normalised({q[0], q[1], q[2], q[3]}), Quat<double>{w, x, y, z}));
+}
+
+void Fields::write_on_faces(const std::string& name, const std::vector<Point3>& of_bodies) {
+  std::int32_t body = 0;
+  file_->write_blocks<float>(name, static_cast<std::int64_t>(faces_), 3,
+                             [&](std::int64_t first, std::span<float> values) {
+                               for (std::size_t k = 0; k < values.size(); k += 3) {
+                                 body = body_of_face(first++, body);
+                                 const Point3& row = of_bodies[static_cast<std::size_t>(body)];
+                                 std::copy(row.begin(), row.end(), &values[k]);
+                               }
+                             });
 }
 
 /// Stresses of the section (model.md section 9): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
 /// and tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
 void Fields::write_beams(const std::string& group, const Frame& frame) {
   const Beams& beams = lattice_.beams;
-  const auto m = static_cast<std::size_t>(beams.size());
-  std::vector<double> force(3 * m), moment(3 * m), stress(2 * m);
-  for (std::size_t k = 0; k < m; ++k) {
-    const double* s = &frame.sections[6 * k];
-    std::copy_n(s, 3, &force[3 * k]);
-    std::copy_n(s + 3, 3, &moment[3 * k]);
-    double sigma = s[0] / beams.area[k], tau = std::hypot(s[1], s[2]) / beams.area[k];
-    if (!beams.width.empty() && !beams.height.empty()) {
-      const double w = beams.width[k], h = beams.height[k], a = std::max(w, h), b = std::min(w, h);
-      sigma += std::abs(s[4]) * h / (2 * beams.inertia_y[k]) +
-               std::abs(s[5]) * w / (2 * beams.inertia_z[k]);
-      tau += std::abs(s[3]) * (3 + 1.8 * b / a) / (a * b * b);
-    }
-    stress[2 * k] = sigma;
-    stress[2 * k + 1] = tau;
-  }
-  file_->write(group + "/beams_force", force, 3);
-  file_->write(group + "/beams_moment", moment, 3);
-  file_->write(group + "/beams_stress", stress, 2);
-  std::vector<double> sigma(m), tau(m);
-  for (std::size_t k = 0; k < m; ++k) {
-    sigma[k] = stress[2 * k];
-    tau[k] = stress[2 * k + 1];
-  }
-  file_->write(group + "/tensile_stress", sigma);
-  file_->write(group + "/shear_stress", tau);
+  const auto m = static_cast<std::int64_t>(beams.size());
+  // \param value  of component k of beam m
+  const auto write = [&](const char* name, std::size_t columns, auto value) {
+    file_->write_blocks<double>(group + name, m, static_cast<int>(columns),
+                                [&](std::int64_t first, std::span<double> values) {
+                                  for (std::size_t k = 0; k < values.size(); ++k)
+                                    values[k] = value(static_cast<std::size_t>(first) + k / columns,
+                                                      k % columns);
+                                });
+  };
+  const bool has_sides = !beams.width.empty() && !beams.height.empty();
+  const auto tensile = [&](std::size_t k) {
+    const BeamSection& s = frame.sections[k];
+    const double bent = has_sides ? std::abs(s[4]) * beams.height[k] / (2 * beams.inertia_y[k]) +
+                                        std::abs(s[5]) * beams.width[k] / (2 * beams.inertia_z[k])
+                                  : 0;
+    return s[0] / beams.area[k] + bent;
+  };
+  const auto shear = [&](std::size_t k) {
+    const BeamSection& s = frame.sections[k];
+    const double tau = std::hypot(s[1], s[2]) / beams.area[k];
+    if (!has_sides) return tau;
+    const double a = std::max(beams.width[k], beams.height[k]),
+                 b = std::min(beams.width[k], beams.height[k]);
+    return tau + std::abs(s[3]) * (3 + 1.8 * b / a) / (a * b * b);
+  };
+  write("/beams_force", 3, [&](std::size_t b, std::size_t k) { return frame.sections[b][k]; });
+  write("/beams_moment", 3, [&](std::size_t b, std::size_t k) { return frame.sections[b][3 + k]; });
+  write("/beams_stress", 2,
+        [&](std::size_t b, std::size_t k) { return k == 0 ? tensile(b) : shear(b); });
+  write("/tensile_stress", 1, [&](std::size_t b, std::size_t) { return tensile(b); });
+  write("/shear_stress", 1, [&](std::size_t b, std::size_t) { return shear(b); });
 }
 
 /// A broken section lay halfway between its bodies' centroids; each body has carried its side
@@ -221,8 +260,8 @@ void Fields::write_cracks(const std::string& group, const Frame& frame) {
     e2 = (1 / std::sqrt(dot(e2, e2))) * e2;
     const Vec3<double> y = (0.5 * beams.width[m]) * e2, z = (0.5 * beams.height[m]) * cross(e1, e2);
     for (const std::int32_t b : {i, j}) {
-      const double* u = &frame.displacement[3 * static_cast<std::size_t>(b)];
-      const double* q = &frame.rotation[4 * static_cast<std::size_t>(b)];
+      const Point3& u = frame.displacement[static_cast<std::size_t>(b)];
+      const auto& q = frame.rotation[static_cast<std::size_t>(b)];
       const Vec3<double> middle = 0.5 * (at(i) + at(j)) - at(b);
       for (const Vec3<double>& corner :
            {middle - y - z, middle + y - z, middle + y + z, middle - y + z}) {
@@ -255,7 +294,7 @@ std::string Fields::cracks_grid(std::size_t k) const {
 
 /// The grids of one time: bodies as polygons, beams as lines, faces of cracks.
 std::string Fields::grid(std::size_t k) const {
-  const std::string group = group_name(k), faces = std::to_string(body_of_face_.size());
+  const std::string group = group_name(k), faces = std::to_string(faces_);
   const std::size_t n = lattice_.bodies.position.size(), m = lattice_.beams.bodies.size();
   std::ostringstream out;
   out.precision(17);
@@ -269,8 +308,8 @@ std::string Fields::grid(std::size_t k) const {
       << item(group + "/points", std::to_string(points_) + " 3", "Float", 8)
       << "</Geometry>\n        <Attribute Name=\"body\" AttributeType=\"Scalar\" Center=\"Cell\">"
       << item("/mesh/body", faces, "Int", 4) << "</Attribute>\n"
-      << attribute("face_displacement", group, body_of_face_.size(), 3, "Cell", 4)
-      << attribute("face_rotation", group, body_of_face_.size(), 3, "Cell", 4) << "      </Grid>\n";
+      << attribute("face_displacement", group, faces_, 3, "Cell", 4)
+      << attribute("face_rotation", group, faces_, 3, "Cell", 4) << "      </Grid>\n";
   if (m > 0) {
     out << "      <Grid Name=\"beams\">\n        <Topology TopologyType=\"Polyline\" "
            "NodesPerElement=\"2\" "

@@ -12,23 +12,24 @@
 ///   carried by its two bodies), crack_beam (the beam of each).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "floe/base/hdf5.h"
-#include "floe/lattice/lattice.h"
+#include "floe/forces/beam.h"
 
 namespace floe {
 
 /// One state in global order.
 struct Frame {
   double time = 0;
-  std::vector<double> displacement;     ///< n x 3
-  std::vector<double> rotation;         ///< n x 4, from rest
-  std::vector<double> rotation_vector;  ///< n x 3
-  std::vector<double> sections;         ///< m x 6
-  std::vector<double> damage;           ///< m; empty if nothing can break
+  std::vector<Point3> displacement;
+  std::vector<std::array<double, 4>> rotation;  ///< from rest
+  std::vector<Point3> rotation_vector;
+  std::vector<BeamSection> sections;
+  std::vector<double> damage;  ///< empty if nothing can break
 };
 
 /// Lives on rank 0.
@@ -40,8 +41,12 @@ class Fields {
   void write(const Frame& frame);
 
  private:
-  void set_topology();
   void write_mesh();
+  std::int32_t body_of_face(std::int64_t face, std::int32_t from) const;
+  /// A body's principal axes in the world.
+  Triad<double> axes_of(std::size_t body, const Frame& frame) const;
+  /// A vector of each body, to each of its faces.
+  void write_on_faces(const std::string& name, const std::vector<Point3>& of_bodies);
   void cut_back(std::size_t keep);
   void write_bodies(const std::string& group, const Frame& frame);
   void write_beams(const std::string& group, const Frame& frame);
@@ -55,9 +60,8 @@ class Fields {
   std::optional<Hdf5File> file_;
   bool breakable_ = false;  ///< frames have the beams' damage
   std::vector<double> times_;
-  std::vector<std::size_t> cracks_;  ///< per frame: faces of cracks
-  std::vector<std::int32_t> topology_of_faces_, body_of_face_;
-  std::size_t points_ = 0, topology_ = 0;
+  std::vector<std::size_t> cracks_;        ///< per frame: faces of cracks
+  std::size_t points_, faces_, topology_;  ///< of /mesh: vertices, polygons, numbers of topology
 };
 
 }  // namespace floe

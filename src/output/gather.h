@@ -15,15 +15,28 @@ class Gather {
   /// \param global  global index of each of this rank's rows   \param total  rows over all ranks
   Gather(MPI_Comm comm, std::span<const std::int32_t> global, std::int64_t total);
 
-  /// total x width values on rank 0, empty elsewhere. Collective. \param rows  this rank's,
-  /// row-major
-  std::vector<double> operator()(std::span<const double> rows, int width) const;
+  /// All rows on rank 0, empty elsewhere. Collective. \param rows  this rank's; of numbers or of
+  /// arrays of them
+  template <class Row>
+  std::vector<Row> operator()(std::vector<Row> rows) const {
+    if (in_place_) return rows;
+    std::vector<Row> arrived(global_.size());
+    collect(rows.data(), rows.size(), sizeof(Row), arrived.data());
+    rows = {};
+    std::vector<Row> ordered(arrived.empty() ? 0 : static_cast<std::size_t>(total_));
+    for (std::size_t k = 0; k < arrived.size(); ++k)
+      ordered[static_cast<std::size_t>(global_[k])] = arrived[k];
+    return ordered;
+  }
 
  private:
+  void collect(const void* rows, std::size_t count, std::size_t bytes, void* all) const;
+
   MPI_Comm comm_;
   std::int64_t total_;
   std::vector<int> counts_;
   std::vector<std::int32_t> global_;  ///< rank 0: of all rows, rank after rank
+  bool in_place_ = false;             ///< a single rank has them all, in order
 };
 
 }  // namespace floe

@@ -270,32 +270,32 @@ void Output<Space>::Impl::write_row(const Sample& s) {
 template <class Space>
 void Output<Space>::Impl::write_frame(const State<Space>& state) {
   const auto owned = static_cast<std::size_t>(part.owned);
-  std::vector<double> u, q, vector;
+  std::vector<Point3> u, vector;
+  std::vector<std::array<double, 4>> q;
+  u.reserve(owned), vector.reserve(owned), q.reserve(owned);
   for (std::size_t b = 0; b < owned; ++b) {
     const Vec3<double> place = displacement(state, b);
     const Quat<double> now = rotation(state, b);
     const Vec3<double> t =
         model.kinematics() == Kinematics::linear ? linear_rotation(state, b) : log_rotation(now);
-    u.insert(u.end(), {place.x, place.y, place.z});
-    q.insert(q.end(), {now.w, now.x, now.y, now.z});
-    vector.insert(vector.end(), {t.x, t.y, t.z});
+    u.push_back({place.x, place.y, place.z});
+    q.push_back({now.w, now.x, now.y, now.z});
+    vector.push_back({t.x, t.y, t.z});
   }
-  Frame frame{state.time, bodies(u, 3), bodies(q, 4), bodies(vector, 3), {}, {}};
+  Frame frame{state.time, bodies(std::move(u)), bodies(std::move(q)), bodies(std::move(vector)), {},
+              {}};
   if (model.beams() != nullptr) {
-    const std::vector<BeamSection> all = model.beams()->sections(state);
-    std::vector<double> mine;
-    mine.reserve(counted.size() * 6);
-    for (const std::int32_t k : counted) {
-      const BeamSection& s = all[static_cast<std::size_t>(k)];
-      mine.insert(mine.end(), s.begin(), s.end());
-    }
-    frame.sections = beams(mine, 6);
+    std::vector<BeamSection> sections = model.beams()->sections(state);
+    for (std::size_t k = 0; k < counted.size(); ++k)  // counted[k] >= k
+      sections[k] = sections[static_cast<std::size_t>(counted[k])];
+    sections.resize(counted.size());
+    frame.sections = beams(std::move(sections));
   }
   if (model.fracture() != nullptr) {
     std::vector<double> mine;
     mine.reserve(counted.size());
     for (const std::int32_t k : counted) mine.push_back(model.fracture()->damage(k));
-    frame.damage = beams(mine, 1);
+    frame.damage = beams(std::move(mine));
   }
   ++memory.frames;
   if (fields) fields->write(frame);
@@ -322,8 +322,8 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   const bool due = accepted.step == 0 || accepted.last ||
                    (me.options.fields > 0 && time >= m.next_fields - early * me.options.fields);
   if (due) {
-    me.write_frame(accepted.state);
     me.pending.reset();
+    me.write_frame(accepted.state);
     if (me.options.fields > 0)
       m.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
   } else {

@@ -123,15 +123,17 @@ TEST(Ranks, GatherGivesGlobalOrder) {
   const Part part = partition(floating_sheet(), PETSC_COMM_WORLD);
   const Gather gather(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)),
                       part.global_bodies);
-  std::vector<double> rows;
+  std::vector<std::array<double, 2>> rows;
   for (std::int32_t b = 0; b < part.owned; ++b) {
     const double g = part.global[static_cast<std::size_t>(b)];
-    rows.insert(rows.end(), {g, -g});
+    rows.push_back({g, -g});
   }
-  const std::vector<double> all = gather(rows, 2);
-  ASSERT_EQ(all.size(), rank() == 0 ? 2 * static_cast<std::size_t>(part.global_bodies) : 0U);
-  for (std::size_t k = 0; k < all.size(); ++k)
-    EXPECT_EQ(all[k], k % 2 == 0 ? k / 2.0 : -(k / 2.0) + 0.5);
+  const std::vector<std::array<double, 2>> all = gather(rows);
+  ASSERT_EQ(all.size(), rank() == 0 ? static_cast<std::size_t>(part.global_bodies) : 0U);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_EQ(all[k][0], static_cast<double>(k));
+    EXPECT_EQ(all[k][1], -static_cast<double>(k));
+  }
 }
 
 /// Force on the left bodies of a stretched sheet [N].

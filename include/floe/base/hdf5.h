@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -42,6 +43,12 @@ class Hdf5File {
   void write(const std::string& name, std::span<const double> values, int columns = 1);
   void write(const std::string& name, std::span<const float> values, int columns = 1);
   void write(const std::string& name, std::span<const std::int32_t> values, int columns = 1);
+  /// Writes rows that are made block by block, so that they are never all in memory.
+  /// \param make  called with the rows' values in order, until all are made: the index of the first
+  /// row of the block, and what to fill
+  template <class T>
+  void write_blocks(const std::string& name, std::int64_t rows, int columns,
+                    const std::function<void(std::int64_t, std::span<T>)>& make);
   void attribute(const std::string& object, const std::string& name, double value);
   void write_text(const std::string& name, const std::string& text);
 
@@ -70,6 +77,8 @@ class Hdf5File {
       : id_(id), path_(std::move(path)), final_path_(std::move(final_path)), key_(std::move(key)) {}
   /// Where an object called `name` is made: in the staged group or in the file.
   std::pair<std::int64_t, std::string> place(const std::string& name) const;
+  std::int64_t create_dataset(const std::string& name, std::int64_t rows, int columns,
+                              std::int64_t type);
   void write_any(const std::string& name, const void* values, std::int64_t count, int columns,
                  std::int64_t type);
   void read_any(const std::string& name, int columns, std::int64_t type, void* values) const;
