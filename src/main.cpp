@@ -72,17 +72,21 @@ int run(const floe::Scene& scene, Start& start) {
     return done;
   }
 
-  // 4. Output, opened once a step has shown that every option was understood: bad input leaves no
-  // folder behind
+  // 4. Output, opened once every option is known to be understood: bad input leaves no folder
+  // behind. Solvers read some of theirs during the first step.
   const std::string lattice_id = fingerprint(lattice);
+  release_setup(scene, model);
+  const std::optional<Prisms> prisms = as_prisms(lattice.shapes);
+  if (prisms) lattice.shapes = {};
   std::optional<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
   const auto open = [&] {
     reject_unused_options();
+    if (prisms && rank() == 0) lattice.shapes = polyhedra(*prisms);
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
-                   lattice, model, loads, scene.options_yaml, restart ? &*restart : nullptr);
-    if (rank() != 0) lattice = {};  // only rank 0 writes geometry
+                   std::move(lattice), model, loads, scene.options_yaml,
+                   restart ? &*restart : nullptr);
     if (first)
       output->accept({first->state, first->wrenches, 0, first->columns, false, first->forces});
     first.reset();
@@ -93,7 +97,7 @@ int run(const floe::Scene& scene, Start& start) {
     if (!output) open();
   };
   const auto observe = [&](const Accepted<Space>& accepted) {
-    if (accepted.step == 0) {
+    if (accepted.step == 0 && scene.integrator != Integrator::leapfrog) {
       first = First<Space>{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
       return;
     }

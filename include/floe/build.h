@@ -66,6 +66,10 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
 template <class Space>
 void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model);
 
+/// Lets go of what only making the forces needed. Beside that a large sheet's steps are small.
+template <class Space>
+void release_setup(const Scene& scene, Model<Space>& model);
+
 /// Takes free rigid motions out of a static problem.
 /// \throws InputError if a load pushes one of them: the scene has no equilibrium
 template <class Space>

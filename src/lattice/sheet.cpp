@@ -29,31 +29,14 @@ std::array<double, 4> about_z(const Point2& axis) {
   return {w, 0, 0, axis[1] / (2 * w)};
 }
 
-/// Appends the prism over `polygon` (world, plan) in the frame of its centroid and axes.
-void append_prism(Shapes& shapes, std::span<const Point2> polygon, const Point2& centroid,
-                  const Point2& axis, double thickness) {
-  const auto n = static_cast<std::int32_t>(polygon.size());
-  const auto base = shapes.vertex_of.back();
-  for (const double z : {-thickness / 2, thickness / 2}) {
-    for (const Point2& p : polygon) {
-      const double x = p[0] - centroid[0], y = p[1] - centroid[1];
-      shapes.vertices.push_back({axis[0] * x + axis[1] * y, axis[0] * y - axis[1] * x, z});
-    }
+/// A polygon (world, plan) in the frame of its centroid and axis.
+void to_frame(std::span<const Point2> polygon, const Point2& centroid, const Point2& axis,
+              std::vector<Point2>& local) {
+  local.clear();
+  for (const Point2& p : polygon) {
+    const double x = p[0] - centroid[0], y = p[1] - centroid[1];
+    local.push_back({axis[0] * x + axis[1] * y, axis[0] * y - axis[1] * x});
   }
-  const auto close_face = [&] {
-    shapes.corner_of.push_back(static_cast<std::int32_t>(shapes.corners.size()));
-  };
-  for (auto k = n - 1; k >= 0; --k) shapes.corners.push_back(base + k);  // bottom, seen from below
-  close_face();
-  for (std::int32_t k = 0; k < n; ++k) shapes.corners.push_back(base + n + k);
-  close_face();
-  for (std::int32_t k = 0; k < n; ++k) {
-    const auto next = (k + 1) % n;
-    for (const auto v : {k, next, n + next, n + k}) shapes.corners.push_back(base + v);
-    close_face();
-  }
-  shapes.vertex_of.push_back(base + 2 * n);
-  shapes.face_of.push_back(static_cast<std::int32_t>(shapes.corner_of.size()) - 1);
 }
 
 void reserve(Lattice& lattice, std::size_t n, std::size_t corners, std::size_t m) {
@@ -101,6 +84,7 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
   const auto n = static_cast<std::int32_t>(cells.generators.size());
   const double h = section.thickness;
   reserve(lattice, cells.generators.size(), cells.vertices.size(), cells.facets.size());
+  std::vector<Point2> local;
   for (std::int32_t k = 0; k < n; ++k) {
     const std::span polygon(cells.vertices.data() + cells.offset[k],
                             cells.vertices.data() + cells.offset[k + 1]);
@@ -117,7 +101,8 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
     lattice.bodies.mass.push_back(mass);
     lattice.bodies.inertia.push_back({surface_density * least + slab, surface_density * most + slab,
                                       surface_density * (plan.xx + plan.yy)});
-    append_prism(lattice.shapes, polygon, plan.centroid, axis, h);
+    to_frame(polygon, plan.centroid, axis, local);
+    append_prism(lattice.shapes, local, -h / 2, h / 2);
   }
   for (const Facet& facet : cells.facets)
     append_beam(lattice.beams, lattice.bodies, facet, section);

@@ -52,6 +52,7 @@ struct Output<Space>::Impl {
   const OutputOptions options;
   const Model<Space>& model;
   const Part& part;
+  Lattice lattice;  ///< rank 0
   std::vector<LoadPoint> loads;
   std::vector<std::pair<std::size_t, Point3>>
       sets;  ///< per boundary: bodies in all, mean position at rest
@@ -84,7 +85,8 @@ struct Output<Space>::Impl {
     return global;
   }
 
-  void open_files(const Lattice& lattice, const std::string& options_yaml, bool restarted);
+  void open_files(const std::string& options_yaml, bool restarted);
+  void keep_what_frames_need();
   Sample sample(const Accepted<Space>& accepted);
   void check_header();
   void write_row(const Sample& sample);
@@ -92,9 +94,9 @@ struct Output<Space>::Impl {
 };
 
 template <class Space>
-Output<Space>::Output(const OutputOptions& options, const Lattice& lattice,
-                      const Model<Space>& model, const std::vector<PlacedLoad>& loads,
-                      const std::string& options_yaml, const OutputMemory* restart) {
+Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
+                      const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
+                      const OutputMemory* restart) {
   const Timed timed(Event::output);
   make_folder(options.dir, model.part().comm);
   impl_ = std::make_unique<Impl>(options, model);
@@ -113,8 +115,10 @@ Output<Space>::Output(const OutputOptions& options, const Lattice& lattice,
     }
     impl_->sets.emplace_back(set.size(), mean);
   }
+  impl_->lattice = std::move(lattice);
+  if (rank(model.part().comm) != 0) impl_->lattice = {};
   if (model.fracture() != nullptr)
-    impl_->cracks.emplace(options.dir, lattice, *model.fracture(), model.part());
+    impl_->cracks.emplace(options.dir, impl_->lattice, *model.fracture(), model.part());
   if (restart != nullptr) {
     impl_->memory = *restart;
     impl_->header_checked = false;
@@ -122,7 +126,7 @@ Output<Space>::Output(const OutputOptions& options, const Lattice& lattice,
   std::string verdict;
   if (rank(model.part().comm) == 0) {
     try {
-      impl_->open_files(lattice, options_yaml, restart != nullptr);
+      impl_->open_files(options_yaml, restart != nullptr);
     } catch (const InputError& error) {
       verdict = error.what();
     }
@@ -131,8 +135,7 @@ Output<Space>::Output(const OutputOptions& options, const Lattice& lattice,
 }
 
 template <class Space>
-void Output<Space>::Impl::open_files(const Lattice& lattice, const std::string& options_yaml,
-                                     bool restarted) {
+void Output<Space>::Impl::open_files(const std::string& options_yaml, bool restarted) {
   const std::string& dir = options.dir;
   if (!restarted) {
     // What an earlier run left would contradict this one until its own is written.
@@ -141,9 +144,21 @@ void Output<Space>::Impl::open_files(const Lattice& lattice, const std::string& 
     write_lattice(lattice, dir + "/lattice.h5");
   }
   history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
+  keep_what_frames_need();
   fields.emplace(dir, lattice, restarted ? memory.frames : -1);
   if (restarted) std::filesystem::remove(dir + "/summary.json");
   write_whole(dir + "/options.yaml", options_yaml);
+}
+
+/// A large lattice is most of rank 0's memory.
+template <class Space>
+void Output<Space>::Impl::keep_what_frames_need() {
+  Beams& b = lattice.beams;
+  b.torsion = b.length = b.young = b.shear_modulus = b.shear_factor = b.shear_factor_y = {};
+  if (cracks) return;  // places and pieces of cracks
+  b.axis_y = {};
+  lattice.bodies.mass = {};
+  lattice.bodies.inertia = lattice.bodies.velocity = lattice.bodies.angular_velocity = {};
 }
 
 template <class Space>

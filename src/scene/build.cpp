@@ -185,6 +185,12 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
 }
 
 template <class Space>
+void release_setup(const Scene& scene, Model<Space>& model) {
+  if (!scene.forces.fracture) model.release_sections();  // cracks have the width of their beams
+  if (!scene.forces.buoyancy && !scene.forces.drag) model.release_shapes();
+}
+
+template <class Space>
 void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
   std::vector<std::uint8_t> prescribed = prescribed_components(lattice, scene.boundaries);
   if constexpr (std::is_same_v<Space, Planar>) {
@@ -223,6 +229,8 @@ template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spa
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);
 template void add_contact(const Scene&, const Lattice&, Model<Spatial>&);
 template void add_contact(const Scene&, const Lattice&, Model<Planar>&);
+template void release_setup(const Scene&, Model<Spatial>&);
+template void release_setup(const Scene&, Model<Planar>&);
 template void hold_free_motions(const Scene&, const Lattice&, Model<Spatial>&);
 template void hold_free_motions(const Scene&, const Lattice&, Model<Planar>&);
 

@@ -79,6 +79,13 @@ Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Bou
 }
 
 template <class Space>
+void Model<Space>::release_sections() {
+  Beams kept;
+  kept.bodies = std::move(part_.beams.bodies);
+  part_.beams = std::move(kept);
+}
+
+template <class Space>
 void Model<Space>::set_beams(std::unique_ptr<BeamForce<Space>> beams, Kinematics kinematics) {
   beams_ = beams.get();
   kinematics_ = kinematics;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,20 @@ struct Shapes {
   std::int32_t bodies() const { return static_cast<std::int32_t>(face_of.size()) - 1; }
   bool empty() const { return bodies() == 0; }
 };
+
+/// Appends the prism over a polygon, counter-clockwise in the body's frame, between two heights.
+/// Vertices: the bottom's, then the top's; faces: bottom, top, sides.
+void append_prism(Shapes& shapes, std::span<const Point2> polygon, double bottom, double top);
+
+/// Prisms of one thickness by their plans: a quarter of the memory of their polyhedra.
+struct Prisms {
+  std::vector<Point2> corners;
+  std::vector<std::int32_t> corner_of{0};  ///< body b's: corner_of[b] ... corner_of[b+1]-1
+  double bottom = 0, top = 0;
+};
+/// Empty unless polyhedra() of the result gives exactly these shapes.
+std::optional<Prisms> as_prisms(const Shapes& shapes);
+Shapes polyhedra(const Prisms& prisms);
 
 /// Volume [m^3], centroid [m] and the tensor of inertia per unit density about the centroid [m^5],
 /// row-major, of body b of `shapes` (divergence theorem over its faces).

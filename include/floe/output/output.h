@@ -57,8 +57,9 @@ class Output {
   /// \param lattice  the whole lattice; rank 0 keeps a reference for the fields' geometry
   /// \param restart  what a checkpoint says, or null: the files of that run are cut back to it and
   /// go on
+  /// \param lattice  taken over; rank 0 keeps what frames are made of
   /// \throws InputError if the folder cannot be made, or does not hold the files to go on with
-  Output(const OutputOptions& options, const Lattice& lattice, const Model<Space>& model,
+  Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
          const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
          const OutputMemory* restart = nullptr);
   ~Output();

@@ -66,6 +66,10 @@ class Model {
   Model& operator=(const Model&) = delete;
 
   const Part& part() const { return part_; }
+  /// Forgets the beams' sections and stiffnesses (forces have their own), not whom they join.
+  void release_sections();
+  /// Forgets what the bodies look like.
+  void release_shapes() { part_.shapes = {}; }
   double length_scale() const { return length_scale_; }
   const std::vector<PlacedBoundary>& boundaries() const { return boundaries_; }
 
