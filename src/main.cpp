@@ -56,6 +56,14 @@ int run(const floe::Scene& scene, Start& start) {
   using namespace floe;
   Lattice& lattice = start.lattice;
 
+  const std::string lattice_id = fingerprint(lattice);
+  std::optional<Prisms> prisms;  // shapes, while nobody looks at them
+  const auto fold_shapes = [&] {
+    prisms = as_prisms(lattice.shapes);
+    if (prisms) lattice.shapes = {};
+  };
+  if (!needs_shapes(scene)) fold_shapes();
+
   // 3. The model: this rank's part of the lattice, boundaries, forces
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
   Model<Space> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
@@ -72,12 +80,11 @@ int run(const floe::Scene& scene, Start& start) {
     return done;
   }
 
+  release_setup(scene, model);
+  if (!prisms) fold_shapes();
+
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.
-  const std::string lattice_id = fingerprint(lattice);
-  release_setup(scene, model);
-  const std::optional<Prisms> prisms = as_prisms(lattice.shapes);
-  if (prisms) lattice.shapes = {};
   std::optional<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;

@@ -66,6 +66,9 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
 template <class Space>
 void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model);
 
+/// Whether some force looks at the bodies' shapes.
+bool needs_shapes(const Scene& scene);
+
 /// Lets go of what only making the forces needed. Beside that a large sheet's steps are small.
 template <class Space>
 void release_setup(const Scene& scene, Model<Space>& model);

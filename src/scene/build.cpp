@@ -184,6 +184,10 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
   }
 }
 
+bool needs_shapes(const Scene& scene) {
+  return scene.forces.buoyancy || scene.forces.drag || scene.forces.contact;
+}
+
 template <class Space>
 void release_setup(const Scene& scene, Model<Space>& model) {
   if (!scene.forces.fracture) model.release_sections();  // cracks have the width of their beams

@@ -138,8 +138,9 @@ void Model<Space>::pin(const std::vector<Pin>& pins) {
 }
 
 template <class Space>
-void Model<Space>::prescribe(double time, std::span<double> values) const {
-  spread(&Boundary::value, time, values);
+void Model<Space>::prescribe(double time, std::span<double> values,
+                             std::span<const std::int32_t> rows) const {
+  spread(&Boundary::value, time, values, rows);
 }
 
 template <class Space>
@@ -153,14 +154,17 @@ void Model<Space>::prescribe_accelerations(double time, std::span<double> accele
 }
 
 template <class Space>
-void Model<Space>::spread(Prescription motion, double time, std::span<double> values) const {
+void Model<Space>::spread(Prescription motion, double time, std::span<double> values,
+                          std::span<const std::int32_t> rows) const {
   for (const PlacedBoundary& placed : boundaries_) {
     const std::array<double, 6> value = (placed.boundary.*motion)(time);
     for (const std::int32_t body : placed.bodies) {
+      const std::int32_t row = rows.empty() ? body : rows[static_cast<std::size_t>(body)];
+      if (row < 0) continue;
       for (std::size_t k = 0; k < n; ++k) {
         const auto component = static_cast<std::size_t>(Space::components[k]);
         if (placed.boundary.fixed[component])
-          values[static_cast<std::size_t>(body) * n + k] = value[component];
+          values[static_cast<std::size_t>(row) * n + k] = value[component];
       }
     }
   }

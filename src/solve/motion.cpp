@@ -61,10 +61,13 @@ Motion::Motion(const Model<Spatial>& model) : model_(model), part_(model.part())
     const std::array<double, 8> all{
         1 / model.inertial_mass()[b], 1 / inertia[0], 1 / inertia[1], 1 / inertia[2], w, x, y, z};
     for (std::size_t k = 0; k < all.size(); ++k) blocks_[b / lanes].values[k][b % lanes] = all[k];
-    if (model.prescribed()[b] != 0) held_.push_back(static_cast<std::int32_t>(b));
+    if (model.prescribed()[b] == 0) continue;
+    if (rows_.empty()) rows_.assign(static_cast<std::size_t>(part_.local), -1);
+    rows_[b] = static_cast<std::int32_t>(held_.size());
+    held_.push_back(static_cast<std::int32_t>(b));
   }
   saved_.resize(held_.size() * Spatial::record);
-  now_.resize(static_cast<std::size_t>(part_.local) * Spatial::unknowns);
+  now_.resize(held_.size() * Spatial::unknowns);
   next_ = now_;
 }
 
@@ -159,10 +162,10 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
   }
   const double largest = step_blocks(state, wrenches, dt);
   if (!held_.empty()) {
-    model_.prescribe(state.time, now_);
-    model_.prescribe(state.time + dt, next_);
+    model_.prescribe(state.time, now_, rows_);
+    model_.prescribe(state.time + dt, next_, rows_);
     for (std::size_t k = 0; k < held_.size(); ++k) {
-      const auto first = static_cast<std::size_t>(held_[k]) * Spatial::unknowns;
+      const auto first = k * Spatial::unknowns;
       step_held(held_[k], &saved_[k * Spatial::record], state, wrenches,
                 std::span(now_).subspan(first, Spatial::unknowns),
                 std::span(next_).subspan(first, Spatial::unknowns), dt);
@@ -249,7 +252,7 @@ std::pair<Vec3<double>, Vec3<double>> Motion::half_step_on(std::int32_t body,
   const Vec3<double> momentum = m.momentum + dt * moment;
   if (bits == 0) return {v, momentum};
   const auto given = [&](std::size_t k) {
-    const std::size_t at = b * Spatial::unknowns + k;
+    const std::size_t at = static_cast<std::size_t>(rows_[b]) * Spatial::unknowns + k;
     return (next_[at] - now_[at]) / dt;
   };
   const auto fixed = [&](std::size_t k) { return (bits >> k & 1U) != 0; };
@@ -265,8 +268,8 @@ std::pair<Vec3<double>, Vec3<double>> Motion::half_step_on(std::int32_t body,
 Motion::Energies Motion::energies(const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
                                   double dt) const {
   if (!held_.empty()) {
-    model_.prescribe(state.time, now_);
-    model_.prescribe(state.time + dt, next_);
+    model_.prescribe(state.time, now_, rows_);
+    model_.prescribe(state.time + dt, next_, rows_);
   }
   Energies sum{0, boundary_work_};
   for (std::int32_t body = 0; body < part_.owned; ++body) {

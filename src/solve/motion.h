@@ -66,8 +66,9 @@ class Motion {
   const Part& part_;
   std::vector<Block> blocks_;
   std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
+  std::vector<std::int32_t> rows_;          ///< per local body: its place in held_, or -1
   std::vector<double> saved_;               ///< their records before a step
-  mutable std::vector<double> now_, next_;  ///< prescribed values (work space)
+  mutable std::vector<double> now_, next_;  ///< prescribed values of held_ (work space)
   double boundary_work_ = 0;
 };
 

@@ -103,8 +103,9 @@ class Model {
   /// nothing.
   void pin(const std::vector<Pin>& pins);
   /// Prescribed values at a time [m, rad] into n entries per local body; those that are free or
-  /// pinned are left as they are.
-  void prescribe(double time, std::span<double> values) const;
+  /// pinned are left as they are. \param rows  per local body: where its n entries are, -1: nowhere
+  void prescribe(double time, std::span<double> values,
+                 std::span<const std::int32_t> rows = {}) const;
   /// Their rates [m/s, rad/s] and accelerations in the same form.
   void prescribe_rates(double time, std::span<double> rates) const;
   void prescribe_accelerations(double time, std::span<double> accelerations) const;
@@ -114,7 +115,8 @@ class Model {
 
  private:
   using Prescription = std::array<double, 6> (Boundary::*)(double) const;
-  void spread(Prescription motion, double time, std::span<double> values) const;
+  void spread(Prescription motion, double time, std::span<double> values,
+              std::span<const std::int32_t> rows = {}) const;
 
   Part part_;
   double length_scale_ = 1;
