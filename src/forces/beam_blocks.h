@@ -125,12 +125,17 @@ inline void scatter(const std::array<std::int32_t, lanes>& i,
   }
 }
 
+/// Of stresses on strains at their rates.
+inline Lanes power(const BeamStress<Lanes>& stress, const BeamStress<Lanes>& rate) {
+  return stress.n * rate.n + stress.qy * rate.qy + stress.qz * rate.qz + dot(stress.c, rate.c);
+}
+
 /// Beams that carry whatever comes.
 struct Unbreakable {};
 
 /// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
 /// \param strength  has a say on the elastic forces: where strength.gives_way(forces), the block is
-/// left to strength.add()
+/// left to strength.add(); with dashpots it is told of what they do
 template <Kinematics kinematics, bool damped, template <class> class Frame,
           class Strength = Unbreakable>
 [[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block,
@@ -155,8 +160,9 @@ template <Kinematics kinematics, bool damped, template <class> class Frame,
         dashpot(1) * rate.qy,
         dashpot(2) * rate.qz,
         {dashpot(3) * rate.c.x, dashpot(4) * rate.c.y, dashpot(5) * rate.c.z}};
-    lost = load(dashpots->counts.data()) * (viscous.n * rate.n + viscous.qy * rate.qy +
-                                            viscous.qz * rate.qz + dot(viscous.c, rate.c));
+    const Lanes counts = load(dashpots->counts.data());
+    lost = counts * power(viscous, rate);
+    if constexpr (!std::is_same_v<Strength, Unbreakable>) strength.remember(viscous, rate, counts);
     stress = {stress.n + viscous.n, stress.qy + viscous.qy, stress.qz + viscous.qz,
               stress.c + viscous.c};
   }

@@ -39,7 +39,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
         options_(options),
         strengths_(blocks_.size(), StrengthBlock{}),
         damaged_(blocks_.size(), 0),
-        crack_of_(part.beams.bodies.size(), none) {
+        crack_of_(part.beams.bodies.size(), none),
+        viscous_(damped ? blocks_.size() : 0),
+        viscous_now_(viscous_) {
     const auto all = strengths(part, options);
     for (std::size_t m = 0; m < all.size(); ++m) strengths_[m / lanes].set(m % lanes, all[m]);
   }
@@ -53,7 +55,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     growing_.clear();
     const double* records = state.records.data();
     double* values = wrenches.values.data();
-    Lanes lost(0.0);
+    Lanes lost(0.0), lost_before(0.0);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const std::size_t soon = std::min(b + Base::blocks_ahead, blocks_.size() - 1);
       prefetch(blocks_[soon]);
@@ -70,15 +72,21 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       bool again = false;
       do {
         again = false;
-        lost += add_block<kinematics, damped>(*block, dashpots, records, values,
-                                              BreakableBlock{*strength, [&] {
-                                                               take_softened();
-                                                               again = true;
-                                                               return Lanes(0.0);
-                                                             }});
+        const auto give_way = [&] {
+          take_softened();
+          again = true;
+          return Lanes(0.0);
+        };
+        lost += add_block<kinematics, damped>(
+            *block, dashpots, records, values,
+            BreakableBlock{*strength, give_way, damped ? &viscous_[b] : nullptr,
+                           damped ? &viscous_now_[b] : nullptr, &lost_before});
       } while (again);
     }
-    if constexpr (damped) this->power_lost_ = reduce(lost);
+    if constexpr (damped) {
+      this->power_lost_ = reduce(lost);
+      power_before_ = reduce(lost_before);
+    }
   }
 
   /// With the damage of the last commit: the secant where a beam softens.
@@ -114,7 +122,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
 
   void report(const State<Spatial>& state, Columns& columns) const override {
     Base::report(state, columns);
-    double fracture = dissipated_, damping = 0;
+    double fracture = dissipated_;
     std::array<double, 3> counts{};  // damaged, broken, brittle
     const auto count = [&](const Crack& c, double sign) {
       counts[0] += sign;
@@ -128,11 +136,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     for (const Growth& g : growing_) {
       if (!counts_here(g.crack.beam)) continue;
       fracture += g.dissipated;
-      damping += g.undamped;
       if (const Crack* before = crack(g.crack.beam)) count(*before, -1);
       count(g.crack, 1);
     }
-    if constexpr (damped) columns.add("energy_damping", damping);
     columns.add("energy_fracture", fracture);
     columns.add("beams_damaged", counts[0]);
     columns.add("beams_broken", counts[1]);
@@ -150,6 +156,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       mine.back().beam = part_.global_beam[static_cast<std::size_t>(c.beam)];
     }
     remember_cracks(checkpoint, part_, mine);
+    if constexpr (damped) remember_dashpots(checkpoint);
     if (checkpoint.loading()) set_cracks(std::move(mine));
   }
 
@@ -249,7 +256,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     Crack crack;        ///< as it will be
     double released;    ///< by which the energy that it stores falls [J]
     double dissipated;  ///< [J]
-    double undamped;    ///< see damping_share() [J]
   };
 
   bool counts_here(std::int32_t m) const {
@@ -290,6 +296,17 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     return c;
   }
 
+  /// Dashpots do the work dt/2 v_{n+1/2}.(F_n + F_{n+1}) between t_n and t_{n+1}, where their
+  /// forces change as suddenly as beams break. So F_n is kept: the balance stays exact for linear
+  /// strains.
+  double lost_by_now() const override {
+    return this->lost_ + 0.5 * this->step_ * (power_before_ + this->power_lost_);
+  }
+  void take_losses(double) override {
+    this->lost_ = lost_by_now();
+    std::swap(viscous_, viscous_now_);
+  }
+
   double stored(const State<Spatial>& state) const override {
     double energy = 0;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
@@ -314,7 +331,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     const BeamStress<double> strain = as_stress(e), force = elastic_stress(c, e);
     const DamageEnergy energy = damage_energy(force, strain);
     const Crack* known = crack(m);
-    Growth g{known != nullptr ? *known : Crack{}, 0, 0, 0};
+    Growth g{known != nullptr ? *known : Crack{}, 0, 0};
     Crack& next = g.crack;
     const double before = next.damage, passed = next.kappa;
     if (known == nullptr) {
@@ -347,11 +364,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
                    part_.bodies.position[static_cast<std::size_t>(j)][k] + record(state, j)[k]);
     }
     next.dissipated += g.dissipated;
-    if constexpr (damped) {
-      const Softening old = softening(before, strain.n > 0, false),
-                      left = softening(next.damage, strain.n > 0, next.broken());
-      g.undamped = damping_share(m, rate, {old.axial - left.axial, old.rest - left.rest});
-    }
     return g;
   }
 
@@ -361,19 +373,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     return BeamKernel<kinematics>::rates(
         c, e, three(j + Spatial::velocity) - three(i + Spatial::velocity),
         three(i + Spatial::angular_velocity), three(j + Spatial::angular_velocity));
-  }
-
-  /// The quarter of a step's loss that the ledger counts with the dashpots of the step after
-  /// (SpatialBeams::report), in the part of them that is gone by then [J].
-  double damping_share(std::int32_t m, const BeamStress<double>& rate,
-                       const Softening& gone) const {
-    const auto& c = dashpots_[static_cast<std::size_t>(m) / lanes].values;
-    const auto at = [&](std::size_t k) { return c[k][static_cast<std::size_t>(m) % lanes]; };
-    const double axial = at(0) * rate.n * rate.n;
-    const double rest = at(1) * rate.qy * rate.qy + at(2) * rate.qz * rate.qz +
-                        at(3) * rate.c.x * rate.c.x + at(4) * rate.c.y * rate.c.y +
-                        at(5) * rate.c.z * rate.c.z;
-    return 0.25 * dt_ * (gone.axial * axial + gone.rest * rest);
   }
 
   /// A block with a beam that is damaged or may become so: what this state's damage leaves of it.
@@ -402,7 +401,25 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     if (g.crack.broken()) newly_broken_.push_back(g.crack.beam);
     if (!counts_here(g.crack.beam)) return;
     dissipated_ += g.dissipated;
-    if constexpr (damped) this->lost_ += g.undamped;
+  }
+
+  /// A restart goes on with the forces of the last step's start.
+  void remember_dashpots(Memory& checkpoint) {
+    std::vector<std::int32_t> beams;
+    for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
+      if (checkpoint.loading() || counts_here(m)) beams.push_back(m);
+    }
+    std::vector<double> rows;
+    const auto each = [&](auto visit) {
+      for (const std::int32_t m : beams) {
+        for (auto& values : viscous_[static_cast<std::size_t>(m) / lanes].values)
+          visit(values[static_cast<std::size_t>(m) % lanes]);
+      }
+    };
+    each([&](float value) { rows.push_back(static_cast<double>(value)); });
+    checkpoint.beam_rows("viscous", beams, rows, 6);
+    std::size_t k = 0;
+    each([&](float& value) { value = static_cast<float>(rows[k++]); });
   }
 
   /// Enters a crack. A beam that has broken leaves its block: without stiffness, between a body and
@@ -466,6 +483,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       kept_;  ///< in the order of their initiation; statics: at the last commit
   std::vector<std::int32_t> newly_broken_;  ///< since the last commit, local
   std::vector<std::array<std::int32_t, 2>> released_;
+  std::vector<ViscousBlock> viscous_;              ///< at the start of the last step
+  mutable std::vector<ViscousBlock> viscous_now_;  ///< a by-product of the last evaluation
+  mutable double power_before_ = 0;  ///< of viscous_ at the rates of the last evaluation [W]
   const StrengthBlock unbreakable_{};
   mutable BeamBlock<Frame> soft_block_;  ///< work space of soften()
   mutable DashpotBlock soft_dashpots_;

@@ -31,18 +31,46 @@ Lanes block_criterion(const BeamBlock<Frame>& block, const StrengthBlock& streng
                                                             beam, j.u - i.u, i.q, j.q)));
 }
 
+/// What a block's dashpots put on its beams.
+struct alignas(64) ViscousBlock {
+  std::array<std::array<float, lanes>, 6> values{};
+
+  BeamStress<Lanes> get() const {
+    const auto at = [&](std::size_t k) {
+      return Lanes([&](auto lane) { return static_cast<double>(values[k][lane]); });
+    };
+    return {at(0), at(1), at(2), {at(3), at(4), at(5)}};
+  }
+  void set(const BeamStress<Lanes>& s) {
+    const std::array<Lanes, 6> all{s.n, s.qy, s.qz, s.c.x, s.c.y, s.c.z};
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        values[k][lane] = static_cast<float>(all[k][lane]);
+    }
+  }
+};
+
 /// The hook of add_block() for beams that may break.
 template <class Add>
 struct BreakableBlock {
   const StrengthBlock& strength;
-  Add add;  ///< what happens instead; returns the power lost
+  Add add;                               ///< what happens instead; returns the power lost
+  const ViscousBlock* before = nullptr;  ///< with dashpots: at the last step's start
+  ViscousBlock* now = nullptr;
+  Lanes* lost_before = nullptr;  ///< power of those at the present rates, summed up
+
+  void remember(const BeamStress<Lanes>& viscous, const BeamStress<Lanes>& rate,
+                const Lanes& counts) const {
+    *lost_before += counts * power(before->get(), rate);
+    now->set(viscous);
+  }
   bool gives_way(const BeamStress<Lanes>& elastic) const {
     constexpr double nearly = 1 - 1e-9;
     return any_of(criterion(strength.get(), elastic) > nearly);
   }
 };
-template <class Add>
-BreakableBlock(const StrengthBlock&, Add) -> BreakableBlock<Add>;
+template <class Add, class... Dashpots>
+BreakableBlock(const StrengthBlock&, Add, Dashpots...) -> BreakableBlock<Add>;
 
 /// A copy with the parts of its beams' stiffnesses that damage leaves.
 template <template <class> class Frame>

@@ -95,7 +95,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
 
   void commit(const State<Space>&, double dt) override {
     if constexpr (damped) {
-      lost_ += (step_ > 0 ? dt : 0.25 * dt) * power_lost_;  // of the first power, see report()
+      take_losses(dt);
       step_ = dt;
     }
   }
@@ -125,11 +125,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
 
   void report(const State<Space>& state, Columns& columns) const override {
     columns.add("energy_strain", stored(state));
-    // Leapfrog's velocities lag half a step: at t_n the sum has the powers up to n - 3/2, and what
-    // is due of the last one makes the balance of second order (summation by parts of the power
-    // v_{n+1/2} C (v_{n-1/2} + v_{n+1/2})/2 that the scheme loses between t_n and t_n+1). The same
-    // share of the very first power is left out.
-    if constexpr (damped) columns.add("energy_damping", lost_ + 0.75 * step_ * power_lost_);
+    if constexpr (damped) columns.add("energy_damping", lost_by_now());
   }
 
   void remember(Memory& checkpoint) override {
@@ -166,6 +162,15 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
     });
     return energy;
   }
+
+  /// What dashpots have lost at the time of the last evaluation [J]. Leapfrog's velocities lag half
+  /// a step: at t_n the sum has the powers up to n - 3/2, and what is due of the last one makes the
+  /// balance of second order (summation by parts of the power v_{n+1/2} C (v_{n-1/2} + v_{n+1/2})/2
+  /// that the scheme loses between t_n and t_n+1). The same share of the very first power is left
+  /// out.
+  virtual double lost_by_now() const { return lost_ + 0.75 * step_ * power_lost_; }
+  /// A step of dt follows the last evaluation.
+  virtual void take_losses(double dt) { lost_ += (step_ > 0 ? dt : 0.25 * dt) * power_lost_; }
 
   /// Constants stream through once per step; fetched this far ahead they cost 15 ns per beam and
   /// not 17.

@@ -114,11 +114,11 @@ std::vector<double> Memory::gathered(std::span<const double> mine) const {
   return all;
 }
 
-void Memory::rows(const std::string& name, std::span<const std::int32_t> bodies,
-                  std::span<double> rows, int width) {
+void Memory::rows(const std::string& name, std::span<const std::int32_t> names,
+                  std::span<const std::int32_t> local, std::span<double> rows, int width) {
   std::vector<std::int32_t> global;
-  global.reserve(bodies.size());
-  for (const std::int32_t b : bodies) global.push_back(part_.global[static_cast<std::size_t>(b)]);
+  global.reserve(local.size());
+  for (const std::int32_t k : local) global.push_back(names[static_cast<std::size_t>(k)]);
   if (!loading_) {
     save_rows(name, global, rows, width);
     return;
@@ -136,7 +136,7 @@ void Memory::rows(const std::string& name, std::span<const std::int32_t> bodies,
   }
   int mine = all_there ? 1 : 0, all = 0;
   MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, part_.comm);
-  if (all == 0) refuse(group_ + name + " is of other bodies than this scene's");
+  if (all == 0) refuse(group_ + name + " is of another lattice than this scene's");
 }
 
 void Memory::save_rows(const std::string& name, const std::vector<std::int32_t>& global,

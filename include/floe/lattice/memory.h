@@ -40,9 +40,19 @@ class Memory {
   /// Rows of `width` numbers, one for each of some owned bodies (each on one rank only).
   /// \param bodies  local indices   \param rows  row-major
   void rows(const std::string& name, std::span<const std::int32_t> bodies, std::span<double> rows,
-            int width);
+            int width) {
+    this->rows(name, part_.global, bodies, rows, width);
+  }
+  /// The same for beams: saving, those that each rank counts.
+  void beam_rows(const std::string& name, std::span<const std::int32_t> beams,
+                 std::span<double> rows, int width) {
+    this->rows(name, part_.global_beam, beams, rows, width);
+  }
 
  private:
+  /// \param names  global index of each local one
+  void rows(const std::string& name, std::span<const std::int32_t> names,
+            std::span<const std::int32_t> local, std::span<double> rows, int width);
   void save_rows(const std::string& name, const std::vector<std::int32_t>& global,
                  std::span<const double> rows, int width);
   std::vector<double> gathered(std::span<const double> mine) const;
