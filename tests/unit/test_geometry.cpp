@@ -12,20 +12,7 @@ namespace {
 /// A vertical prism over a convex polygon, z from low to high.
 Shapes prism(const std::vector<Point2>& plan, double low, double high) {
   Shapes s;
-  const auto n = static_cast<std::int32_t>(plan.size());
-  for (const double z : {low, high})
-    for (const auto& [x, y] : plan) s.vertices.push_back({x, y, z});
-  const auto face = [&](std::initializer_list<std::int32_t> corners) {
-    s.corners.insert(s.corners.end(), corners);
-    s.corner_of.push_back(static_cast<std::int32_t>(s.corners.size()));
-  };
-  for (auto k = n - 1; k >= 0; --k) s.corners.push_back(k);
-  face({});
-  for (std::int32_t k = 0; k < n; ++k) s.corners.push_back(n + k);
-  face({});
-  for (std::int32_t k = 0; k < n; ++k) face({k, (k + 1) % n, n + (k + 1) % n, n + k});
-  s.face_of.push_back(n + 2);
-  s.vertex_of.push_back(2 * n);
+  append_prism(s, plan, low, high);
   return s;
 }
 
@@ -213,6 +200,34 @@ TEST(Submerged, LevelThroughVertices) {
   const Submerged half = submerged(s, 0, w, 0);
   EXPECT_NEAR(half.volume, 0.5, 1e-13);
   EXPECT_NEAR(half.waterplane, 3 * std::sqrt(3.0) / 4, 1e-13);
+}
+
+bool same(const Shapes& a, const Shapes& b) {
+  return a.vertices == b.vertices && a.corners == b.corners && a.corner_of == b.corner_of &&
+         a.face_of == b.face_of && a.vertex_of == b.vertex_of;
+}
+
+TEST(Prisms, ComeBackAsTheyWere) {
+  Shapes shapes;
+  append_prism(shapes, pentagon, -0.4, 0.3);
+  append_prism(shapes, std::vector<Point2>{{0, 0}, {1, 0}, {0.2, 0.9}}, -0.4, 0.3);
+  const std::optional<Prisms> prisms = as_prisms(shapes);
+  ASSERT_TRUE(prisms);
+  EXPECT_EQ(prisms->corners.size(), 8U);
+  EXPECT_TRUE(same(polyhedra(*prisms), shapes));
+}
+
+TEST(Prisms, OfOneThicknessOnlyAndNothingElse) {
+  EXPECT_FALSE(as_prisms(Shapes{}));
+  Shapes shapes = prism(pentagon, -0.4, 0.3);
+  append_prism(shapes, pentagon, -0.4, 0.31);
+  EXPECT_FALSE(as_prisms(shapes));
+  Shapes moved = prism(pentagon, -0.4, 0.3);
+  moved.vertices[7][0] += 1e-15;  // its top is not its bottom's plan
+  EXPECT_FALSE(as_prisms(moved));
+  Shapes turned = prism(pentagon, -0.4, 0.3);
+  std::swap(turned.corners[0], turned.corners[1]);
+  EXPECT_FALSE(as_prisms(turned));
 }
 
 }  // namespace
