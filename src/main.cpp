@@ -13,6 +13,7 @@
 #include "floe/base/petsc.h"
 #include "floe/base/scene_text.h"
 #include "floe/build.h"
+#include "floe/lattice/folded.h"
 #include "floe/output/output.h"
 
 namespace {
@@ -57,12 +58,8 @@ int run(const floe::Scene& scene, Start& start) {
   Lattice& lattice = start.lattice;
 
   const std::string lattice_id = fingerprint(lattice);
-  std::optional<Prisms> prisms;  // shapes, while nobody looks at them
-  const auto fold_shapes = [&] {
-    prisms = as_prisms(lattice.shapes);
-    if (prisms) lattice.shapes = {};
-  };
-  if (!needs_shapes(scene)) fold_shapes();
+  Folded folded;
+  if (!needs_shapes(scene)) folded.fold_shapes(lattice);
 
   // 3. The model: this rank's part of the lattice, boundaries, forces
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
@@ -81,7 +78,8 @@ int run(const floe::Scene& scene, Start& start) {
   }
 
   release_setup(scene, model);
-  if (!prisms) fold_shapes();
+  folded.fold_shapes(lattice);
+  folded.fold_beams(lattice);
 
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.
@@ -90,7 +88,7 @@ int run(const floe::Scene& scene, Start& start) {
   std::optional<First<Space>> first;
   const auto open = [&] {
     reject_unused_options();
-    if (prisms && rank() == 0) lattice.shapes = polyhedra(*prisms);
+    if (rank() == 0) folded.unfold(lattice);
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
                    std::move(lattice), model, loads, scene.options_yaml,
                    restart ? &*restart : nullptr);

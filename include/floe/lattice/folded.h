@@ -1,0 +1,27 @@
+/// \file
+/// A lattice that waits in less memory.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "floe/lattice/lattice.h"
+
+namespace floe {
+
+/// What a sheet's lattice can do without while nobody looks at it: shapes, where they are prisms of
+/// one thickness, and properties that all beams share. A large sheet's lattice is most of rank 0's
+/// memory during a run's set-up.
+class Folded {
+ public:
+  void fold_shapes(Lattice& lattice);
+  void fold_beams(Lattice& lattice);
+  /// As it was, to the last bit.
+  void unfold(Lattice& lattice);
+
+ private:
+  std::optional<Prisms> prisms_;
+  std::array<std::optional<double>, 4> shared_;  ///< of young, shear_modulus, shear_factor, height
+};
+
+}  // namespace floe

@@ -1,0 +1,42 @@
+#include "floe/lattice/folded.h"
+
+#include <algorithm>
+
+namespace floe {
+namespace {
+
+std::array<std::vector<double>*, 4> columns(Beams& beams) {
+  return {&beams.young, &beams.shear_modulus, &beams.shear_factor, &beams.height};
+}
+
+}  // namespace
+
+void Folded::fold_shapes(Lattice& lattice) {
+  if (prisms_) return;
+  prisms_ = as_prisms(lattice.shapes);
+  if (prisms_) lattice.shapes = {};
+}
+
+void Folded::fold_beams(Lattice& lattice) {
+  const auto all = columns(lattice.beams);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    std::vector<double>& column = *all[k];
+    const bool uniform =
+        !column.empty() &&
+        std::all_of(column.begin(), column.end(), [&](double x) { return x == column.front(); });
+    if (!uniform) continue;
+    shared_[k] = column.front();
+    column = {};
+  }
+}
+
+void Folded::unfold(Lattice& lattice) {
+  if (prisms_) lattice.shapes = polyhedra(*prisms_);
+  const auto all = columns(lattice.beams);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (shared_[k]) all[k]->assign(lattice.beams.bodies.size(), *shared_[k]);
+  }
+  *this = {};
+}
+
+}  // namespace floe

@@ -1,0 +1,41 @@
+// A lattice folded for want of memory comes back to the last bit.
+#include <gtest/gtest.h>
+
+#include "floe/lattice/folded.h"
+#include "support/lattices.h"
+
+namespace floe {
+namespace {
+
+TEST(Folded, SheetsComeBackAsTheyWere) {
+  Lattice lattice = test::sheet(8, 6, 1);
+  const Lattice before = lattice;
+  Folded folded;
+  folded.fold_shapes(lattice);
+  folded.fold_beams(lattice);
+  EXPECT_TRUE(lattice.shapes.empty());
+  EXPECT_TRUE(lattice.beams.young.empty());
+  EXPECT_FALSE(lattice.beams.area.empty());
+  folded.unfold(lattice);
+  EXPECT_EQ(lattice.shapes.vertices, before.shapes.vertices);
+  EXPECT_EQ(lattice.shapes.corners, before.shapes.corners);
+  EXPECT_EQ(lattice.beams.young, before.beams.young);
+  EXPECT_EQ(lattice.beams.shear_modulus, before.beams.shear_modulus);
+  EXPECT_EQ(lattice.beams.shear_factor, before.beams.shear_factor);
+  EXPECT_EQ(lattice.beams.height, before.beams.height);
+}
+
+TEST(Folded, WhatDiffersFromBeamToBeamStays) {
+  Lattice lattice = test::sheet(8, 6, 1);
+  lattice.beams.young.back() *= 1 + 1e-15;
+  const std::vector<double> young = lattice.beams.young;
+  Folded folded;
+  folded.fold_beams(lattice);
+  EXPECT_EQ(lattice.beams.young, young);
+  folded.unfold(lattice);
+  EXPECT_EQ(lattice.beams.young, young);
+  EXPECT_EQ(lattice.beams.shear_modulus.size(), young.size());
+}
+
+}  // namespace
+}  // namespace floe
