@@ -1,5 +1,7 @@
 // One explicit step and what it is made of, ns per beam: build/release/bench/explicit_bench.
-//   step      forces, update of the bodies, nothing else; `breakable`: beams with strengths, intact
+//   step      forces, update of the bodies, nothing else; `breakable`: beams with strengths,
+//   intact;
+//             `planar`: bodies and beams of a planar model
 //   zero      wrenches set to zero
 //   gather    records of the beams' bodies into lanes
 //   kernel    arithmetic of a beam on one block that stays in the nearest cache: the floor
@@ -18,29 +20,21 @@
 #include "forces/beam_spatial.h"
 #include "sheet.h"
 #include "solve/leapfrog.h"
-#include "solve/motion.h"
+#include "solve/planar_motion.h"
 
 namespace {
 
 using namespace floe;
 using Blocks = std::vector<BeamBlock<FlatFrame>>;
 
-/// A meshed sheet of about `bodies` bodies with a smooth deformation and motion.
+/// A meshed sheet of about `bodies` bodies with a smooth motion.
+template <class Space>
 class Case {
  public:
   Case(std::int64_t bodies, double damping, bool breakable)
       : lattice_(mesh(bodies)),
         model(lattice_, PETSC_COMM_SELF, {}),
         motion(start(damping, breakable)) {
-    const Part& part = model.part();
-    blocks.resize((part.beams.bodies.size() + lanes - 1) / lanes);
-    for (std::int32_t m = 0; m < part.beams.size(); ++m) {
-      const auto k = static_cast<std::size_t>(m);
-      BeamBlock<FlatFrame>& block = blocks[k / lanes];
-      block.set(k % lanes, SpatialBeam<Kinematics::corotational>::make(part, m, Shear::one_point));
-      block.i[k % lanes] = part.beams.bodies[k][0];
-      block.j[k % lanes] = part.beams.bodies[k][1];
-    }
     lattice_ = {};
   }
   static Case& of(std::int64_t bodies, double damping, bool breakable = false) {
@@ -69,16 +63,14 @@ class Case {
     section.thickness = 0.5;
     return bench::meshed_sheet(bodies, section);
   }
-  Motion start(double damping, bool breakable) {
+  MotionOf<Space> start(double damping, bool breakable) {
     BeamOptions options;
     options.damping_ratio = damping;
-    model.set_beams(breakable ? make_breakable_beams(model.part(), options, strong()).force
-                              : make_beam_force<Spatial>(model.part(), options),
-                    Kinematics::corotational);
+    model.set_beams(beams_of(options, breakable), Kinematics::corotational);
     const Part& part = model.part();
     const auto local = static_cast<std::size_t>(part.local);
-    state = State<Spatial>(local);
-    wrenches = Wrenches<Spatial>(local);
+    state = State<Space>(local);
+    wrenches = Wrenches<Space>(local);
     std::vector<Point3> velocity(local), spin(local);
     for (std::size_t b = 0; b < local; ++b) {
       const Point3& x = part.bodies.position[b];
@@ -87,9 +79,15 @@ class Case {
         spin[b][k] = 1e-4 * std::cos(0.1 * x[1] - static_cast<double>(k));
       }
     }
-    Motion made(model);
+    MotionOf<Space> made(model);
     made.start(state, velocity, spin);
     return made;
+  }
+  std::unique_ptr<BeamForce<Space>> beams_of(const BeamOptions& options, bool breakable) {
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      if (breakable) return make_breakable_beams(model.part(), options, strong()).force;
+    }
+    return make_beam_force<Space>(model.part(), options);
   }
 
   /// Strengths that nothing here reaches: an intact sheet.
@@ -102,21 +100,45 @@ class Case {
   Lattice lattice_;
 
  public:
-  Model<Spatial> model;
-  State<Spatial> state;
-  Wrenches<Spatial> wrenches;
-  Motion motion;
-  Blocks blocks;
+  Model<Space> model;
+  State<Space> state;
+  Wrenches<Space> wrenches;
+  MotionOf<Space> motion;
 };
+using InSpace = Case<Spatial>;
 
-void step(benchmark::State& bench, double damping, bool breakable) {
-  Case& c = Case::of(bench.range(0), damping, breakable);
+/// A case's beams once more, for parts of what the force does with them.
+const Blocks& blocks_of(const InSpace& c) {
+  static std::map<const InSpace*, Blocks> all;
+  Blocks& blocks = all[&c];
+  if (!blocks.empty()) return blocks;
+  const Part& part = c.model.part();
+  blocks.resize((part.beams.bodies.size() + lanes - 1) / lanes);
+  for (std::int32_t m = 0; m < part.beams.size(); ++m) {
+    const auto k = static_cast<std::size_t>(m);
+    BeamBlock<FlatFrame>& block = blocks[k / lanes];
+    block.set(k % lanes, SpatialBeam<Kinematics::corotational>::make(part, m, Shear::one_point));
+    block.i[k % lanes] = part.beams.bodies[k][0];
+    block.j[k % lanes] = part.beams.bodies[k][1];
+  }
+  return blocks;
+}
+
+template <class Space>
+void step_in(benchmark::State& bench, double damping, bool breakable) {
+  auto& c = Case<Space>::of(bench.range(0), damping, breakable);
   for (auto _ : bench) c.step();
   c.count(bench);
 }
+void step(benchmark::State& bench, double damping, bool breakable) {
+  step_in<Spatial>(bench, damping, breakable);
+}
+void planar_step(benchmark::State& bench, double damping) {
+  step_in<Planar>(bench, damping, false);
+}
 
 void zero(benchmark::State& bench) {
-  Case& c = Case::of(bench.range(0), 0);
+  InSpace& c = InSpace::of(bench.range(0), 0);
   for (auto _ : bench) {
     std::fill(c.wrenches.values.begin(), c.wrenches.values.end(), 0.0);
     benchmark::ClobberMemory();
@@ -124,9 +146,9 @@ void zero(benchmark::State& bench) {
   c.count(bench);
 }
 
-[[gnu::flatten]] void gather_all(const Case& c) {
+[[gnu::flatten]] void gather_all(const InSpace& c) {
   Lanes sum(0.0);
-  for (const BeamBlock<FlatFrame>& block : c.blocks) {
+  for (const BeamBlock<FlatFrame>& block : blocks_of(c)) {
     for (const auto* bodies : {&block.i, &block.j}) {
       const LaneBodies b = gather<false>(c.state.records.data(), *bodies);
       sum += (b.u.x + b.u.y + b.u.z) + (b.q.w + b.q.x + b.q.y + b.q.z);
@@ -135,18 +157,19 @@ void zero(benchmark::State& bench) {
   benchmark::DoNotOptimize(reduce(sum));
 }
 void gather(benchmark::State& bench) {
-  const Case& c = Case::of(bench.range(0), 0);
+  const InSpace& c = InSpace::of(bench.range(0), 0);
   for (auto _ : bench) gather_all(c);
   c.count(bench);
 }
 
-[[gnu::flatten]] void compute_all(const Case& c) {
+[[gnu::flatten]] void compute_all(const InSpace& c) {
   using Kernel = BeamKernel<Kinematics::corotational>;
-  BeamBlock<FlatFrame> block = c.blocks.front();
+  BeamBlock<FlatFrame> block = blocks_of(c).front();
   const LaneBodies i = floe::gather<false>(c.state.records.data(), block.i),
                    j = floe::gather<false>(c.state.records.data(), block.j);
   Lanes sum(0.0);
-  for (std::size_t k = 0; k < c.blocks.size(); ++k) {
+  const std::size_t count = blocks_of(c).size();
+  for (std::size_t k = 0; k < count; ++k) {
     __asm__ volatile("" : : "r"(&block), "r"(&i), "r"(&j) : "memory");
     const BeamConstants<Lanes, FlatFrame> beam = block.get();
     const BeamGradient<Lanes> g =
@@ -157,25 +180,25 @@ void gather(benchmark::State& bench) {
   benchmark::DoNotOptimize(reduce(sum));
 }
 void kernel(benchmark::State& bench) {
-  const Case& c = Case::of(bench.range(0), 0);
+  const InSpace& c = InSpace::of(bench.range(0), 0);
   for (auto _ : bench) compute_all(c);
   c.count(bench);
 }
 
-[[gnu::flatten]] void scatter_all(Case& c) {
+[[gnu::flatten]] void scatter_all(InSpace& c) {
   const Lanes one(1e-3);
   const BeamGradient<Lanes> g{{one, one, one}, {one, one, one}, {one, one, one}};
-  for (const BeamBlock<FlatFrame>& block : c.blocks)
+  for (const BeamBlock<FlatFrame>& block : blocks_of(c))
     floe::scatter(block.i, block.j, g, c.wrenches.values.data());
 }
 void scatter(benchmark::State& bench) {
-  Case& c = Case::of(bench.range(0), 0);
+  InSpace& c = InSpace::of(bench.range(0), 0);
   for (auto _ : bench) scatter_all(c);
   c.count(bench);
 }
 
 void beams(benchmark::State& bench, double damping) {
-  Case& c = Case::of(bench.range(0), damping);
+  InSpace& c = InSpace::of(bench.range(0), damping);
   for (auto _ : bench) {
     c.model.beams()->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
@@ -184,7 +207,7 @@ void beams(benchmark::State& bench, double damping) {
 }
 
 void bodies(benchmark::State& bench) {
-  Case& c = Case::of(bench.range(0), 0);
+  InSpace& c = InSpace::of(bench.range(0), 0);
   std::fill(c.wrenches.values.begin(), c.wrenches.values.end(), 0.0);
   for (auto _ : bench) benchmark::DoNotOptimize(c.motion.step(c.state, c.wrenches, 1e-9));
   c.count(bench);
@@ -219,6 +242,8 @@ void sizes(benchmark::internal::Benchmark* bench) {
 }
 BENCHMARK_CAPTURE(step, undamped, 0.0, false)->Apply(sizes);
 BENCHMARK_CAPTURE(step, damped, 1.0, false)->Apply(sizes);
+BENCHMARK_CAPTURE(planar_step, undamped, 0.0)->Apply(sizes);
+BENCHMARK_CAPTURE(planar_step, damped, 1.0)->Apply(sizes);
 BENCHMARK_CAPTURE(step, breakable_undamped, 0.0, true)->Apply(sizes);
 BENCHMARK_CAPTURE(step, breakable_damped, 1.0, true)->Apply(sizes);
 BENCHMARK_CAPTURE(beams, undamped, 0.0)->Apply(sizes);

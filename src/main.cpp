@@ -68,7 +68,7 @@ int run(const floe::Scene& scene, Start& start) {
   add_contact(scene, lattice, model);
   const bool is_static = scene.integrator == Integrator::quasistatic;
   if (is_static) hold_free_motions(scene, lattice, model);
-  OutOfPlane rest;
+  std::optional<OutOfPlane> rest;
   if (is_static && start.skips.planar) rest = out_of_plane(scene, lattice, loads, model.part());
   if (scene.check_only) {
     if (is_static) check_solver_options(model);
@@ -116,7 +116,8 @@ int run(const floe::Scene& scene, Start& start) {
       OutputMemory(output->memory()).remember(checkpoint);
     }
   };
-  const RunResult result = integrate(scene, model, rest, lattice_id, observe, prepare, remember);
+  const RunResult result =
+      integrate(scene, model, rest ? &*rest : nullptr, lattice_id, observe, prepare, remember);
   prepare();  // a run that found not even a first state leaves a summary that says so
   if (!result.stopped) output->finish();  // a stopped run goes on where it was
 

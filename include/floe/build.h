@@ -43,12 +43,13 @@ Skips skips_of(const Scene& scene, const Lattice& lattice);
 /// Where an explicit run writes its checkpoints.
 std::string checkpoint_file(const Scene& scene);
 
-/// Runs the scene's integrator. Collective. \param rest  what a planar model leaves out
+/// Runs the scene's integrator. Collective.
+/// \param rest  what a planar model leaves out; null for a spatial one
 /// \param lattice_id  its fingerprint, for checkpoints
 /// \param prepare  opens the output that a checkpoint goes with, if it is not open
 /// \param others  what checkpoints keep beside the integrator's state
 template <class Space>
-RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane& rest,
+RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
                     const std::string& lattice_id, const ObserverOf<Space>& observer,
                     const std::function<void()>& prepare,
                     const std::function<void(Memory&)>& others);

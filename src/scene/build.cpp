@@ -110,12 +110,12 @@ void set_initial(const Scene& scene, Lattice& lattice) {
 std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/checkpoint.h5"; }
 
 template <class Space>
-RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane& rest,
+RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
                     const std::string& lattice_id, const ObserverOf<Space>& observer,
                     const std::function<void()>& prepare,
                     const std::function<void(Memory&)>& others) {
   if (scene.integrator == Integrator::quasistatic)
-    return run_quasistatic(model, {scene.time.end, scene.time.dt}, observer, &rest);
+    return run_quasistatic(model, {scene.time.end, scene.time.dt}, observer, rest);
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = scene.time.dt;
@@ -223,10 +223,10 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
   return rest;
 }
 
-template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane&, const std::string&,
+template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane*, const std::string&,
                              const Observer<Spatial>&, const std::function<void()>&,
                              const std::function<void(Memory&)>&);
-template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane&, const std::string&,
+template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane*, const std::string&,
                              const Observer<Planar>&, const std::function<void()>&,
                              const std::function<void(Memory&)>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);

@@ -448,10 +448,11 @@ std::int64_t Equilibrium<Space>::unstable_modes(const OutOfPlane* rest) {
   const Timed timed(Event::solve);
   std::int64_t negative = negative_pivots(ksp);
   // With linear kinematics forces in the plane have no effect out of it.
-  if (rest == nullptr || model_.kinematics() == Kinematics::linear) return negative;
-  assemble_out_of_plane(*rest);
-  use_tangent();
-  negative += negative_pivots(ksp);
+  if (rest != nullptr && model_.kinematics() != Kinematics::linear) {
+    assemble_out_of_plane(*rest);
+    use_tangent();
+    negative += negative_pivots(ksp);
+  }
   return negative;
 }
 

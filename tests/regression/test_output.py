@@ -157,6 +157,71 @@ class History(OutputTest):
         self.assertEqual([row["time"] for row in rows], [0, 1])
 
 
+class InThePlane(OutputTest):
+    """A planar run leaves what a spatial one leaves: the same files, columns, datasets and keys, the same numbers."""
+    MOVING = """integrator: explicit
+forces: [beam, drag]
+water: {drag_linear: 1e4, current: [0.1, 0.2, 0]}
+sheet: {length: 10, thickness: 1, element_size: 2, iterations: 20}
+beam: {damping_ratio: 0.1}
+""" + HELD_AND_PULLED.replace("displacement: [0.01, 0, 0]", "velocity: [0.1, 0, 0]") + """load: {names: [p], p: {point: [1, 2], force: [1e5, 2e5, 0], moment: [0, 0, 1e5]}}
+time: {end: 0.1, dt: 1e-4}
+output: {history: 0.01, fields: 0.02}
+"""
+
+    def compare(self, scene, tolerance, *options, ranks=1):
+        planar = self.run_scene(scene, "-model_planar", "true", *options, name="planar", ranks=ranks)
+        spatial = self.run_scene(scene, "-model_planar", "false", *options, name="spatial", ranks=ranks)
+        self.assertEqual({p.name for p in planar.iterdir()}, {p.name for p in spatial.iterdir()})
+        rows, others = self.history(planar), self.history(spatial)
+        self.assertEqual([list(row) for row in rows], [list(row) for row in others])
+        for kind in ("force", "moment", "displacement", "energy"):
+            of_kind = [key for key in rows[0] if kind in key]
+            scale = max([abs(row[key]) for row in others for key in of_kind], default=0)
+            for key in of_kind:
+                np.testing.assert_allclose([row[key] for row in rows], [row[key] for row in others], rtol=0,
+                                           atol=tolerance * scale, err_msg=key)
+        frames, others = self.frames(planar), self.frames(spatial)
+        self.assertEqual([time for time, _ in frames], [time for time, _ in others])
+        for (_, frame), (_, other) in zip(frames, others):
+            self.assertEqual(set(frame), set(other))
+            for key, values in frame.items():
+                self.assertEqual(values.shape, other[key].shape, key)
+                self.assertEqual(values.dtype, other[key].dtype, key)
+                rounding = np.finfo(values.dtype).eps if values.dtype.kind == "f" else 0  # faces are in single precision
+                np.testing.assert_allclose(values, other[key], rtol=0, err_msg=key,
+                                           atol=max(tolerance, rounding) * np.abs(other[key]).max(initial=0))
+        summaries = [self.summary(folder) for folder in (planar, spatial)]
+        self.assertEqual(*(set(s) for s in summaries))
+        self.assertEqual(*(set(s["energy"]) for s in summaries))
+        self.assertTrue(summaries[0]["model"].startswith("planar, co-rotational, "))
+        self.assertTrue(summaries[1]["model"].startswith("spatial, co-rotational, "))
+        self.assertEqual((planar / "fields.xmf").read_text(), (spatial / "fields.xmf").read_text())
+        return summaries
+
+    def test_statics(self):
+        for ranks in (1, 2):
+            planar, spatial = self.compare(TENSION, 1e-9, "-time_dt", "0.25", ranks=ranks)
+            self.assertAlmostEqual(planar["E"] / spatial["E"], 1, delta=1e-12)
+            self.assertEqual(planar["stable"], spatial["stable"])
+
+    def test_dynamics(self):
+        for ranks in (1, 2):
+            planar, spatial = self.compare(self.MOVING, 1e-9, ranks=ranks)
+            self.assertEqual(planar["steps"], spatial["steps"])
+
+    def test_by_itself(self):
+        """And one line says so at the start."""
+        run = self.start(TENSION)
+        self.assertEqual(run.stdout.splitlines()[0], "model: planar, co-rotational, no water, unbreakable, no contact")
+        run = self.start(TENSION, "-model_planar", "false")
+        self.assertEqual(run.stdout.splitlines()[0],
+                         "model: spatial, co-rotational, no water, unbreakable, no contact (model: planar: false)")
+        run = self.start(BENDING)
+        self.assertEqual(run.stdout.splitlines()[0],
+                         "model: spatial, co-rotational, unbreakable, no contact (forces: buoyancy acts along z)")
+
+
 class Repeats(OutputTest):
     def test_lattice_file_gives_the_same_result(self):
         first = self.run_scene(TENSION, name="sheet")

@@ -42,6 +42,9 @@ time: {end: 10}
 output: {history: 0.041, fields: 0.37}
 checkpoint: {every: 1000}
 """
+# The same sheet, pulled in still water and pushed sideways: what moves it stays in its plane.
+PLANAR = (SCENE.replace("forces: [beam, gravity, buoyancy, drag]", "forces: [beam, drag]\nmodel: {planar: true}")
+          .replace("force: [0, 0, -1e5], moment: [0, 1e4, 0]", "force: [1e4, 1e5, 0], moment: [0, 0, 1e4]"))
 INTERRUPTED = 3
 TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s", "output_s",
          "peak_memory_mb", "ns_per_beam_step"}
@@ -181,6 +184,14 @@ class Stopped(RestartTest):
                 np.testing.assert_allclose(two, one, rtol=1e-9, atol=1e-9 * max(scale, 1), err_msg=name)
 
 
+class StoppedInThePlane(Stopped):
+    """All of the above with three unknowns per body."""
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "scene.yaml").write_text(PLANAR)
+
+
 class GoingOn(RestartTest):
     def test_end_may_be_later(self):
         folder = self.run_whole("-time_end", "1", dir="b")
@@ -239,6 +250,16 @@ class Refused(RestartTest):
     def test_other_forces(self):
         said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,drag", "-time_end", "2")
         self.assertIn("checkpoint: restart", said)
+
+    def test_another_space(self):
+        (self.folder / "scene.yaml").write_text(PLANAR)
+        self.run_whole("-time_end", "1", dir="p")
+        said = self.refused("-checkpoint_restart", "p/checkpoint.h5", "-model_planar", "false", dir="p")
+        self.assertIn("is of a planar model, this run's is spatial", said)
+        (self.folder / "scene.yaml").write_text(PLANAR.replace("planar: true", "planar: false"))
+        self.run_whole("-time_end", "1", dir="s")
+        said = self.refused("-checkpoint_restart", "s/checkpoint.h5", "-model_planar", "auto", dir="s")
+        self.assertIn("is of a spatial model, this run's is planar", said)
 
     def test_an_end_before_it(self):
         said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-time_end", "0.5")

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ StaticSolutionIn<Space> solve_static(const Scene& scene, const Lattice& lattice,
   } else {
     hold_free_motions(scene, lattice, *s.model);
   }
-  OutOfPlane rest;
+  std::optional<OutOfPlane> rest;
   if constexpr (std::is_same_v<Space, Planar>)
     rest = out_of_plane(scene, lattice, s.loads, s.model->part());
   s.result = run_quasistatic(
@@ -63,7 +64,7 @@ StaticSolutionIn<Space> solve_static(const Scene& scene, const Lattice& lattice,
         s.states.push_back(a.state);
         s.wrenches = a.wrenches;
       },
-      &rest);
+      rest ? &*rest : nullptr);
   EXPECT_TRUE(s.result.done) << s.result.message;
   return s;
 }

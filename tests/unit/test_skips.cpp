@@ -126,14 +126,19 @@ TEST(Skips, RungeKuttaNeedsSpace) {
 TEST(Skips, OneLineSaysThem) {
   const Lattice lattice = test::sheet(6, 5, 1);
   Scene scene = pulled(Integrator::leapfrog);
-  EXPECT_EQ(skips_of(scene, lattice).text, "planar, co-rotational, undamped, no water, no contact");
+  const auto text = [&] { return skips_of(scene, lattice).text; };
+  EXPECT_EQ(text(), "planar, co-rotational, undamped, no water, unbreakable, no contact");
   scene.beam.kinematics = Kinematics::linear;
   scene.beam.damping_ratio = 1;
-  EXPECT_EQ(skips_of(scene, lattice).text, "planar, linear, damped, no water, no contact");
+  EXPECT_EQ(text(), "planar, linear, damped, no water, unbreakable, no contact");
   scene.forces.gravity = scene.forces.buoyancy = true;
-  EXPECT_EQ(skips_of(scene, lattice).text, "spatial, linear, damped, no contact");
+  EXPECT_EQ(text(), "spatial, linear, damped, unbreakable, no contact");
+  scene.forces.fracture = scene.forces.contact = true;
+  EXPECT_EQ(text(), "spatial, linear, damped, breakable");
+  scene.forces.beam = scene.forces.fracture = false;
+  EXPECT_EQ(text(), "spatial");
   scene = pulled();
-  EXPECT_EQ(skips_of(scene, lattice).text, "planar, co-rotational, no water, no contact");
+  EXPECT_EQ(text(), "planar, co-rotational, no water, unbreakable, no contact");
 }
 
 /// Beams of long sheets are flat too, whatever the rounding of their axes.

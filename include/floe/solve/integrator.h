@@ -65,7 +65,7 @@ struct OutOfPlane {
 /// Equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the exact
 /// tangent, the step halved when Newton fails. All of PETSc's -snes_*, -ksp_*, -pc_*, -mat_*
 /// options apply; the default is Newton with preonly + Cholesky by MUMPS on blocked symmetric
-/// storage. Collective. \param rest  of a planar model: its unstable modes count too
+/// storage. Collective. \param rest  of a planar model: its unstable modes count too; else null
 template <class Space>
 RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
                           const ObserverOf<Space>& observer, const OutOfPlane* rest = nullptr);
