@@ -80,6 +80,7 @@ int run(const floe::Scene& scene, Start& start) {
   release_setup(scene, model);
   folded.fold_shapes(lattice);
   folded.fold_beams(lattice);
+  folded.fold_bodies(lattice, model.part().bodies);  // on one rank
 
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.

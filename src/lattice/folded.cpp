@@ -30,7 +30,18 @@ void Folded::fold_beams(Lattice& lattice) {
   }
 }
 
+void Folded::fold_bodies(Lattice& lattice, const Bodies& copy) {
+  const Bodies& b = lattice.bodies;
+  const bool same = b.position == copy.position && b.orientation == copy.orientation &&
+                    b.mass == copy.mass && b.inertia == copy.inertia &&
+                    b.velocity == copy.velocity && b.angular_velocity == copy.angular_velocity;
+  if (!same) return;
+  bodies_ = &copy;
+  lattice.bodies = {};
+}
+
 void Folded::unfold(Lattice& lattice) {
+  if (bodies_ != nullptr) lattice.bodies = *bodies_;
   if (prisms_) lattice.shapes = polyhedra(*prisms_);
   const auto all = columns(lattice.beams);
   for (std::size_t k = 0; k < all.size(); ++k) {

@@ -13,12 +13,16 @@ TEST(Folded, SheetsComeBackAsTheyWere) {
   Folded folded;
   folded.fold_shapes(lattice);
   folded.fold_beams(lattice);
+  folded.fold_bodies(lattice, before.bodies);
   EXPECT_TRUE(lattice.shapes.empty());
+  EXPECT_EQ(lattice.bodies.size(), 0);
   EXPECT_TRUE(lattice.beams.young.empty());
   EXPECT_FALSE(lattice.beams.area.empty());
   folded.unfold(lattice);
   EXPECT_EQ(lattice.shapes.vertices, before.shapes.vertices);
   EXPECT_EQ(lattice.shapes.corners, before.shapes.corners);
+  EXPECT_EQ(lattice.bodies.position, before.bodies.position);
+  EXPECT_EQ(lattice.bodies.inertia, before.bodies.inertia);
   EXPECT_EQ(lattice.beams.young, before.beams.young);
   EXPECT_EQ(lattice.beams.shear_modulus, before.beams.shear_modulus);
   EXPECT_EQ(lattice.beams.shear_factor, before.beams.shear_factor);
@@ -27,10 +31,14 @@ TEST(Folded, SheetsComeBackAsTheyWere) {
 
 TEST(Folded, WhatDiffersFromBeamToBeamStays) {
   Lattice lattice = test::sheet(8, 6, 1);
-  lattice.beams.young.back() *= 1 + 1e-15;
+  lattice.beams.young.back() *= 1 + 1e-12;
+  Bodies others = lattice.bodies;
+  others.mass.back() *= 1 + 1e-12;
   const std::vector<double> young = lattice.beams.young;
   Folded folded;
   folded.fold_beams(lattice);
+  folded.fold_bodies(lattice, others);
+  EXPECT_GT(lattice.bodies.size(), 0);
   EXPECT_EQ(lattice.beams.young, young);
   folded.unfold(lattice);
   EXPECT_EQ(lattice.beams.young, young);
