@@ -222,6 +222,22 @@ output: {history: 0.01, fields: 0.02}
                          "model: spatial, co-rotational, unbreakable, no contact (forces: buoyancy acts along z)")
 
 
+class Available(OutputTest):
+    """What is named and never happens changes nothing: an intact sheet with contact or fracture is one without."""
+
+    def test_intact_sheets(self):
+        frames = {}
+        for name, forces, *words in (("plain", "beam,drag"), ("touch", "beam,drag,contact", "-contact_young", "1e9"),
+                                     ("break", "beam,drag,fracture", "-fracture_tensile_strength", "1e12",
+                                      "-fracture_shear_strength", "1e12", "-fracture_energy", "15")):
+            folder = self.run_scene(InThePlane.MOVING, "-model_planar", "false", "-forces", forces, *words, name=name)
+            frames[name] = self.frames(folder)[-1][1]
+        for name in ("touch", "break"):
+            for key in ("bodies_displacement", "bodies_rotation", "beams_force", "beams_moment"):
+                plain = frames["plain"][key]
+                np.testing.assert_allclose(frames[name][key], plain, rtol=0, atol=1e-11 * np.abs(plain).max(), err_msg=name + " " + key)
+
+
 class Repeats(OutputTest):
     def test_lattice_file_gives_the_same_result(self):
         first = self.run_scene(TENSION, name="sheet")

@@ -83,6 +83,24 @@ TEST(PlanarForces, BeamsInLanes) {
   }
 }
 
+/// What tells that the stable step may have fallen: shears of one_point are alike in and out of the
+/// plane, so both models have the same.
+TEST(PlanarForces, FastestRateOfBeams) {
+  const Part part = partition(test::sheet(9, 7, 1), PETSC_COMM_SELF);
+  const BeamOptions options{Shear::one_point, Kinematics::corotational, 0};
+  const auto planar = make_beam_force<Planar>(part, options);
+  const auto spatial = make_beam_force<Spatial>(part, options);
+  const State<Planar> rest(static_cast<std::size_t>(part.local));
+  const State<Planar> state = deformed_in_plane(part, 0.5, 0.1, 2.0);
+  const auto rate = planar->fastest_rate(state);
+  ASSERT_TRUE(rate.has_value());
+  EXPECT_NEAR(*rate / spatial->fastest_rate(in_space(state, false)).value(), 1, 1e-12);
+  EXPECT_GT(*rate, 1.05 * planar->fastest_rate(rest).value());
+  EXPECT_FALSE(make_beam_force<Planar>(part, {Shear::one_point, Kinematics::linear, 0})
+                   ->fastest_rate(state)
+                   .has_value());
+}
+
 /// The planar tangent is the in-plane part of the spatial one, in every storage.
 TEST(PlanarForces, Tangents) {
   const Lattice lattice = test::sheet(4, 3, 1);
