@@ -129,7 +129,7 @@ void Equilibrium::rebase(Vec x) {
 void Equilibrium::fill_residual(Vec f) {
   const Timed timed(Event::forces);
   const double scale = 1.0 / model_.length_scale();
-  external2_ = model_.evaluate_apart(state_, wrenches_, share_);
+  external2_ = model_.evaluate_apart(state_, wrenches_, share_).apart;
   const auto owned = static_cast<std::size_t>(part_.owned) * n;
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(f, &values));
