@@ -42,7 +42,7 @@ class Case:
 
     make(folder, mesh): writes lattice files, returns the scene's text; measure(output): the compared numbers, an
     array; settled: whether a static solution answers the same question; analytic(mesh): the exact answer, None if
-    there is none; number(output): the number that it is compared with.
+    there is none; number(output): the number that it is compared with; moving: options of all runs but static ones.
     """
     name: str
     title: str
@@ -52,6 +52,7 @@ class Case:
     settled: bool
     end: float
     methods: list = field(default_factory=list)
+    moving: tuple = ()
     analytic: object = None
     number: object = None
 
@@ -70,6 +71,8 @@ class Runner:
 
     def run(self, case, mesh, options, check=False):
         """{cpu, steps, newton, measure, number, message}; the measure is None if the run failed."""
+        if "quasistatic" not in options:
+            options = (*case.moving, *options)
         key = f"{case.name} {mesh} {'check ' if check else ''}{' '.join(options)}"
         if key not in self.known:
             self.known[key] = {"key": key, **self._run(case, mesh, options, check)}
@@ -82,10 +85,13 @@ class Runner:
             scene = Path(work, "scene.yaml")
             scene.write_text(case.make(self.folder, mesh))
             command = [str(self.floe), str(scene), "-output_dir", f"{work}/out", *options, *(["-check"] if check else [])]
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
-            done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
-            after = resource.getrusage(resource.RUSAGE_CHILDREN)
-            cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+            spent = []
+            while not spent or (len(spent) < 3 and sum(spent) < 1.5):  # short runs thrice: the least counts
+                before = resource.getrusage(resource.RUSAGE_CHILDREN)
+                done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
+                after = resource.getrusage(resource.RUSAGE_CHILDREN)
+                spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+            cpu = min(spent)
             result = {"cpu": cpu, "steps": 0, "newton": 0, "measure": None, "number": None, "message": ""}
             if done.returncode != 0:
                 lines = [line for line in done.stderr.splitlines() if line.startswith("floe:")]
@@ -138,6 +144,7 @@ def stepped(damped, end, counts):
     return methods
 
 
+DASHPOTS = ("-beam_damping_ratio", "1", "-beam_damping_modes", "all")
 STATIC = [Method("quasi-static", ("-integrator", "quasistatic"), "default", True),
           Method("quasi-static, linear", ("-integrator", "quasistatic", "-beam_kinematics", "linear"), "default")]
 
@@ -153,40 +160,37 @@ def tension():
     def make(folder, mesh):
         return f"""integrator: explicit
 forces: [beam]
-sheet: {{length: 10, width: 10, thickness: 0.5, element_size: {mesh}, seed: 1, relaxation: lloyd, iterations: 150}}
+sheet: {{length: 20, width: 20, thickness: 0.5, element_size: {mesh}, seed: 1, relaxation: lloyd, iterations: 150}}
 ice: {{young: 4e9, poisson: 0.3, density: 920}}
-beam: {{damping_ratio: 1, damping_modes: all}}
 boundary:
   names: [left, right]
   left: {{set: left, fix: x}}
-  right: {{set: right, fix: x, displacement: [0.01, 0, 0], ramp: 0.2}}
+  right: {{set: right, fix: x, displacement: [0.02, 0, 0], ramp: 0.2}}
 time: {{end: 0.4}}
 report: [tension]
 """
-    return Case("tension", "tension, settled: E", make, lambda o: [o.summary["E"]], (1.5, 1, 0.5), True, 0.4,
-                STATIC + stepped(True, 0.4, (4, 8, 16, 32)), lambda mesh: 1.0,
+    return Case("tension", "tension, settled: E", make, lambda o: [o.summary["E"]], (2, 1), True, 0.4,
+                STATIC + stepped(True, 0.4, (4, 8, 16, 32)), DASHPOTS, lambda mesh: 1.0,
                 lambda o: o.summary["E_over_Estar"])
 
 
 def bending():
     def make(folder, mesh):
         return f"""integrator: explicit
-forces: [beam, gravity, buoyancy, drag]
+forces: [beam, gravity, buoyancy]
 sheet: {{length: 40, width: 40, thickness: 0.5, element_size: {mesh}, seed: 1, relaxation: lloyd, iterations: 150}}
 ice: {{young: 4e9, poisson: 0.3, density: 920}}
-beam: {{damping_ratio: 1, damping_modes: all}}
 gravity: 9.81
-water: {{density: 1010, drag_linear: 4270}}
+water: {{density: 1010}}
 load:
   names: [centre]
   centre: {{point: [0, 0], force: [0, 0, -1e4], ramp: 1}}
 time: {{end: 4}}
 report: [bending]
 """
-    # Drag is no force of a static solution.
-    static = [Method(m.name, (*m.options, "-forces", "beam,gravity,buoyancy"), m.label, m.default) for m in STATIC]
+    drag = ("-forces", "beam,gravity,buoyancy,drag", "-water_drag_linear", "4270")
     return Case("bending", "bending on water, settled: deflection", make, lambda o: [o.summary["deflection_max"]],
-                (2, 1.5), True, 4, static + stepped(True, 4, (8, 16, 32, 64)), lambda mesh: 1.0,
+                (4, 2), True, 4, STATIC + stepped(True, 4, (8, 16, 32, 64)), DASHPOTS + drag, lambda mesh: 1.0,
                 lambda o: o.summary["deflection_over_wyman"])
 
 
@@ -226,7 +230,7 @@ output: {{fields: {end}}}
         return total
 
     return Case("strip", "vibrating strip: displacements", make, displacements, (16, 32), False, end,
-                stepped(False, end, (100, 400, 1600, 6400)), analytic, tip_height)
+                stepped(False, end, (50, 200, 800, 3200)), (), analytic, tip_height)
 
 
 def displacements(output):
@@ -273,9 +277,9 @@ output: {{fields: {end}}}
         weight[[0, -1]] = 0.5
         return end * np.average(flight[1] + spin * s * length / 2 + bend * (s**2 - 1 / 3), weights=weight)
 
-    methods = [m for m in stepped(False, end, (200, 800, 3200, 12800)) if "linear" not in m.name]
+    methods = [m for m in stepped(False, end, (100, 400, 1600, 6400)) if "linear" not in m.name]
     return Case("rotation", "large rotation: displacements", make, displacements, (16, 32), False, end, methods,
-                straight, centre)
+                (), straight, centre)
 
 
 def cases():
@@ -284,16 +288,14 @@ def cases():
 
 # -- the whole benchmark ----------------------------------------------------------------------------
 def measure_case(case, runner, say=print):
-    """Rows of one case: every method on the finest mesh, defaults on all of them.
+    """Rows of one case: every method on the finest mesh, the converged solution on all of them.
 
     Returns {rows: [...], lattice: [(mesh, lattice error)], iteration: ...}; a row is {name, label, default, cpu, steps,
     newton, error, message}.
     """
-    main = case.meshes[-2] if len(case.meshes) > 2 else case.meshes[-1]
+    main = case.meshes[-1]
     base = runner.run(case, main, (), check=True)["cpu"]
     options = reference_options(case)
-    if case.name == "bending":
-        options = (*options, "-forces", "beam,gravity,buoyancy")
     reference = runner.run(case, main, options)
     if reference["measure"] is None:
         raise RuntimeError(f"{case.name}: no reference: {reference['message']}")
@@ -301,7 +303,7 @@ def measure_case(case, runner, say=print):
     for method in case.methods:
         run = runner.run(case, main, method.options)
         rows.append({"name": method.name, "label": method.label, "default": method.default, "steps": run["steps"],
-                     "newton": run["newton"], "cpu": max(run["cpu"] - base, 1e-3), "error": error(run, reference),
+                     "newton": run["newton"], "cpu": max(run["cpu"] - base, 5e-3), "error": error(run, reference),
                      "message": run["message"]})
         say(f"{case.name}: {method.key()}: {rows[-1]['cpu']:.2f} s, error {rows[-1]['error']}")
     loose = runner.run(case, main, implicit())

@@ -145,7 +145,7 @@ void ImplicitRun<Space>::set_up_newton() {
   SNES snes = nullptr;
   check(TSGetSNES(ts_, &snes));
   set_newton_defaults(snes);
-  check(SNESSetTolerances(snes, 0.0, 1e-6, 0.0, 25, PETSC_DEFAULT));
+  check(SNESSetTolerances(snes, 0.0, 1e-5, 0.0, 25, PETSC_DEFAULT));
   check(SNESSetConvergenceTest(snes, converged, this, nullptr));
   PetscBool lag_given = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, "-snes_lag_jacobian", &lag_given));
