@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <string>
 
@@ -67,6 +68,11 @@ void fail(int ierr, const std::source_location& where) {
 
 Mpi::Mpi(int& argc, char**& argv) {
   std::set_terminate(report_and_abort);
+  // MUMPS asks MPI for messages all the time. One process has nobody to give way to; told to yield
+  // (tools/env), it would hand each of its time slices to whatever else the machine runs.
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (size == nullptr || std::strcmp(size, "1") == 0)
+    setenv("OMPI_MCA_mpi_yield_when_idle", "0", 1);
   MPI_Init(&argc, &argv);
 }
 

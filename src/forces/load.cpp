@@ -104,6 +104,7 @@ class DeadLoad final : public Force<Space> {
     return sum;
   }
   void take_work(double work) override { work_ += work; }
+  double settles() const override { return load_.ramp.seconds; }
 
   void remember(Memory& checkpoint) override {
     checkpoint.share("work", work_);

@@ -113,7 +113,7 @@ void Equilibrium<Space>::rebase(Vec x) {
 template <class Space>
 void Equilibrium<Space>::fill_residual(Vec f) {
   const Timed timed(Event::forces);
-  external2_ = model_.evaluate_apart(state_, wrenches_, share_);
+  external2_ = model_.evaluate_apart(state_, wrenches_, share_).apart;
   const auto owned = static_cast<std::size_t>(part_.owned) * n;
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(f, &values));

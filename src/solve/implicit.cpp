@@ -12,6 +12,7 @@
 #include "solve/motion_equations.h"
 #include "solve/newton.h"
 #include "solve/numbers.h"
+#include "solve/step_plan.h"
 #include "solve/text.h"
 #include "solve/ts_options.h"
 
@@ -28,9 +29,12 @@ class ImplicitRun final : public DynamicRun<Space> {
  public:
   ImplicitRun(Model<Space>& the_model, const DynamicOptions& given, const Observer<Space>& observer)
       : Base("implicit", ts_liealpha, the_model, given, observer),
-        equations_(the_model, this->state()) {
-    for (Handle<Vec>* v : {&x_, &v_, &x_before_, &v_before_}) *v = equations_.make_vector();
+        equations_(the_model, this->state()),
+        plan_(Base::options(), the_model.ramp_ends()) {
+    for (Handle<Vec>* v : {&x_, &v_, &x_before_, &v_before_, &expected_})
+      *v = equations_.make_vector();
     equations_.begin(x_, v_);
+    problem_.expected = expected_;
     problem_.start = [this](double t, Vec x, Vec v, Vec a) { equations_.acceleration(t, x, v, a); };
     if (!equations_.held().empty())
       problem_.prescribe = [this](double t, const LieAlphaStage& s) { equations_.prescribe(t, s); };
@@ -42,7 +46,8 @@ class ImplicitRun final : public DynamicRun<Space> {
 
   RunResult run() {
     check(TSSetUp(ts_));
-    if (!this->restart()) choose_step();
+    const double first = plan_.begin(fixed_, options().dt);
+    if (!this->restart()) this->plan(first);
     land();
     return this->solve(ts_);
   }
@@ -51,12 +56,10 @@ class ImplicitRun final : public DynamicRun<Space> {
   void set_up_ts();
   void set_up_newton();
   void read_types();
-  void choose_step();
+  void expect_motion();
   bool first() override;
   bool stepped();
   void keep_books(double h);
-  void plan_next_step(double h);
-  double next_due() const;
   void land();
   std::string failure(TSConvergedReason reason) const;
 
@@ -102,16 +105,13 @@ class ImplicitRun final : public DynamicRun<Space> {
            contraction_ <= a_digit;
   }
 
-  static constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, as in statics
-
   Equations equations_;
   LieAlphaProblem problem_;
-  Handle<Vec> x_, v_, x_before_, v_before_;
+  StepPlan plan_;
+  Handle<Vec> x_, v_, x_before_, v_before_, expected_;
   Handle<TS> ts_;
   bool adaptive_ = true;  // whether we decide on factorisations (not if the user set a lag)
   bool fixed_ = false;    // whether the step is given
-  double given_ = 0;      // that step, or an adaptive run's first [s]
-  double planned_ = 0;    // the next step, if no sample is due before [s]
   double last_norm_ = 0, contraction_ = 0;  // of the residual, over the last iteration
   typename Equations::Forces forces_, forces_before_;
   double kinetic_ = 0, boundary_work_ = 0, numerical_loss_ = 0;  // this rank's [J]
@@ -131,8 +131,9 @@ void ImplicitRun<Space>::set_up_ts() {
   check(TSSetPostStep(ts_, post_step));
   check(TSSetFunctionDomainError(ts_, in_domain));
   check(TSSetMaxSNESFailures(ts_, -1));  // the step is cut; -ts_max_reject ends that
-  // Of a step's error, rms over all unknowns: relative to the motion so far, and in beam lengths.
-  check(TSSetTolerances(ts_, 1e-8 * model().length_scale(), nullptr, 1e-4, nullptr));
+  // Of a step's error, rms over all unknowns: relative to the motion (expected at the least, or so
+  // far), and in beam lengths.
+  check(TSSetTolerances(ts_, 1e-8 * model().length_scale(), nullptr, 1e-3, nullptr));
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts_, &adapt));
   check(TSAdaptSetType(adapt, options().dt > 0 ? TSADAPTNONE : TSADAPTBASIC));
@@ -144,7 +145,7 @@ void ImplicitRun<Space>::set_up_newton() {
   SNES snes = nullptr;
   check(TSGetSNES(ts_, &snes));
   set_newton_defaults(snes);
-  check(SNESSetTolerances(snes, 0.0, 1e-9, 0.0, 25, PETSC_DEFAULT));
+  check(SNESSetTolerances(snes, 0.0, 1e-5, 0.0, 25, PETSC_DEFAULT));
   check(SNESSetConvergenceTest(snes, converged, this, nullptr));
   PetscBool lag_given = PETSC_FALSE;
   check(PetscOptionsHasName(nullptr, nullptr, "-snes_lag_jacobian", &lag_given));
@@ -167,14 +168,28 @@ void ImplicitRun<Space>::read_types() {
   this->set_adaptive(true);  // a step can be cut in any case: time decides, not their number
 }
 
-/// A given step, made to divide the run; an adaptive run begins with a small one.
+/// While loads and boundaries come in slowly, an error relative to the motion so far would be
+/// relative to next to nothing, and steps tiny. So the motion of the ramps' whole time counts: what
+/// boundaries will have moved, and where one linear step with the loads' full forces leads to.
 template <class Space>
-void ImplicitRun<Space>::choose_step() {
-  constexpr double small = 1e-3;  // of the run
-  double wanted = options().dt > 0 ? options().dt : small * options().end;
-  if (fixed_) wanted = options().end / std::ceil(options().end / wanted * (1 - 1e-12));
-  given_ = planned_ = wanted;
-  this->plan(wanted);
+void ImplicitRun<Space>::expect_motion() {
+  const std::vector<double> ramps = model().ramp_ends();
+  if (ramps.empty()) return;
+  const double span = std::min(ramps.back(), options().end);
+  const Handle<Vec> zero = equations_.make_vector(), force = equations_.make_vector(),
+                    ignored = equations_.make_vector();
+  const double by_velocity = 2 / span, by_acceleration = 4 / (span * span);  // trapezoidal rule
+  equations_.residual(span, x_, zero, zero, force);
+  equations_.assemble(span, x_, zero, zero, by_velocity, by_acceleration);
+  SNES snes = nullptr;
+  KSP ksp = nullptr;
+  check(TSGetSNES(ts_, &snes));
+  check(SNESGetKSP(snes, &ksp));
+  check(KSPSetOperators(ksp, equations_.matrix(), equations_.matrix()));
+  check(KSPSolve(ksp, force, expected_));
+  check(VecScale(expected_, -1));
+  equations_.prescribe(span, {expected_, ignored, ignored, ignored});
+  equations_.take(0, x_, v_);
 }
 
 template <class Space>
@@ -183,7 +198,10 @@ bool ImplicitRun<Space>::first() {
   check(TSSetMaxTime(ts_, (1 - rounding) * options().end));
   check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));  // land() sees to it
   const LieAlphaMemory memory = liealpha_memory(ts_);
-  if (done() == 0) equations_.acceleration(state().time, x_, v_, memory.a);
+  if (done() == 0) {
+    if (!fixed_) expect_motion();
+    equations_.acceleration(state().time, x_, v_, memory.a);
+  }
   equations_.rebase(x_);
   this->evaluate();
   equations_.forces(v_, memory.a, wrenches(), forces_before_);
@@ -258,10 +276,12 @@ bool ImplicitRun<Space>::stepped() {
   if (!this->moved(now, equations_.largest_speed2())) return false;
   // The last state is the run's to sample.
   if (reason == TS_CONVERGED_ITERATING && !this->sample_if_due()) return false;
-  plan_next_step(h);
-  if (fixed_ && planned_ < smallest_fraction * given_) {
-    give_up("Newton wants ever smaller steps: " + text(planned_) + " s at time " + text(now) +
-            " s, where " + text(given_) + " s was given");
+  double allowed = 0;
+  check(TSGetTimeStep(ts_, &allowed));
+  plan_.made(h, allowed);
+  if (plan_.is_hopeless()) {
+    give_up("Newton wants ever smaller steps: " + text(plan_.planned()) + " s at time " +
+            text(now) + " s, where " + text(plan_.given()) + " s was given");
     return false;
   }
   land();
@@ -282,45 +302,9 @@ std::string ImplicitRun<Space>::failure(TSConvergedReason) const {
          " (limits: -ts_max_reject, -ts_rtol, -ts_atol, -snes_max_it)";
 }
 
-/// The step that the next one would be if nothing was due. \param h  the step just made
-template <class Space>
-void ImplicitRun<Space>::plan_next_step(double h) {
-  constexpr double rounding = 1e-6;
-  const bool cut = h < (1 - rounding) * dt();                    // by a failure or an error
-  const bool shortened = !cut && h < (1 - rounding) * planned_;  // for a sample
-  if (fixed_) {
-    if (!shortened) planned_ = std::min(given_, cut ? h : 2 * planned_);
-    return;
-  }
-  double next = 0;
-  check(TSGetTimeStep(ts_, &next));
-  planned_ = shortened ? std::max(next, planned_) : next;
-}
-
-/// When samples were asked for at times of their own, steps end there; and at the end.
-template <class Space>
-double ImplicitRun<Space>::next_due() const {
-  double due = options().end;
-  constexpr double nearly = 1e-9;
-  for (const double every : {options().history, options().fields}) {
-    if (every > 0) due = std::min(due, every * (std::floor(state().time / every + nearly) + 1));
-  }
-  return due;
-}
-
-/// Makes the next step the planned one, or shorter so that a step ends where one must.
 template <class Space>
 void ImplicitRun<Space>::land() {
-  constexpr double rounding = 1e-6;
-  const double left = next_due() - state().time;
-  double next = planned_;
-  if (left > 0) {
-    if (next > (1 - rounding) * left) {
-      next = left;
-    } else if (2 * next > (1 + rounding) * left) {
-      next = 0.5 * left;
-    }
-  }
+  const double next = plan_.next(state().time);
   set_dt(next);
   check(TSSetTimeStep(ts_, next));
 }
@@ -358,8 +342,7 @@ PetscErrorCode ImplicitRun<Space>::in_domain(TS ts, PetscReal, Vec, PetscBool* g
 
 template <class Space>
 void ImplicitRun<Space>::remember_own(Memory& memory) {
-  memory.common("given_step", given_);
-  memory.common("planned_step", planned_);
+  plan_.remember(memory);
   std::int64_t newton = result().newton_iterations;
   memory.common("newton_iterations", newton);
   memory.share("boundary_work", boundary_work_);
@@ -373,6 +356,7 @@ void ImplicitRun<Space>::remember_own(Memory& memory) {
   remember(memory, part, "v", v_, Equations::n);
   remember(memory, part, "a", own.a, Equations::n);
   remember(memory, part, "own_a", own.own, Equations::n);
+  remember(memory, part, "expected", expected_, Equations::n);
   equations_.remember(memory);
   if (!memory.loading()) return;
   newton_before_ = result().newton_iterations = newton;

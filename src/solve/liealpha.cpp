@@ -13,7 +13,7 @@ namespace floe {
 namespace {
 
 constexpr double default_radius = 0.8;
-constexpr double default_hold = 1.5;
+constexpr double default_hold = 2;
 
 struct Parameters {
   double alpha_m, alpha_f, gamma, beta;
@@ -174,17 +174,18 @@ PetscErrorCode step(TS ts) noexcept {
 PetscErrorCode local_error(TS ts, NormType norm, PetscInt* order, PetscReal* weighted) noexcept {
   LieAlpha& me = of(ts);
   const auto [alpha_m, alpha_f, gamma, beta] = parameters_of(me.radius);
-  PetscReal error = 0, before = 0, after = 0;
+  PetscReal error = 0, before = 0, after = 0, expected = 0;
   PetscInt size = 1;
   PetscFunctionBegin;
   PetscCall(VecWAXPY(me.error, -1.0, me.start, me.own1));
   PetscCall(VecNorm(me.error, norm, &error));
   PetscCall(VecNorm(me.x0, norm, &before));
   PetscCall(VecNorm(me.x1, norm, &after));
+  if (me.problem->expected != nullptr) PetscCall(VecNorm(me.problem->expected, norm, &expected));
   PetscCall(VecGetSize(me.x1, &size));
   const double mean = norm == NORM_2 ? 1 / std::sqrt(static_cast<double>(size)) : 1.0;
   error *= (beta + 0.5 * (alpha_m - alpha_f) - 1.0 / 6) * me.h * me.h * mean;
-  *weighted = error / (ts->atol + ts->rtol * mean * std::max(before, after));
+  *weighted = error / (ts->atol + ts->rtol * mean * std::max({before, after, expected}));
   *order = 3;
   PetscFunctionReturn(0);
 }

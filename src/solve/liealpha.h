@@ -48,6 +48,8 @@ struct LieAlphaProblem {
   /// Gives prescribed components their values at t, 0 in `own`. F and its derivative leave them
   /// out. May be empty.
   std::function<void(double t, const LieAlphaStage& stage)> prescribe;
+  /// A motion to which errors are relative as long as there has been less; may be null.
+  Vec expected = nullptr;
 };
 
 /// \param problem  must outlive the TS

@@ -105,25 +105,40 @@ void Model<Space>::evaluate(const State<Space>& state, Wrenches<Space>& wrenches
 }
 
 template <class Space>
-double Model<Space>::evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
-                                    Wrenches<Space>& share) const {
+auto Model<Space>::evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
+                                  Wrenches<Space>& share) const -> Squares {
   std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
-  double squares = 0;
-  const double scale = 1.0 / length_scale_;
-  for (const auto& force : forces_) {
-    if (force.get() == beams_) {
-      force->add(state, wrenches);
-      continue;
+  const auto square_of = [&](const Wrenches<Space>& all) {
+    double sum = 0;
+    const double scale = 1.0 / length_scale_;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+      const double value = all.at(k) * (k % n < Space::translations ? 1.0 : scale);
+      sum += value * value;
     }
+    return sum;
+  };
+  Squares squares;
+  for (const auto& force : forces_) {
+    if (force.get() == beams_) continue;
     std::fill(share.values.begin(), share.values.end(), 0.0);
     force->add(state, share);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
-      const double value = share.at(k) * (k % n < Space::translations ? 1.0 : scale);
-      squares += value * value;
-      wrenches.at(k) += share.at(k);
-    }
+    squares.apart += square_of(share);
+    for (std::size_t k = 0; k < wrenches.values.size(); ++k) wrenches.values[k] += share.values[k];
   }
+  squares.together = square_of(wrenches);
+  if (beams_ != nullptr) beams_->add(state, wrenches);
   return squares;
+}
+
+template <class Space>
+std::vector<double> Model<Space>::ramp_ends() const {
+  std::vector<double> ends;
+  for (const PlacedBoundary& placed : boundaries_) ends.push_back(placed.boundary.ramp.seconds);
+  for (const auto& force : forces_) ends.push_back(force->settles());
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  if (!ends.empty() && ends.front() == 0) ends.erase(ends.begin());
+  return ends;
 }
 
 template <class Space>

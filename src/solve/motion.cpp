@@ -55,13 +55,15 @@ BodyConstants<double> Motion::constants(std::int32_t body) const {
 Motion::Motion(const Model<Spatial>& model) : model_(model), part_(model.part()) {
   const auto owned = static_cast<std::size_t>(part_.owned);
   blocks_.resize((owned + lanes - 1) / lanes, Block{});
-  for (std::size_t b = 0; b < owned; ++b) {
+  for (std::size_t slot = 0; slot < blocks_.size() * lanes; ++slot) {
+    const std::size_t b = std::min(slot, owned - 1);  // lanes without a body compute the last one
     const Point3& inertia = part_.bodies.inertia[b];
     const auto [w, x, y, z] = part_.bodies.orientation[b];
     const std::array<double, 8> all{
         1 / model.inertial_mass()[b], 1 / inertia[0], 1 / inertia[1], 1 / inertia[2], w, x, y, z};
-    for (std::size_t k = 0; k < all.size(); ++k) blocks_[b / lanes].values[k][b % lanes] = all[k];
-    if (model.prescribed()[b] == 0) continue;
+    for (std::size_t k = 0; k < all.size(); ++k)
+      blocks_[slot / lanes].values[k][slot % lanes] = all[k];
+    if (slot >= owned || model.prescribed()[b] == 0) continue;
     if (rows_.empty()) rows_.assign(static_cast<std::size_t>(part_.local), -1);
     rows_[b] = static_cast<std::int32_t>(held_.size());
     held_.push_back(static_cast<std::int32_t>(b));

@@ -137,8 +137,9 @@ template <class Space>
 void MotionEquations<Space>::residual(double time, Vec x, Vec v, Vec a, Vec f) {
   const Timed timed(Event::forces);
   take(time, x, v);
-  sizes2_ = model_.evaluate_apart(state_, wrenches_, share_);
-  rounding2_ = sizes2_;
+  const typename Model<Space>::Squares external = model_.evaluate_apart(state_, wrenches_, share_);
+  sizes2_ = external.together;
+  rounding2_ = external.apart;
   const ReadNumbers places(x), rates(v), accelerations(a);
   const Numbers to(f);
   std::array<double, unknowns> inertia{};

@@ -51,7 +51,8 @@ class MotionEquations {
   void remember(Memory& memory);
 
   /// What the residual must fall below: `relative` times the size of the forces in the last
-  /// residual (external ones, reactions, inertia), never below the rounding in it. Collective. [N]
+  /// residual (external ones together, so that a sheet's weight on water has no say; reactions,
+  /// inertia), never below the rounding in it. Collective. [N]
   double tolerance(double relative, double absolute) const;
 
   /// What a step's books need at the state, whose V and A these are, n per owned body, moments in

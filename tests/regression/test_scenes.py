@@ -196,6 +196,21 @@ def check_bending_explicit(test, run):
     test.assertAlmostEqual(output.summary["deflection_over_wyman"] / 1.0561, 1, delta=0.01)
 
 
+def check_tension_implicit(test, run):
+    output = run()
+    test.assertAlmostEqual(output.summary["E_over_Eb"] / 0.8337, 1, delta=0.002)
+    test.assertLess(output.summary["steps"], 150)
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 1e-3 * energy["boundary"])
+
+
+def check_bending_implicit(test, run):
+    for options, steps in (((), 16), (("-ts_adapt_type", "basic"), 80)):
+        output = run(*options)
+        test.assertAlmostEqual(output.summary["deflection_over_wyman"] / 1.0561, 1, delta=0.001)
+        test.assertLessEqual(output.summary["steps"], steps)
+
+
 def check_explicit_bench(test, run):
     energy = run().summary["energy"]
     test.assertLess(abs(energy["balance_error"]), 1e-6 * energy["boundary"])
@@ -461,6 +476,8 @@ EXPECTED = {
     "bending_calibrated.yaml": check_bending_calibrated,
     "tension_explicit.yaml": check_tension_explicit,
     "bending_explicit.yaml": check_bending_explicit,
+    "tension_implicit.yaml": check_tension_implicit,
+    "bending_implicit.yaml": check_bending_implicit,
     "verify/free_top.yaml": check_free_top,
     "verify/rk_top.yaml": check_rk_top,
     "verify/rk_drag.yaml": check_rk_drag,

@@ -64,6 +64,9 @@ class Force {
   /// Whether wrenches depend on what commit() took over: then only integrators that evaluate once a
   /// step, and never take one back, can use the force.
   virtual bool has_history() const { return false; }
+  /// When what the force does by the clock alone has come to its end (a load's ramp) [s]; 0: at
+  /// once.
+  virtual double settles() const { return 0; }
   /// A cheap measure of the fastest rate at which the force alone moves or stops one of this rank's
   /// bodies [1/s], of forces for which that changes in a run (bodies come to the water, beams are
   /// pressed, drag grows with the speed). Where the sum over forces has grown, the stable step is

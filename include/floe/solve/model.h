@@ -91,10 +91,18 @@ class Model {
   /// All wrenches at a state whose ghosts are up to date.
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const;
 
-  /// The same, by way of `share`; returns the sum over this rank's bodies and over the forces but
-  /// beams of each one's wrenches squared, moments divided by the length scale [N^2].
-  double evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
-                        Wrenches<Space>& share) const;
+  /// Squares of the wrenches of all forces but beams on this rank's bodies, moments divided by the
+  /// length scale: summed over the forces, and of the forces' sum, in which weight and buoyancy
+  /// cancel [N^2].
+  struct Squares {
+    double apart = 0, together = 0;
+  };
+  /// The same as evaluate(), by way of `share`.
+  Squares evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
+                         Wrenches<Space>& share) const;
+
+  /// When ramps of boundaries and loads end, ascending, each once, without 0 [s].
+  std::vector<double> ramp_ends() const;
 
   /// Prescribed unknowns, n bits per local body; held() includes the pins.
   std::span<const std::uint8_t> prescribed() const { return prescribed_; }
