@@ -440,7 +440,20 @@ def check_notch(test, run):
     test.assertLess(abs(last_row(output)["right_force_x"]), 1)
 
 
+def check_ice_slope_strip(test, run):
+    output = run()
+    time, load, lift = (column(output, name) for name in ("time", "slope_force_x", "slope_force_z"))
+    before = time < breaks(output, "time")[0]
+    last = before & (time > 0.9 * time[before][-1])
+    test.assertAlmostEqual(load[last].mean() / 7544, 1, delta=0.1)
+    test.assertAlmostEqual(load[before][-5:].mean() / 7544, 1, delta=0.04)
+    test.assertAlmostEqual(-load[last].mean() / lift[last].mean(), 1.1 / 0.9, delta=0.01)
+    test.assertAlmostEqual(-breaks(output, "place")[0, 0], 9.26, delta=0.75)
+    test.assertLess(abs(last_row(output)["energy_balance_error"]), 0.01 * output.summary["energy"]["boundary"])
+
+
 EXPECTED = {
+    "verify/ice_slope.yaml": check_ice_slope_strip,
     "punch_through.yaml": check_punch_through,
     "floes_collide.yaml": check_floes_collide,
     "rubble_pile.yaml": check_rubble_pile,
