@@ -121,7 +121,8 @@ def main():
         view.ViewTime = time
         for display, velocity in moving:
             display.Position = [time * v for v in velocity]
-        pv.SaveScreenshot(file, view, ImageResolution=job["size"], OverrideColorPalette="")
+        pv.SaveScreenshot(file, view, ImageResolution=job["size"], OverrideColorPalette="",
+                          CompressionLevel="9")
 
 
 main()

@@ -19,6 +19,7 @@ StableStep ExplicitRun::look() {
   last_look_ = done();
   last_stable_ = stable.dt;
   last_rate_ = fastest_rate();
+  last_own_ = own_stiffness();
   return stable;
 }
 
@@ -49,6 +50,13 @@ double ExplicitRun::fastest_rate() {
   return std::accumulate(rates.begin(), rates.end(), 0.0);
 }
 
+/// Sum of the bounds that forces give themselves [1/s^2].
+double ExplicitRun::own_stiffness() {
+  double sum = 0;
+  for (const auto& force : model().forces()) sum += force->own_rates().stiffness;
+  return sum;
+}
+
 /// The least stable step that dt is taken with.
 double ExplicitRun::needed() const {
   return options().dt > 0 ? dt() : dt() / (0.5 * (1 + explicit_options_.safety));
@@ -56,6 +64,7 @@ double ExplicitRun::needed() const {
 
 bool ExplicitRun::look_is_due() {
   if (explicit_options_.allow_unstable || done() == 0) return false;
+  if (own_stiffness() > last_own_) return true;
   // A step costs about an evaluation, and the rates less than half of it.
   constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
   if (done() - last_look_ >= std::max(least, share * evaluations_)) return true;
@@ -90,6 +99,7 @@ void ExplicitRun::remember_own(Memory& memory) {
   memory.common("look_evaluations", evaluations_);
   memory.common("look_stable_dt", last_stable_);
   memory.common("look_rate", last_rate_);
+  memory.common("look_own_stiffness", last_own_);
 }
 
 }  // namespace floe

@@ -11,6 +11,7 @@
 #include "solve/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
+#include "support/lattices.h"
 #include "support/record.h"
 
 namespace floe {
@@ -176,6 +177,55 @@ TEST(ContactOfBrokenBeams, AddsNoEnergy) {
   // The overlap itself would store 0.5 k_v V^2/|S|.
   EXPECT_LT(most, 0.1 * 0.5 * young * 0.05 * 0.05);
   EXPECT_LT(worst, 1e-4 * kinetic);
+}
+
+/// A sheet that drifts against a wall steps as without contact until it is near, then as its
+/// contacts want it.
+TEST(ContactStep, IsShorterOnceAnObstacleIsNear) {
+  Lattice lattice = test::sheet(8, 6, 1);
+  reorder(lattice);
+  lattice.bodies.velocity.assign(lattice.bodies.position.size(), {0.3, 0, 0});
+  Scene scene = contact_scene(false);
+  scene.forces.beam = true;
+  scene.beam.damping_ratio = 0.02;
+  Scene plain = scene;
+  plain.forces.contact = false;
+  const auto with_wall = [&](double gap) {
+    Scene walled = scene;
+    walled.contact.young = 3e8;
+    walled.obstacles = {half_space({4 + gap, 0, 0}, {-1, 0, 0})};
+    walled.obstacles[0].name = "wall";
+    return walled;
+  };
+  const auto stable_of = [&](const Scene& s) {
+    test::Dynamics at_rest(s, lattice);
+    return stable_step(at_rest.model(), at_rest.state()).dt;
+  };
+  const double alone = stable_of(plain), near = stable_of(with_wall(1e-3));
+  EXPECT_DOUBLE_EQ(stable_of(with_wall(0.2)), alone);
+  EXPECT_LT(near, 0.9 * alone);
+
+  const Scene walled = with_wall(0.2);
+  Model<Spatial> model(lattice, PETSC_COMM_SELF, {});
+  add_forces(walled, {}, model);
+  add_contact(walled, lattice, model);
+  ExplicitOptions options;
+  options.end = 0.8, options.history = 0.002;
+  double most = 0, worst = 0, kinetic = 0;
+  const RunResult result = run_explicit(model, options, [&](const Accepted<Spatial>& a) {
+    for (const auto* list : {&a.columns, &a.forces}) {
+      for (const auto& [name, value] : *list) {
+        if (name == "contacts") most = std::max(most, value);
+        if (name == "energy_kinetic") kinetic = std::max(kinetic, value);
+        if (name == "energy_balance_error") worst = std::max(worst, std::abs(value));
+      }
+    }
+  });
+  EXPECT_TRUE(result.done) << result.message;
+  EXPECT_GT(most, 2);
+  EXPECT_NEAR(result.stable_dt / near, 1, 0.02);
+  EXPECT_LT(result.dt, result.stable_dt);
+  EXPECT_LT(worst, 1e-3 * kinetic);
 }
 
 }  // namespace
