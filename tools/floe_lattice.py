@@ -284,6 +284,26 @@ def blocks(sizes, positions, density=920.0):
                    inertia=cuboid_inertia(mass, sizes), shapes=Shapes.boxes(sizes))
 
 
+def strip(length, elements, section, water=None):
+    """A strip of ice that ends at x = 0: one row of equal boxes along x, neighbours joined across their facets.
+
+    length [m], all of it at x < 0; `elements` boxes, each length/elements x section.width x section.height; water: its
+    density, if the strip floats (its lower face then lies at the draft), None: mid-plane at z = 0. The beams' sections
+    are the facets, so the strip has its beams' modulus and, in bending, their strength. Sets `left` and `right`.
+    """
+    size = np.array([length / elements, section.width, section.height])
+    middle = section.height * (0.5 - section.density / water) if water else 0.0
+    x = size[0] * (np.arange(elements) + 0.5) - length
+    row = blocks(np.tile(size, (elements, 1)), np.column_stack([x, 0 * x, 0 * x + middle]), section.density)
+    first = np.arange(elements - 1)
+    row.bodies = np.column_stack([first, first + 1])
+    row.axis_y = np.tile([0.0, 1.0, 0.0], (len(first), 1))
+    row.beam = section.scalars(first)
+    row.beam["length"] = np.full(len(first), size[0])
+    row.sets = {"left": [0], "right": [elements - 1]}
+    return row
+
+
 def stack(count, size, gap=0.0, density=920.0):
     """Equal boxes above each other, the lowest standing on z = 0; size 3, gap between neighbours [m]."""
     z = size[2] / 2 + (size[2] + gap) * np.arange(count)
@@ -348,6 +368,9 @@ def _arguments():
 
     kind("cantilever", "straight frame along x", elements=(64, "n"), length=(10.0, "m"), width=(1.0, "m"),
          height=(1.0, "m"), young=(4e9, "Pa"), poisson=(0.3, "-"), density=(920.0, "kg/m3"))
+    kind("strip", "floating strip that ends at x = 0: one row of boxes", elements=(120, "n"), length=(120.0, "m"),
+         width=(1.0, "m"), height=(1.0, "m"), water=(1010.0, "kg/m3"), young=(4e9, "Pa"), poisson=(0.3, "-"),
+         density=(920.0, "kg/m3"))
     bend = kind("bend45", "45-degree bend, R = 100, section 1 x 1, E = 1e7", elements=(64, "n"))
     bend.add_argument("--torsion", type=float, default=1 / 6, metavar="M4", help="torsion constant J [m4]")
     kind("rollup", "strip for the roll-up test, L = 10, EI = 100", elements=(40, "n"))
@@ -374,6 +397,9 @@ def main():
         if kind == "cantilever":
             length, elements = options.pop("length"), options.pop("elements")
             lattice = straight_frame(length, elements, Section(**options))
+        elif kind == "strip":
+            length, elements, water = (options.pop(name) for name in ("length", "elements", "water"))
+            lattice = strip(length, elements, Section(**options), water)
         else:
             lattice = makers[kind](**options)
         lattice.write(file)

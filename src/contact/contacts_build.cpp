@@ -64,6 +64,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   double mean = 0;
   for (const double r : radius_) mean += r / static_cast<double>(radius_.size());
   reach_ = part_of_radius * mean;
+  find_pieces();
 }
 
 std::span<const Vec3<double>> Contacts::vertices(std::int32_t body) const {
@@ -112,16 +113,25 @@ void Contacts::find_pieces() {
     const std::int32_t i = root(a), j = root(b);
     piece_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
   }
-  for (std::size_t b = 0; b < n; ++b) piece_[b] = root(static_cast<std::int32_t>(b));
+  pieces_ = 0;
+  for (std::size_t b = 0; b < n; ++b) {
+    piece_[b] = root(static_cast<std::int32_t>(b));
+    pieces_ += piece_[b] == static_cast<std::int32_t>(b) ? 1 : 0;
+  }
 }
 
-/// Bodies of different pieces may touch, and of one piece those on its surface: with fewer beams
-/// than a prism has sides.
+/// With fewer beams than a prism has sides.
+bool Contacts::on_surface(std::int32_t body) const {
+  const auto b = static_cast<std::size_t>(body);
+  return beams_[b] < faces_[b] - 2;
+}
+
+/// Bodies of different pieces may touch, and of one piece those on its surface.
 bool Contacts::may_touch(std::int32_t a, std::int32_t b) const {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   if (piece_[i] != piece_[j]) return true;
-  const bool surface = beams_[i] < faces_[i] - 2 && beams_[j] < faces_[j] - 2;
-  return surface && !std::binary_search(joined_.begin(), joined_.end(), BodyPair{a, b});
+  return on_surface(a) && on_surface(b) &&
+         !std::binary_search(joined_.begin(), joined_.end(), BodyPair{a, b});
 }
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
@@ -160,7 +170,13 @@ void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::
   centres.reserve(placed.size());
   for (const Placed& p : placed) centres.push_back(p.x);
   std::vector<BodyPair> near;
-  near_pairs(centres, radius_, reach_, here, near);
+  std::vector<double> radii = radius_;
+  if (pieces_ == 1) {  // an intact sheet: all but its edges is left out
+    for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
+      if (!on_surface(b)) radii[static_cast<std::size_t>(b)] = -1;
+    }
+  }
+  near_pairs(centres, radii, reach_, here, near);
   for (const auto& [a, b] : near) {
     if (may_touch(a, b))
       list(a, b, placed[static_cast<std::size_t>(a)], placed[static_cast<std::size_t>(b)],
@@ -183,6 +199,10 @@ void Contacts::list_obstacles(std::span<const Placed> placed, std::span<const st
       if (std::none_of(sides.begin(), sides.end(), beyond)) list(b, -1 - k, placed[body], at, true);
     }
   }
+}
+
+bool Contacts::obstacle_listed() const {
+  return std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.b < 0; });
 }
 
 /// Lists a pair unless there is a wide gap.

@@ -76,7 +76,8 @@ class ContactOfModel final : public Contact {
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
-        rates_(contacts_.rates()) {
+        rates_(contacts_.rates()),
+        possible_(contacts_.pieces() > 1) {
     for (std::int32_t b = 0; b < part.owned; ++b)
       here_[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])] = 1;
   }
@@ -89,6 +90,7 @@ class ContactOfModel final : public Contact {
     exchange_.gather(state, bodies_);
     std::fill(mine_.begin(), mine_.end(), ContactWrench{});
     contacts_.evaluate(bodies_, state.time, mine_);
+    if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = exchange_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
       if (local[k] < 0) continue;
@@ -102,7 +104,9 @@ class ContactOfModel final : public Contact {
   double stiffness_bound(std::int32_t body) const override {
     return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
   }
-  Rates own_rates() const override { return {rates_.stiffness, rates_.damping}; }
+  Rates own_rates() const override {
+    return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
+  }
 
   void commit(const State<Spatial>& state, double dt) override {
     exchange_.gather(state, bodies_);
@@ -149,8 +153,17 @@ class ContactOfModel final : public Contact {
     columns.add(name + "_z", v.z);
   }
 
+  bool anywhere(bool here) const {
+    int any = here ? 1 : 0;
+    if (size(part_.comm) > 1) MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, part_.comm);
+    return any != 0;
+  }
+
   void build(const State<Spatial>& state) const {
     contacts_.build(exchange_.poses(state), here_, state.time);
+    possible_ = possible_ || contacts_.pieces() > 1;
+    if (!possible_) possible_ = anywhere(contacts_.obstacle_listed());
+    if (!possible_) near_ = anywhere(contacts_.listed() > 0);
     exchange_.choose(contacts_.involved());
     bodies_.resize(contacts_.involved().size());
     mine_.resize(bodies_.size());
@@ -184,6 +197,10 @@ class ContactOfModel final : public Contact {
   std::vector<std::uint8_t> here_;
   std::vector<Vec3<double>> peak_, impulse_, forces_;
   Contacts::Rates rates_;
+  /// Whether the stable step must bear contacts: with more than one piece, and once an obstacle has
+  /// come near or bodies of the one piece have met.
+  mutable bool possible_;
+  mutable bool near_ = false;  ///< pairs are listed, on some rank
   double dt_ = 0, time_ = 0;
 };
 
@@ -212,6 +229,7 @@ void ContactOfModel::remember(Memory& memory) {
   }
   bool changed = contacts_.changed();
   memory.common("changed", changed);
+  memory.common("possible", possible_);
   memory.common("pairs", rows);
   memory.common("released", pairs);
   for (std::size_t k = 0; k < peak_.size(); ++k) {

@@ -21,6 +21,7 @@ StableStep ExplicitRun<Space>::look() {
   last_look_ = this->done();
   last_stable_ = stable.dt;
   last_rate_ = fastest_rate();
+  last_own_ = own_stiffness();
   return stable;
 }
 
@@ -53,6 +54,14 @@ double ExplicitRun<Space>::fastest_rate() {
   return std::accumulate(rates.begin(), rates.end(), 0.0);
 }
 
+/// Sum of the bounds that forces give themselves [1/s^2].
+template <class Space>
+double ExplicitRun<Space>::own_stiffness() {
+  double sum = 0;
+  for (const auto& force : this->model().forces()) sum += force->own_rates().stiffness;
+  return sum;
+}
+
 /// The least stable step that dt is taken with.
 template <class Space>
 double ExplicitRun<Space>::needed() const {
@@ -62,6 +71,7 @@ double ExplicitRun<Space>::needed() const {
 template <class Space>
 bool ExplicitRun<Space>::look_is_due() {
   if (explicit_options_.allow_unstable || this->done() == 0) return false;
+  if (own_stiffness() > last_own_) return true;
   // A step costs about an evaluation, and the rates less than half of it.
   constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
   if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
@@ -99,6 +109,7 @@ void ExplicitRun<Space>::remember_own(Memory& memory) {
   memory.common("look_evaluations", evaluations_);
   memory.common("look_stable_dt", last_stable_);
   memory.common("look_rate", last_rate_);
+  memory.common("look_own_stiffness", last_own_);
 }
 
 template class ExplicitRun<Spatial>;

@@ -39,12 +39,13 @@ class ExplicitRun : public DynamicRun<Space> {
   StableStep look();
   bool look_is_due();
   double fastest_rate();
+  double own_stiffness();
   double needed() const;
 
   const ExplicitOptions& explicit_options_;
   // Of the last look:
   std::int64_t last_look_ = 0, evaluations_ = 0;
-  double last_stable_ = 0, last_rate_ = 0;
+  double last_stable_ = 0, last_rate_ = 0, last_own_ = 0;
 };
 
 /// Newton's equations by PETSc's explicit Runge-Kutta methods, all of their -ts_rk_type, on bodies'

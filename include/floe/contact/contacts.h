@@ -79,6 +79,9 @@ class Contacts {
   /// Contacts counted here with a force, in the last evaluation.
   std::int64_t touching() const { return touching_; }
   std::size_t listed() const { return pairs_.size(); }
+  bool obstacle_listed() const;
+  /// Pieces joined by beams, as of the last build, or at first.
+  std::int32_t pieces() const { return pieces_; }
   ContactEnergies energies() const;
 
   /// Bounds of M^-1 K and M^-1 C of any contacts that may come (docs/model.md, "Contact", has the
@@ -125,6 +128,7 @@ class Contacts {
     Triad<double> axes;
   };
 
+  bool on_surface(std::int32_t body) const;
   bool may_touch(std::int32_t a, std::int32_t b) const;
   void find_pieces();
   void list_bodies(std::span<const Placed> placed, std::span<const std::uint8_t> here);
@@ -149,6 +153,7 @@ class Contacts {
   std::vector<double> masses_, volumes_, radius_, surface_, widest_;
   std::vector<std::array<std::int32_t, 2>> joined_, released_;
   std::vector<std::int32_t> faces_, beams_, piece_;  ///< per body
+  std::int32_t pieces_ = 0;
   ContactOptions options_;
   std::vector<Obstacle> obstacles_;
   double reach_ = 0;
