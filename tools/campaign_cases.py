@@ -9,7 +9,7 @@ import numpy as np
 
 from floe_plate import plate, profile
 
-INTEGRATORS = ["quasistatic", "explicit"]
+INTEGRATORS = ["quasistatic", "explicit", "implicit"]
 STARTS = ["step", "smooth"]
 LENGTHS = [10, 20, 40, 80, 160]        # L [m] (paper, "Mesh Creation")
 THICKNESSES = [0.5, 1, 1.5]            # h [m]
@@ -155,9 +155,14 @@ class Test:
     smallest: float = 0  # L [m]
 
 
+def moving(scene):
+    """Both ways to step in time run the same scene."""
+    return {"explicit": scene, "implicit": scene}
+
+
 TESTS = {
-    "tension": Test({"quasistatic": "input/tension.yaml", "explicit": "input/tension_explicit.yaml"}, pulled, young),
-    "bending": Test({"quasistatic": "input/bending.yaml", "explicit": "input/bending_explicit.yaml"}, loaded, deflection, 20),
+    "tension": Test({"quasistatic": "input/tension.yaml", **moving("input/tension_explicit.yaml")}, pulled, young),
+    "bending": Test({"quasistatic": "input/bending.yaml", **moving("input/bending_explicit.yaml")}, loaded, deflection, 20),
     "compression": Test({"quasistatic": "input/compression.yaml"}, shortened, young),
     "biaxial": Test({"quasistatic": "input/biaxial.yaml"}, both_ways(1), bulk),
     "shear": Test({"quasistatic": "input/shear.yaml"}, both_ways(-1), rigidity),
@@ -196,6 +201,8 @@ class Case:
         options = {"sheet_length": sheet.length, "sheet_width": sheet.length, "sheet_thickness": sheet.thickness,
                    "sheet_element_size": sheet.element_size, "sheet_seed": self.seed}
         options |= TESTS[self.test].options(sheet, integrator, start)
+        if integrator == "implicit":
+            options["integrator"] = integrator
         return TESTS[self.test].scenes[integrator], [word for key, value in options.items() for word in (f"-{key}", f"{value}")]
 
     def evaluate(self, output):

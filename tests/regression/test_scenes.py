@@ -19,6 +19,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import campaign_cases  # noqa: E402
+import floe_plate  # noqa: E402
 from floe_output import Output  # noqa: E402
 
 YOUNG = 4e9  # of the triangles [Pa]
@@ -106,6 +107,17 @@ def check_compression(test, run):
     output = run()
     test.assertAlmostEqual(output.summary["E_over_Eb"] / 0.834, 1, delta=0.01)
     test.assertTrue(output.summary["stable"])
+
+
+def check_edge_load(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 3080)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"], 3.79, delta=0.08)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"] / (8 * floe_plate.edge_deflection(0.3)), 1, delta=0.05)
+    plain = run("-beam_calibrate", "none").summary["deflection_over_wyman"]
+    test.assertAlmostEqual(plain, 3.47, delta=0.08)
+    softer = 8 * floe_plate.edge_deflection(0.00415) / np.sqrt(0.9062)  # D*, nu_b* of the infinite lattice, docs/model.md section 3
+    test.assertAlmostEqual(plain / softer, 1, delta=0.03)
 
 
 def expect_modulus(test, output, name, modulus, expected, delta):
@@ -475,6 +487,7 @@ EXPECTED = {
     "biaxial.yaml": check_biaxial,
     "shear.yaml": check_shear,
     "slide.yaml": check_slide,
+    "edge_load.yaml": check_edge_load,
     "tension_calibrated.yaml": check_tension_calibrated,
     "bending_calibrated.yaml": check_bending_calibrated,
     "tension_explicit.yaml": check_tension_explicit,
