@@ -99,8 +99,7 @@ def with_options(campaigns, *words):
 def differences(base, static, moving, calibrated):
     """Where the numbers differ from the paper's or from a continuum's, and what of it a run with one thing changed shows."""
     points = []
-    paper = next((c for c in moving if c.start == "step" and not c.options), None)
-    smooth = next((c for c in moving if c.start == "smooth" and not c.options), None)
+    paper, smooth = (next((c for c in moving if (c.integrator, c.start, c.options) == ("explicit", start, [])), None) for start in ("step", "smooth"))
     axial = with_options(moving, "-beam_damping_modes", "axial")
     exact, none = with_options(static, "-beam_shear", "exact"), with_options(static, "-beam_shear", "none")
     polar = with_options(static, "-beam_torsion", "polar")

@@ -89,9 +89,10 @@ def tension(c):
         rows.append([*named(sheet), f"{sheet.length / sheet.element_size:.2f}", f"{sheet.bodies}", spread(values),
                      spread(c.values("tension", sheet, "E_over_Estar")), spread(c.values("tension", sheet, "E_gauge_over_Eb")),
                      f"{known[0]:.4g} ± {known[1]:.2g} ({known[2]})" if known else "–",
-                     f"{deviation(values, known):+.1f}" if known and len(values) > 1 else "–"])
+                     f"{deviation(values, known):+.1f}" if known and len(values) > 1 else "–",
+                     f"{np.std(values, ddof=1) / known[1]:.2f}" if known and len(values) > 1 else "–"])
     return table(["L [m]", "h [m]", "l", "L/l", "N", "E/Eb, mean ± std (meshes)", "E/E*", "E/Eb over the gauge length", "independent E/Eb",
-                  "deviations"], rows)
+                  "deviations", "std/std"], rows)
 
 
 def bending(c):
@@ -103,6 +104,21 @@ def bending(c):
             rows.append([*named(sheet), f"{sheet.length / 2 / figures.characteristic_length(sheet.thickness):.2f}", spread(values),
                          f"{known:g}" if known else "–", f"{np.mean(values) / known - 1:+.1%}" if known else "–"])
     return table(["L [m]", "h [m]", "l", "L/2l_c", "w/w0 under the load, mean ± std (meshes)", "independent", "difference"], rows)
+
+
+def size(base, calibrated):
+    """Deflections by the sheet's half-width over l_c: over the infinite lattice's w0* as they come, over w0 calibrated."""
+    stiffness = {2: 1.084, 3: 1.051}  # w0*/w0 = (D*/D)^(-1/2), saint_venant (docs/model.md section 3)
+    rows = []
+    for (length, thickness, _), sheet in sorted(((s.length, s.thickness, s.factor), s) for s in SHEETS if s.factor == 2):
+        half = length / 2 / figures.characteristic_length(thickness)
+        pair = [figures.SHEET[length, thickness, factor] for factor in (2, 3)]
+        if len(base.rows("bending", sheet)):
+            rows.append((half, [f"{half:.2f}", f"{length:g}", f"{thickness:g}"] +
+                         [f"{base.mean('bending', s, 'deflection_over_wyman') / stiffness[s.factor]:.3f}" for s in pair] +
+                         [spread(calibrated.values("bending", s, "deflection_over_wyman"), 3) for s in pair]))
+    return table(["L/2l_c", "L [m]", "h [m]", "w/w0*, l = 2h", "w/w0*, l = 3h", "calibrated w/w0, l = 2h", "calibrated w/w0, l = 3h"],
+                 [row for _, row in sorted(rows)])
 
 
 def changed(base, others, test, column):
@@ -118,18 +134,22 @@ def changed(base, others, test, column):
 
 
 def dynamics(base, others):
-    """Explicit runs over static ones, mesh by mesh."""
+    """Runs in time over static ones, mesh by mesh."""
     pulls = [o for o in others if "tension" in o.tables]
     bends = [o for o in others if "bending" in o.tables]
-    columns = [(o, "tension", "E_over_Eb", "E_over_Eb", f"E, {o.label}") for o in pulls]
-    columns += [(o, "tension", "E_stored_over_Eb", "E_over_Eb", f"springs alone, {o.label}") for o in pulls]
-    columns += [(o, "bending", "deflection_max", "deflection_max", f"deflection, {o.label}") for o in bends]
     rows = []
     for sheet in SHEETS:
-        found = [o.ratios(base, test, sheet, column, of_base) for o, test, column, of_base, _ in columns]
-        if any(len(r) for r in found):
-            rows.append(named(sheet) + [f"{np.mean(r):.4f} ({len(r)})" if len(r) else "–" for r in found])
-    return table(["L [m]", "h [m]", "l", *(head for *_, head in columns)], rows)
+        cells = []
+        for o in pulls:
+            whole = o.ratios(base, "tension", sheet, "E_over_Eb")
+            springs = o.ratios(base, "tension", sheet, "E_stored_over_Eb", "E_over_Eb")
+            cells.append(f"{np.mean(whole):.4f}, {np.mean(springs):.4f} ({len(whole)})" if len(whole) else "–")
+        for o in bends:
+            ratio = o.ratios(base, "bending", sheet, "deflection_max")
+            cells.append(f"{np.mean(ratio):.4f} ({len(ratio)})" if len(ratio) else "–")
+        if any(cell != "–" for cell in cells):
+            rows.append(named(sheet) + cells)
+    return table(["L [m]", "h [m]", "l", *(f"E, springs alone: {o.label}" for o in pulls), *(f"deflection: {o.label}" for o in bends)], rows)
 
 
 def moduli(c):

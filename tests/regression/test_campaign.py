@@ -89,6 +89,27 @@ class Campaign(unittest.TestCase):
         self.assertNotIn("failed", self.campaign("out", *which))  # only what failed is run
         self.assertEqual(len(tables(self.root / "out")[0]["tension"]), 3)
 
+    def test_report_of_a_part(self):
+        """Figures and tables of what there is; what was not run is said."""
+        which = ("--only", "L10_h1_,L20_h1_", "--meshes", "2", "--mesh-dir", str(self.root / "meshes"))
+        self.campaign("out", *which)
+        self.campaign("exact", *which, "--", "-beam_shear", "exact")
+        done = subprocess.run([str(REPOSITORY / "tools/campaign_report"), str(self.root / "out"), "--beside", f"exact shear={self.root / 'exact'}"],
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        report = (self.root / "out/report.md").read_text()
+        row = tables(self.root / "out")[0]["tension"]
+        for h, factor in ((1, 2), (1, 3)):
+            values = row["E_over_Eb"][(row["L"] == 20) & (row["l"] == h * factor)]
+            self.assertIn(f"| 20 | {h} | {factor}h | {20 / h / factor:.2f} | {116 if factor == 2 else 52} | {values.mean():.4f} ± {values.std(ddof=1):.4f} (2) |",
+                          report)
+        self.assertIn("| exact shear | `tools/campaign -- -beam_shear exact` | 8 tension, 4 bending |", report)
+        self.assertIn("| not run | – |", report)
+        self.assertNotIn("nan", report)
+        for number in (5, 6, 7):
+            self.assertTrue((self.root / f"out/figure_{number}.png").read_bytes().startswith(b"\x89PNG"))
+            self.assertIn(f"figure_{number}.png", report)
+
     def test_bad_commands(self):
         self.campaign("out", "--only", "L10_h1_3h", "--meshes", "1")
         for words, named in ((("--only", "nothing"), "no case matches"), (("--tests", "tenzion"), "tenzion"),
