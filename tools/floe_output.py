@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Reads an output folder of floe: summary.json, options.yaml, lattice.h5, fields.h5. SI units everywhere."""
+import csv
 import json
 import re
 from pathlib import Path
@@ -88,6 +89,11 @@ class Output(Lattice):
         if name == "axial":
             return self.field("beams_force", time)[:, 0] / self.beams["area"], BEAM_STRESSES[name]
         return self.field("beams_stress", time)[:, {"tensile": 0, "shear": 1}[name]], BEAM_STRESSES[name]
+
+    def history(self, name):
+        """One column of history.csv."""
+        with open(self.folder / "history.csv", newline="") as file:
+            return np.array([float(row[name]) for row in csv.DictReader(file)])
 
     def options(self):
         """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The infinite floating plate under a point load (Wyman 1950), and the profile of a bending run to set beside it."""
+"""Continua to set beside sheets: the infinite floating plate under a point load (Wyman 1950) and the half-infinite one loaded at its
+edge, a square block in simple shear; and the profile of a bending run."""
 import numpy as np
 
 
@@ -21,6 +22,49 @@ def kei(x):
 def wyman(ratio):
     """Deflection over w0 of the infinite plate at ratio = r / l_c."""
     return -4 / np.pi * kei(ratio)
+
+
+def edge_deflection(poisson, points=400):
+    """Deflection under a point load P at the free edge of a half-infinite floating plate, over P/(k l_c^2); the infinite plate has 1/8.
+
+    Along the edge w = (1/pi) int_0^inf W(x, s) cos(s y) ds in units of l_c, W = A exp(-a x) + B exp(-b x), a^2 = s^2 + i, b^2 = s^2 - i;
+    at x = 0 no moment, W_xx - nu s^2 W = 0, and the load, W_xxx - (2 - nu) s^2 W_x = 1 (Kirchhoff). Gauss-Legendre in s/(1 + s).
+    """
+    t, weight = np.polynomial.legendre.leggauss(points)
+    t = (t + 1) / 2
+    s = t / (1 - t)
+    roots = [np.sqrt(s**2 + sign * 1j) for sign in (1, -1)]
+    moment = [m**2 - poisson * s**2 for m in roots]
+    shear = [-m * (m**2 - (2 - poisson) * s**2) for m in roots]
+    at_edge = (moment[0] - moment[1]) / (moment[0] * shear[1] - moment[1] * shear[0])
+    return float(np.sum(at_edge.real / (1 - t)**2 * weight / 2) / np.pi)
+
+
+def simple_shear(poisson, cells=12):
+    """Mean shear stress over G times the slope of a square of plane stress, two sides clamped and slid along each other, two free.
+
+    Bilinear elements, cells x cells and twice as many, extrapolated (corners are singular; tested against 128 x 128).
+    """
+    def square(n):
+        law = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]]) / (1 - poisson**2)
+        one = np.zeros((8, 8))
+        for s, t in [(s / np.sqrt(3), t / np.sqrt(3)) for s in (-1, 1) for t in (-1, 1)]:
+            dx, dy = np.array([t - 1, 1 - t, 1 + t, -1 - t]) * n / 2, np.array([s - 1, -1 - s, 1 + s, 1 - s]) * n / 2
+            strain = np.zeros((3, 8))
+            strain[0, ::2] = strain[2, 1::2] = dx
+            strain[1, 1::2] = strain[2, ::2] = dy
+            one += strain.T @ law @ strain / (4 * n * n)
+        corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+        nodes = corner[:, None] + [0, 1, n + 2, n + 1]
+        unknowns = np.stack([2 * nodes, 2 * nodes + 1], axis=2).reshape(-1, 8)
+        matrix = np.zeros((2 * (n + 1)**2,) * 2)
+        np.add.at(matrix, (unknowns[:, :, None], unknowns[:, None, :]), one)
+        free = slice(2 * (n + 1), -2 * (n + 1))  # rows of nodes: the first is held, the last one moved
+        u = np.zeros(len(matrix))
+        u[-2 * (n + 1)::2] = 1
+        u[free] = np.linalg.solve(matrix[free, free], -(matrix @ u)[free])
+        return (matrix @ u)[-2 * (n + 1)::2].sum() * 2 * (1 + poisson)
+    return (4 * square(2 * cells) - square(cells)) / 3
 
 
 def plate(options):

@@ -39,6 +39,20 @@ class Plate(unittest.TestCase):
             self.assertAlmostEqual(got[1] / w0, 1, 4)
 
 
+class Continua(unittest.TestCase):
+    def test_edge_of_a_half_infinite_plate(self):
+        """Westergaard's formula for the edge, sqrt(2 + 1.2 nu)/sqrt(12 (1 - nu^2)), is a fit to within 1 %."""
+        for poisson in (0.15, 0.3):
+            fitted = np.sqrt((2 + 1.2 * poisson) / (12 * (1 - poisson**2)))
+            self.assertAlmostEqual(floe_plate.edge_deflection(poisson) / fitted, 1, delta=0.01)
+        self.assertAlmostEqual(floe_plate.edge_deflection(0.3), floe_plate.edge_deflection(0.3, 800), delta=1e-5)
+
+    def test_square_in_simple_shear(self):
+        """128 x 128 elements give 0.64125 and 0.65820."""
+        for poisson, fine in ((0.2046, 0.64125), (0.3, 0.65820)):
+            self.assertAlmostEqual(floe_plate.simple_shear(poisson), fine, delta=0.002)
+
+
 class Pictures(unittest.TestCase):
     def draw(self, scene, options, tool, *arguments):
         """Runs a small variant of a scene, then a tool on its output, which must leave these pictures."""

@@ -18,6 +18,8 @@ import numpy as np
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
+import campaign_cases  # noqa: E402
+import floe_plate  # noqa: E402
 from floe_output import Output  # noqa: E402
 
 YOUNG = 4e9  # of the triangles [Pa]
@@ -35,12 +37,6 @@ def last_row(output):
     """Last row of history.csv as {column: number}."""
     with open(output.folder / "history.csv", newline="") as file:
         return {key: float(value) for key, value in list(csv.DictReader(file))[-1].items()}
-
-
-def column(output, name):
-    """One column of history.csv."""
-    with open(output.folder / "history.csv", newline="") as file:
-        return np.array([float(row[name]) for row in csv.DictReader(file)])
 
 
 def force(output, boundaries, component):
@@ -105,6 +101,41 @@ def check_bending_calibrated(test, run):
     test.assertEqual(output.summary["bodies"], 3285)
     test.assertAlmostEqual(output.summary["deflection_over_wyman"], 1.01, delta=0.025)
     expect_calibration(test, output.summary["calibration"])
+
+
+def check_compression(test, run):
+    output = run()
+    test.assertAlmostEqual(output.summary["E_over_Eb"] / 0.834, 1, delta=0.01)
+    test.assertTrue(output.summary["stable"])
+
+
+def check_edge_load(test, run):
+    output = run()
+    test.assertEqual(output.summary["bodies"], 3080)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"], 3.79, delta=0.08)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"] / (8 * floe_plate.edge_deflection(0.3)), 1, delta=0.05)
+    plain = run("-beam_calibrate", "none").summary["deflection_over_wyman"]
+    test.assertAlmostEqual(plain, 3.47, delta=0.08)
+    softer = 8 * floe_plate.edge_deflection(0.00415) / np.sqrt(0.9062)  # D*, nu_b* of the infinite lattice, docs/model.md section 3
+    test.assertAlmostEqual(plain / softer, 1, delta=0.03)
+
+
+def expect_modulus(test, output, name, modulus, expected, delta):
+    test.assertEqual(output.summary["bodies"], 462)
+    row = campaign_cases.TESTS[name].evaluate(output, campaign_cases.Sheet(40, 1, 2))["row"]
+    test.assertAlmostEqual(row[modulus], expected, delta=delta)
+
+
+def check_biaxial(test, run):
+    expect_modulus(test, run(), "biaxial", "K_over_Eb", 0.5, 0.01)
+
+
+def check_shear(test, run):
+    expect_modulus(test, run(), "shear", "G_over_Eb", 0.33, 0.02)
+
+
+def check_slide(test, run):
+    expect_modulus(test, run(), "slide", "slide_over_Eb", 0.217, 0.015)
 
 
 def check_bend45(test, run):
@@ -227,7 +258,7 @@ def check_free_top(test, run):
                for v in (output.field("bodies_rotation", t)[0] for t in output.times[1:])]  # R_22
     test.assertGreater(max(upright), 0.9)
     test.assertLess(min(upright), -0.9)
-    kinetic = column(output, "energy_kinetic")
+    kinetic = output.history("energy_kinetic")
     test.assertLess(np.ptp(kinetic), 1e-6 * kinetic[0])
 
 
@@ -262,7 +293,7 @@ def check_rk_top(test, run):
     passages = output.times[k] + (output.times[k + 1] - output.times[k]) * along[k] / (along[k] - along[k + 1])
     test.assertGreater(len(passages), 4)
     test.assertAlmostEqual((passages[-1] - passages[0]) / (len(passages) - 1) / half_period, 1, delta=1e-4)
-    kinetic = column(output, "energy_kinetic")
+    kinetic = output.history("energy_kinetic")
     test.assertLess(np.ptp(kinetic), 1e-9 * kinetic[0])
 
 
@@ -286,7 +317,7 @@ def check_free_flight(test, run):
     for time in output.times[1:]:
         centre = mass @ output.field("bodies_displacement", time) / mass.sum()
         np.testing.assert_allclose(centre, [0, 20 * time * mass[-1] / mass.sum(), 0], atol=1e-9)
-    energy = column(output, "energy_kinetic") + column(output, "energy_strain")
+    energy = output.history("energy_kinetic") + output.history("energy_strain")
     test.assertLess(np.ptp(energy), 1e-3 * energy[0])
 
 
@@ -359,8 +390,8 @@ def check_stopping(test, run):
 def check_floes_collide(test, run):
     output = run()
     row = last_row(output)
-    test.assertLess(abs(row["energy_balance_error"]), 0.01 * column(output, "energy_kinetic")[0])
-    test.assertGreater(column(output, "contacts").max(), 3)
+    test.assertLess(abs(row["energy_balance_error"]), 0.01 * output.history("energy_kinetic")[0])
+    test.assertGreater(output.history("contacts").max(), 3)
     with h5py.File(output.folder / "lattice.h5") as file:
         mass = file["bodies/mass"][:]
     times = output.times
@@ -390,7 +421,7 @@ def check_rubble_pile(test, run):
 
 def check_punch_through(test, run):
     output = run()
-    time, load = column(output, "time"), column(output, "plate_force_z")
+    time, load = output.history("time"), output.history("plate_force_z")
     test.assertEqual(np.abs(load[time < 7.5]).max(), 0)
     test.assertGreater(load[time > 14].mean(), 5 * 441)
     test.assertGreater(output.summary["peak_force"]["plate"][2], load.max() - 1e-6 * load.max())
@@ -402,7 +433,7 @@ def check_punch_through(test, run):
 
 def largest(output, name):
     """Largest size in a column of history.csv."""
-    return np.max(np.abs(column(output, name)))
+    return np.max(np.abs(output.history(name)))
 
 
 def check_break_strip(test, run):
@@ -529,6 +560,11 @@ EXPECTED = {
     "notch.yaml": check_notch,
     "tension.yaml": check_tension,
     "bending.yaml": check_bending,
+    "compression.yaml": check_compression,
+    "biaxial.yaml": check_biaxial,
+    "shear.yaml": check_shear,
+    "slide.yaml": check_slide,
+    "edge_load.yaml": check_edge_load,
     "tension_calibrated.yaml": check_tension_calibrated,
     "bending_calibrated.yaml": check_bending_calibrated,
     "tension_explicit.yaml": check_tension_explicit,
