@@ -75,7 +75,7 @@ class Checkpoint : public testing::Test {
   Checkpoint() { std::iota(owned.begin(), owned.end(), 0); }
 
   Remembered some() const {
-    Remembered r{std::nextafter(0.1, 1),  (std::int64_t{1} << 62) + 1, true, "two words",
+    Remembered r{std::nextafter(0.1, 1),  (std::int64_t{1} << 53) - 1, true, "two words",
                  {1e-308, -0.0, 1.0 / 3}, 0.1 * (rank() + 1),          {}};
     for (const std::int32_t body : owned) {
       const double g = part.global[static_cast<std::size_t>(body)];

@@ -28,7 +28,7 @@ class Memory {
 
   /// A number or numbers that all ranks hold alike.
   void common(const std::string& name, double& value);
-  void common(const std::string& name, std::int64_t& value);
+  void common(const std::string& name, std::int64_t& value);  ///< below 2^53
   void common(const std::string& name, bool& value);
   void common(const std::string& name, std::vector<double>& values);
   void common(const std::string& name, std::string& text);
