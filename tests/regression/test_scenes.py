@@ -493,7 +493,7 @@ def check_notch(test, run):
 
 def check_ice_slope_strip(test, run):
     output = run()
-    time, load, lift = (column(output, name) for name in ("time", "slope_force_x", "slope_force_z"))
+    time, load, lift = (output.history(name) for name in ("time", "slope_force_x", "slope_force_z"))
     before = time < breaks(output, "time")[0]
     last = before & (time > 0.9 * time[before][-1])
     test.assertAlmostEqual(load[last].mean() / 7544, 1, delta=0.1)
@@ -534,7 +534,7 @@ def check_ice_cone(test, run):
 
 def check_ice_cylinder(test, run):
     output = run("-time_end", "2.5")
-    time, load = column(output, "time"), column(output, "leg_force_x")
+    time, load = output.history("time"), output.history("leg_force_x")
     for moment in (1.5, 2, 2.5):
         d = 0.5 * (moment - 0.5) - 0.1  # ramp of 1 s, a gap of 0.1 m
         crushing = 1.5e6 * 0.5 * 2 * np.sqrt(4 * d - d**2)
