@@ -91,7 +91,8 @@ def show_surroundings(job, view, towards):
             a, b, c = o["points"][:3]
             u, w = ([q - p for p, q in zip(a, end)] for end in (b, c))
             normal = (u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
-            behind = sum(n * t for n, t in zip(normal, towards)) < 0  # it would hide the ice
+            # It would hide the ice. (math.fsum: ParaView puts a sum of its own in the place of Python's.)
+            behind = math.fsum(n * t for n, t in zip(normal, towards)) < 0
             display.Opacity = 0.12 if behind else 0.6
         if any(o["velocity"]):
             moving.append((display, o["velocity"]))

@@ -77,7 +77,7 @@ class ContactOfModel final : public Contact {
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
         rates_(contacts_.rates()),
-        possible_(contacts_.pieces() > 1) {
+        possible_(contacts_.pieces() > 1 || lattice.beams.bodies.empty()) {
     for (std::int32_t b = 0; b < part.owned; ++b)
       here_[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])] = 1;
   }
@@ -197,8 +197,8 @@ class ContactOfModel final : public Contact {
   std::vector<std::uint8_t> here_;
   std::vector<Vec3<double>> peak_, impulse_, forces_;
   Contacts::Rates rates_;
-  /// Whether the stable step must bear contacts: with more than one piece, and once an obstacle has
-  /// come near or bodies of the one piece have met.
+  /// Whether the stable step must bear contacts: with more than one piece or a lone body (no beam
+  /// keeps its step short), and once an obstacle has come near or bodies of the one piece have met.
   mutable bool possible_;
   mutable bool near_ = false;  ///< pairs are listed, on some rank
   double dt_ = 0, time_ = 0;

@@ -12,6 +12,7 @@ import unittest
 from pathlib import Path
 
 import h5py
+import matplotlib.pyplot as plt
 import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -100,6 +101,29 @@ class ParaView(unittest.TestCase):
                         np.testing.assert_allclose(cracks["bounds"], bounds, atol=1e-6)
             self.assertEqual(numbers[0], 0)
             self.assertGreater(numbers[-1], 10)
+
+    def test_render_draws(self):
+        """Pictures at given times with ice, water and obstacles, and a film."""
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/ice_cone.yaml"), "-sheet_iterations", "10", "-sheet_length",
+                                  "12", "-sheet_width", "10", "-sheet_element_size", "2", "-obstacle_cone_base", "10,0,-4",
+                                  "-time_end", "0.02", "-output_fields", "0.01", "-output_dir", f"{folder}/out"],
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            render = [str(REPOSITORY / "tools/render"), f"{folder}/out", "--size", "320", "200"]
+            drawn = subprocess.run([*render, "--time", "0", "0.02", "--file", f"{folder}/a.png"], capture_output=True,
+                                   text=True, timeout=300)
+            self.assertEqual(drawn.returncode, 0, drawn.stdout + drawn.stderr)
+            self.assertEqual(drawn.stdout.split(), [f"{folder}/a_0.png", f"{folder}/a_1.png"])
+            pixels = (255 * plt.imread(f"{folder}/a_1.png")[:, :, :3]).astype(int)
+            self.assertEqual(pixels.shape, (200, 320, 3))
+            red, green, blue = np.moveaxis(pixels, 2, 0)
+            self.assertGreater(np.sum((red > 150) & (blue < 245)), 2000)  # tops of the ice
+            self.assertGreater(np.sum((red < 140) & (red >= blue) & (red > 20)), 500)  # the cone
+            if shutil.which("ffmpeg"):
+                film = subprocess.run([*render, "--film", f"{folder}/a.mp4"], capture_output=True, text=True, timeout=300)
+                self.assertEqual(film.returncode, 0, film.stdout + film.stderr)
+                self.assertGreater(Path(folder, "a.mp4").stat().st_size, 1000)
 
     def look(self, folder, file):
         """What ParaView sees in a file."""
