@@ -61,8 +61,8 @@ class Case:
 class Runner:
     """Runs floe and keeps what came out, so that an interrupted benchmark goes on where it was."""
 
-    def __init__(self, floe, folder, environment):
-        self.floe, self.folder, self.environment = floe, Path(folder), environment
+    def __init__(self, floe, folder, environment, repeats=3):
+        self.floe, self.folder, self.environment, self.repeats = floe, Path(folder), environment, repeats
         self.folder.mkdir(parents=True, exist_ok=True)
         self.file = self.folder / "runs.jsonl"
         self.known = {}
@@ -86,7 +86,7 @@ class Runner:
             scene.write_text(case.make(self.folder, mesh))
             command = [str(self.floe), str(scene), "-output_dir", f"{work}/out", *options, *(["-check"] if check else [])]
             spent = []
-            while not spent or (len(spent) < 3 and sum(spent) < 1.5):  # short runs thrice: the least counts
+            while not spent or (len(spent) < self.repeats and sum(spent) < 1.5):  # the least of short runs counts
                 before = resource.getrusage(resource.RUSAGE_CHILDREN)
                 done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
                 after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -132,8 +132,8 @@ void ImplicitRun<Space>::set_up_ts() {
   check(TSSetFunctionDomainError(ts_, in_domain));
   check(TSSetMaxSNESFailures(ts_, -1));  // the step is cut; -ts_max_reject ends that
   // Of a step's error, rms over all unknowns: relative to the motion (expected at the least, or so
-  // far), and in beam lengths.
-  check(TSSetTolerances(ts_, 1e-8 * model().length_scale(), nullptr, 1e-3, nullptr));
+  // far), and in beam lengths: no more than rounding, or small loads would have no say.
+  check(TSSetTolerances(ts_, 1e-13 * model().length_scale(), nullptr, 1e-3, nullptr));
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts_, &adapt));
   check(TSAdaptSetType(adapt, options().dt > 0 ? TSADAPTNONE : TSADAPTBASIC));
