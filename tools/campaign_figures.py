@@ -169,7 +169,7 @@ def mean_profile(campaign, sheet, column, edges):
     if not points:
         return None
     centre = (edges[:-1] + edges[1:]) / 2
-    centre = centre[centre <= np.median([p[:, column].max() for p in points])]
+    centre = centre[centre <= sorted(p[:, column].max() for p in points)[(len(points) - 1) // 2]]
     values = np.array([np.interp(centre, p[:, column], p[:, 1], right=np.nan) for p in points])
     several = len(points) > 1
     return centre, np.nanmean(values, axis=0), np.nanstd(values, axis=0, ddof=1) if several else 0 * centre, [p[0, 1] for p in points]
@@ -293,7 +293,7 @@ FIGURES = {
     3: (figure_3, "Size range of the sheets, to one scale, and sections of the finest and the coarsest mesh of the largest one."),
     5: (figure_5, "Effective Young's modulus; bars are means over the meshes, whiskers standard deviations."),
     6: (figure_6, "E/E* and E/Eb against L/l; the dotted line is L/l = 25."),
-    7: (figure_7, "Mean deflection profiles over the half-width, w0 of the infinite plate; bands are standard deviations."),
+    7: (figure_7, "Mean deflection profiles over the half-width, w0 of the infinite plate, as far as most meshes have centroids; bands (thinner than most lines) are standard deviations."),
     8: (figure_8, "The same for L = 80 and 160 m."),
     9: (figure_9, "L = 160 m against distance over the characteristic length."),
 }

@@ -121,6 +121,18 @@ def size(base, calibrated):
                  [row for _, row in sorted(rows)])
 
 
+def far_enough(calibrated):
+    """How far calibrated sheets are from the infinite plate, by their half-width over l_c."""
+    off = {}
+    for sheet in SHEETS:
+        half = round(sheet.length / 2 / figures.characteristic_length(sheet.thickness), 2)
+        if len(calibrated.rows("bending", sheet)):
+            off.setdefault(half, []).append(abs(calibrated.mean("bending", sheet, "deflection_over_wyman") - 1))
+    far, near = [max(v) for half, v in off.items() if half > 4.8], sorted((half, max(v)) for half, v in off.items() if 2 < half < 4.8)
+    return (f"From a half-width of 5 l_c on (4.85 l_c included) calibrated sheets are within {max(far, default=np.nan):.1%} of the infinite plate, at " +
+            ", at ".join(f"{half:g} l_c within {value:.1%}" for half, value in reversed(near)) + ".")
+
+
 def changed(base, others, test, column):
     """Other campaigns' means, and in brackets over the base's on the same meshes."""
     rows = []

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <string>
+
+#include "floe/base/petsc.h"
 
 namespace floe {
 namespace {
@@ -92,6 +95,9 @@ void scale_moduli(Beams& beams, double scale) {
 Calibration calibrate(Lattice& lattice, const Ice& ice, Calibrate kind, Shear shear) {
   Calibration c;
   c.ratios = lattice_ratios(lattice, shear);
+  if (!std::isfinite(c.ratios.irregularity))
+    throw InputError("beam: calibrate: a sheet of " + std::to_string(lattice.bodies.size()) +
+                     " bodies, all of them on its sides, is too small for it");
   if (kind == Calibrate::isotropic) {
     make_isotropic(lattice, ice, c);
   } else {

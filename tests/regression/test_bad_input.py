@@ -131,6 +131,9 @@ SCENES = {
         (GOOD + "ice: {poisson: 0.4}\nbeam: {calibrate: isotropic}\n", "ice: poisson: 0.4 must be <= 1/3"),
     "shear of a calibrated sheet": (GOOD + "beam: {calibrate: isotropic, shear: exact}\n", "beam: shear"),
     "torsion of a calibrated sheet": (GOOD + "beam: {calibrate: isotropic, torsion: polar}\n", "beam: torsion"),
+    "calibration of a sheet without inner bodies":
+        ("forces: [beam]\nsheet: {length: 10, thickness: 1.5, element_size: 4.5}\nbeam: {calibrate: young}\n" + HELD,
+         "beam: calibrate: a sheet of 6 bodies"),
     "unknown calibration": (GOOD + "beam: {calibrate: bending}\n", "none | young | isotropic"),
     "calibration of a file": (FILE + "beam: {calibrate: young}\n", "beam: calibrate"),
     "load on a set and at a point": (loaded("set: right, point: [0, 0], force: [1, 0, 0]"), "not both"),

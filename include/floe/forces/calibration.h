@@ -33,6 +33,7 @@ inline constexpr double largest_isotropic_poisson = 1.0 / 3.0;
 /// sets left, right, bottom and top.
 /// \param kind  young or isotropic   \param shear  the beams' transverse stiffness; one_point for
 /// isotropic, and ice.poisson <= largest_isotropic_poisson
+/// \throws InputError if all bodies lie on the sheet's sides: its inside cannot be measured.
 Calibration calibrate(Lattice& lattice, const Ice& ice, Calibrate kind, Shear shear);
 
 }  // namespace floe
