@@ -236,7 +236,7 @@ def check_tension_implicit(test, run):
 
 
 def check_bending_implicit(test, run):
-    for options, steps in (((), 16), (("-ts_adapt_type", "basic"), 80)):
+    for options, steps in (((), 8), (("-ts_adapt_type", "basic"), 80)):
         output = run(*options)
         test.assertAlmostEqual(output.summary["deflection_over_wyman"] / 1.0561, 1, delta=0.001)
         test.assertLessEqual(output.summary["steps"], steps)
