@@ -144,15 +144,18 @@ int run(const std::string& path) {
   Start start{MPI_Wtime(), {}, {}, {}};
 
   // 1. The scene
-  const Scene scene = read_scene(path);
+  Scene scene = read_scene(path);
   check_reports(scene);
 
   // 2. Sheet -> lattice, and what it does not need
   start.lattice = make_lattice(scene, PETSC_COMM_WORLD, start.mesh);
   set_initial(scene, start.lattice);
+  if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
   start.skips = skips_of(scene, start.lattice);
   const std::string& why = start.skips.needs_space;
   say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
+
+  if (start.mesh.strength) say("strength: " + text_of(*start.mesh.strength) + "\n");
 
   return start.skips.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
 }

@@ -14,6 +14,13 @@
 
 namespace floe {
 
+/// What a sheet's strength is, and what its beams must have for it to be the given one (model.md
+/// section 12).
+struct StrengthCalibration {
+  double along_x = 1, along_y = 1;  ///< of the uncalibrated sheet at its first break, over sigma_t
+  double factor = 1;                ///< for the beams' strengths
+};
+
 /// What mesh and calibration say of themselves.
 struct MeshReport {
   double energy_ratio = 0;
@@ -21,12 +28,23 @@ struct MeshReport {
   int iterations = 0;
   std::int64_t degenerate = 0;
   std::optional<Calibration> calibration;
+  std::optional<StrengthCalibration> strength;
 };
 
 /// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective;
 /// the lattice is whole and the same on every rank. \throws InputError for what a file or a scene
 /// has wrong
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
+
+/// Stretches the whole, unscattered sheet along x and along y, in its plane and for small
+/// displacements, each time to where the first beam reaches its strength. Collective.
+/// \param lattice  with the sets left, right, bottom and top
+StrengthCalibration calibrate_strength(const Scene& scene, const Lattice& lattice, MPI_Comm comm);
+
+/// Gives the beams what makes the scene's strengths the sheet's.
+void strengthen(Scene& scene, const StrengthCalibration& c);
+/// One line for the user.
+std::string text_of(const StrengthCalibration& c);
 
 /// Sets the velocities of the scene's `initial` sections. \throws InputError for an unknown set
 void set_initial(const Scene& scene, Lattice& lattice);

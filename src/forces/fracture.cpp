@@ -82,6 +82,19 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
   return all;
 }
 
+double overload(const Part& part, const std::vector<BeamSection>& sections,
+                FractureOptions fracture) {
+  fracture.weibull_modulus = 0;
+  const std::vector<Strength<double>> all = strengths(part, fracture);
+  double mine = 0, most = 0;
+  for (std::size_t m = 0; m < sections.size(); ++m) {
+    const auto& [n, qy, qz, t, my, mz] = sections[m];
+    mine = std::max(mine, criterion(all[m], BeamStress<double>{n, qy, qz, {t, my, mz}}));
+  }
+  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, part.comm);
+  return std::sqrt(most);
+}
+
 void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks) {
   constexpr std::size_t width = crack_size;
   std::vector<double> mine = packed(cracks), all;

@@ -43,7 +43,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
                 ? tessellate(scene.sheet, comm, show)
                 : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show);
   }
-  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate, {}};
+  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate, {}, {}};
   const Timed timed(Event::lattice);
   return make_sheet(cells, section);
 }
@@ -80,6 +80,8 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
   if (scene.calibrate != Calibrate::none)
     report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
+  if (scene.forces.fracture && scene.fracture.calibrate)
+    report.strength = calibrate_strength(scene, lattice, comm);
   for (const Cut& c : scene.cuts) {
     const std::int32_t before = lattice.beams.size();
     cut(lattice, c.from, c.to);

@@ -86,6 +86,9 @@ constexpr std::array table{
                "sigma_t: a beam cracks where its largest tensile stress, with shear, reaches it"},
     OptionSpec{"fracture: shear_strength", number, "(tensile_strength)", "Pa", "> 0",
                "tau_c, of shear and torsion"},
+    OptionSpec{"fracture: calibrate", choice, "none", "", "none | strength",
+               "the strengths are those of the beams; or of the sheet: the beams' are such that "
+               "its first beam breaks at a mean stress sigma_t, in the mean of x and y"},
     OptionSpec{"fracture: energy", number, "15", "J/m^2", "> 0",
                "dissipated per area of a section that breaks in tension or bending"},
     OptionSpec{"fracture: energy_shear", number, "(energy)", "J/m^2", "> 0",

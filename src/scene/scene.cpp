@@ -61,6 +61,10 @@ void read_fracture(Options& options, Scene& scene) {
   fracture.tensile_strength = options.number("fracture: tensile_strength");
   fracture.shear_strength =
       options.number("fracture: shear_strength", {}, fracture.tensile_strength);
+  enum class Calibration { none, strength };
+  if (scene.has_sheet)
+    fracture.calibrate =
+        options.choice<Calibration>("fracture: calibrate") == Calibration::strength;
   fracture.energy = options.number("fracture: energy");
   fracture.energy_shear = options.number("fracture: energy_shear", {}, fracture.energy);
   fracture.dynamic = scene.integrator != Integrator::quasistatic;
@@ -215,6 +219,8 @@ void read_lattice_source(Options& options, Scene& scene) {
     constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
     for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);
+    options.refuse("fracture: calibrate",
+                   "needs 'sheet': a lattice file says nothing of a sheet's section");
   }
 }
 

@@ -219,6 +219,10 @@ Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& mo
     text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations",
                  mesh.energy_ratio, mesh.largest_move, mesh.iterations);
   if (mesh.calibration) add_calibration(scene, *mesh.calibration, json, text);
+  if (mesh.strength)
+    json["strength_calibration"] = Json{{"factor", mesh.strength->factor},
+                                        {"along_x", mesh.strength->along_x},
+                                        {"along_y", mesh.strength->along_y}};
   if (result.done && scene.report.tension) add_tension(scene, model, mesh, last, json, text);
   if (result.done && scene.report.bending) add_bending(scene, first, last, json, text);
   Json energy = Json::object();

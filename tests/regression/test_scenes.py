@@ -20,6 +20,7 @@ FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import campaign_cases  # noqa: E402
 import floe_plate  # noqa: E402
+import floe_strength  # noqa: E402
 from floe_output import Output  # noqa: E402
 
 YOUNG = 4e9  # of the triangles [Pa]
@@ -459,6 +460,35 @@ def check_in_situ_cantilever(test, run):
     test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 1.2, delta=0.25)
 
 
+def check_strength_tension(test, run):
+    """Short forms: l = 1 m, L/l = 10 (docs/strength.md)."""
+    small = ("-sheet_length", "10", "-sheet_width", "10", "-boundary_right_displacement", "0.0015,0,0", "-time_dt", "0.1",
+             "-beam_kinematics", "linear")
+    nominal = 10 * 0.5 * 6e5
+    plain = run(*small)
+    strength = floe_strength.of_tension(floe_strength.history(plain.folder), nominal)
+    test.assertAlmostEqual(strength["largest"], 0.68, delta=0.08)
+    test.assertNotIn("strength_calibration", plain.summary)
+    free = (*small, "-boundary_left_fix", "x", "-boundary_right_fix", "x", "-boundary_right_displacement", "0.0025,0,0",
+            "-fracture_calibrate", "strength", "-time_end", "0.8")
+    found = {}
+    for ranks in (1, 2):
+        output = run(*free, ranks=ranks)
+        found[ranks] = output.summary["strength_calibration"]
+        strength = floe_strength.of_tension(floe_strength.history(output.folder), nominal)["first"]
+        along_x = found[ranks]["factor"] * found[ranks]["along_x"]
+        test.assertAlmostEqual(strength / along_x, 1, delta=0.006)  # a load step may pass the strength by 0.5 %
+        test.assertAlmostEqual(strength, 1, delta=0.08)  # x and y differ
+    test.assertEqual(found[1]["factor"], found[2]["factor"])
+
+
+def check_strength_bending(test, run):
+    output = run("-sheet_length", "10", "-sheet_width", "10", "-load_left_moment", "0,3e5,0", "-load_right_moment", "0,-3e5,0",
+                 "-time_dt", "0.1", "-beam_kinematics", "linear", status=1)
+    strength = floe_strength.of_bending(floe_strength.history(output.folder), output.summary["message"], 1.2)
+    test.assertAlmostEqual(strength["largest"], 0.87, delta=0.12)
+
+
 def check_edge_uplift(test, run):
     output = run()
     force = largest(output, "edge_force_z") / 8
@@ -556,6 +586,8 @@ EXPECTED = {
     "break_strip.yaml": check_break_strip,
     "in_situ_cantilever.yaml": check_in_situ_cantilever,
     "edge_uplift.yaml": check_edge_uplift,
+    "strength_tension.yaml": check_strength_tension,
+    "strength_bending.yaml": check_strength_bending,
     "point_breakthrough.yaml": check_point_breakthrough,
     "notch.yaml": check_notch,
     "tension.yaml": check_tension,
@@ -608,10 +640,10 @@ class Scenes(unittest.TestCase):
         self.assertTrue(first.startswith("# ") and first.endswith(f"input/{scene.relative_to(REPOSITORY / 'input')}"),
                         f"{scene}: the first line must be the command that runs it")
 
-        def run(*options):
-            command = " ".join([first[2:], *options])
+        def run(*options, ranks=1, status=0):
+            command = " ".join([*(["mpiexec", "-n", str(ranks)] if ranks > 1 else []), first[2:], *options])
             done = subprocess.run(["bash", "-c", command], cwd=self.folder, capture_output=True, text=True)
-            self.assertEqual(done.returncode, 0, f"{command}\n{done.stdout}{done.stderr}")
+            self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
             return Output(self.folder / "out" / scene.stem)
 
         return run

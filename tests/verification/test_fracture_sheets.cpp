@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/dynamics.h"
@@ -105,6 +106,55 @@ TEST(FractureOfStrips, TensionAndBendingAddUp) {
   EXPECT_NEAR(until_failure(scene, strip(1)).load, 0.8, 8e-3);
   scene.loads = {at_tip({-0.5 * strength * w * h, 0, 0}, {0, 1.5 * strength * w * h * h / 6, 0})};
   EXPECT_NEAR(until_failure(scene, strip(1)).load, 1.0, 1e-2);
+}
+
+/// N/(sigma_t w h) at which the weakest of a strip's beams breaks, of many seeds: mean and
+/// deviation.
+std::pair<double, double> scattered_strips(int elements, double modulus, int seeds) {
+  const Lattice lattice = strip(elements);
+  const Part part = partition(lattice, PETSC_COMM_SELF);
+  BeamOptions beams;
+  beams.kinematics = Kinematics::linear;
+  State<Spatial> stretched(static_cast<std::size_t>(part.local));  // every beam at sigma_t
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
+    double* r = stretched.record(b);
+    r[0] = strength / young * part.bodies.position[b][0];
+    r[3] = 1;
+  }
+  double sum = 0, squares = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    FractureOptions options;
+    options.tensile_strength = options.shear_strength = strength;
+    options.weibull_modulus = modulus;
+    options.seed = static_cast<std::uint64_t>(seed);
+    const double broken_at =
+        1 / make_breakable_beams(part, beams, options).fracture->overload(stretched);
+    sum += broken_at, squares += broken_at * broken_at;
+  }
+  const double mean = sum / seeds;
+  return {mean, std::sqrt((squares - seeds * mean * mean) / (seeds - 1))};
+}
+
+/// Links in series: the least of n strengths of Weibull's distribution has the same distribution,
+/// n^(-1/m) as large.
+TEST(FractureOfStrips, WeibullsSizeEffectOfTheWeakestLink) {
+  constexpr int seeds = 800;
+  for (const double m : {3.0, 6.0}) {
+    const double g1 = std::tgamma(1 + 1 / m), g2 = std::tgamma(1 + 2 / m);
+    const double variation = std::sqrt(g2 / (g1 * g1) - 1);
+    for (const int n : {1, 10, 100}) {
+      const auto [mean, deviation] = scattered_strips(n, m, seeds);
+      const double exact = std::pow(n, -1 / m);
+      test::verify({.section = "Fracture",
+                    .quantity = "mean strength of strips of " + std::to_string(n) +
+                                " beams over (1/n)^(1/m), Weibull's m = " +
+                                std::to_string(static_cast<int>(m)),
+                    .value = mean / exact,
+                    .reference = 1,
+                    .tolerance = 3 * variation / std::sqrt(seeds)});
+      EXPECT_NEAR(deviation / mean / variation, 1, 0.12) << n;
+    }
+  }
 }
 
 /// Pulled by displacement, a strip of short beams softens along a static path: the reaction falls
@@ -230,6 +280,70 @@ TEST(FractureOfSheets, TheLedgerCloses) {
     EXPECT_LT(fine.error / fine.fracture, std::max(automatic.error / automatic.fracture, rounding));
     EXPECT_LT(finer.error / finer.fracture, std::max(fine.error / fine.fracture, rounding));
   }
+}
+
+/// Mean stress over sigma_t at which a sheet's first beam breaks when its ends are pulled along an
+/// axis, by statics in space; the last state before the break, extrapolated to it.
+double first_break(Scene scene, const Lattice& lattice, std::size_t axis) {
+  for (const char* side : {axis == 0 ? "left" : "bottom", axis == 0 ? "right" : "top"}) {
+    Boundary b;
+    b.name = b.set = side;
+    b.fixed[axis] = true;
+    b.displacement = Point3{};
+    if (!scene.boundaries.empty()) (*b.displacement)[axis] = 2.2e-4 * scene.sheet.length;
+    b.ramp.seconds = 1;
+    scene.boundaries.push_back(b);
+  }
+  Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
+  add_forces(scene, {}, model);
+  hold_free_motions(scene, lattice, model);
+  double stress = 0;
+  (void)run_quasistatic(model, {1, 0.05}, [&](const Accepted<Spatial>& a) {
+    if (!model.fracture()->breaks().empty() || a.state.time == 0) return;
+    double force = 0;
+    for (const std::int32_t body : model.boundaries()[0].bodies)
+      force += a.wrenches.of(static_cast<std::size_t>(body))[axis];
+    const double across = axis == 0 ? scene.sheet.width : scene.sheet.length;
+    stress = std::abs(force) / (across * scene.thickness) / model.fracture()->overload(a.state);
+  });
+  return stress / scene.fracture.tensile_strength;
+}
+
+/// A sheet whose beams are as strong as its calibration says breaks at the given strength.
+TEST(FractureOfSheets, ACalibratedSheetHasTheGivenStrength) {
+  Scene scene;
+  scene.has_sheet = true;
+  scene.sheet = {15, 12, 1, 4, Relaxation::lloyd, 50, 0};
+  scene.thickness = 0.5;
+  scene.forces.beam = scene.forces.fracture = true;
+  scene.beam.kinematics = Kinematics::linear;
+  scene.fracture.dynamic = false;
+  scene.fracture.calibrate = true;
+  scene.fracture.shear_strength = 4e5;
+  MeshReport report;
+  const Lattice lattice = make_lattice(scene, PETSC_COMM_SELF, report);
+  ASSERT_TRUE(report.strength.has_value());
+  const double factor = report.strength->factor;
+  EXPECT_GT(factor, 1.1);
+  const double given = scene.fracture.tensile_strength;
+  strengthen(scene, *report.strength);
+  EXPECT_DOUBLE_EQ(scene.fracture.tensile_strength, factor * given);
+  EXPECT_DOUBLE_EQ(scene.fracture.shear_strength, factor * 4e5);
+  const double x = first_break(scene, lattice, 0) * factor,
+               y = first_break(scene, lattice, 1) * factor;
+  EXPECT_NEAR(x / (factor * report.strength->along_x), 1, 1e-5);
+  EXPECT_NEAR(y / (factor * report.strength->along_y), 1, 1e-5);
+  for (const double along : {x, y})
+    test::verify({.section = "Fracture",
+                  .quantity = "calibrated sheet's first break over sigma_t, along one axis",
+                  .value = along,
+                  .reference = 1,
+                  .tolerance = 0.08});
+  test::verify({.section = "Fracture",
+                .quantity = "the same, mean of x and y",
+                .value = (x + y) / 2,
+                .reference = 1,
+                .tolerance = 1e-5});
 }
 
 }  // namespace

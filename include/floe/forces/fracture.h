@@ -18,6 +18,7 @@ struct FractureOptions {
   double shear_strength = 6e5;    ///< tau_c [Pa]
   double energy = 15;             ///< G_f [J/m^2]
   double energy_shear = 15;       ///< G_s [J/m^2]
+  bool calibrate = false;         ///< these are the sheet's strengths, not yet the beams'
   double weibull_modulus = 0;     ///< m; 0: all beams have the same strengths
   double weibull_area = 0;        ///< A_ref [m^2]; 0: the mean section of the lattice
   std::uint64_t seed = 1;         ///< of the scatter
@@ -82,6 +83,11 @@ class BreakableForce {
 /// sections' sides. Collective.
 BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
                                     const FractureOptions& fracture);
+
+/// Largest s of a part's whole beams under section forces, without scatter. Collective.
+/// \param sections  one per local beam
+double overload(const Part& part, const std::vector<BeamSection>& sections,
+                FractureOptions fracture);
 
 /// Factor of beam `beam`'s strengths: (A_ref/A)^(1/m) (-ln U)^(1/m)/Gamma(1 + 1/m), U uniform in
 /// (0, 1) from the seed and the beam's global index.
