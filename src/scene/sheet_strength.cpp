@@ -24,6 +24,17 @@ std::vector<Boundary> pulled_ends(std::size_t axis, double displacement) {
   return ends;
 }
 
+/// \throws InputError if a body is on both ends: a single row of bodies cannot be stretched across
+void require_two_ends(const Lattice& lattice, const std::vector<Boundary>& ends,
+                      std::string_view side) {
+  const std::vector<std::int32_t>&first = lattice.sets.at(ends[0].set),
+        &second = lattice.sets.at(ends[1].set);
+  if (std::find_first_of(first.begin(), first.end(), second.begin(), second.end()) != first.end())
+    throw InputError(
+        "fracture: calibrate: strength stretches the sheet along x and along y: sheet: " +
+        std::string(side) + ": must be of more than one row of bodies");
+}
+
 /// Force along `axis` that the first end's bodies take [N]. Collective.
 double force_on_first_end(const Model<Planar>& model, const Wrenches<Planar>& wrenches,
                           std::size_t axis) {
@@ -45,6 +56,7 @@ double first_break(const Scene& scene, const Lattice& lattice, MPI_Comm comm, st
   stretch.beam.kinematics = Kinematics::linear;
   stretch.beam.damping_ratio = 0;
   stretch.boundaries = pulled_ends(axis, 1e-4 * along);
+  require_two_ends(lattice, stretch.boundaries, axis == 0 ? "length" : "width");
 
   Model<Planar> model(lattice, comm, stretch.boundaries);
   add_forces(stretch, {}, model);

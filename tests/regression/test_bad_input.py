@@ -118,6 +118,8 @@ SCENES = {
     "strength of a sheet": (BREAKABLE + "fracture: {calibrate: sheet}\n", "none | strength"),
     "strength of a lattice file": ("forces: [beam, fracture]\nlattice_file: bad.h5\nfracture: {calibrate: strength}\n",
                                    "fracture: calibrate: needs 'sheet'"),
+    "strength of a row of bodies": (BREAKABLE + "fracture: {calibrate: strength}\n", "sheet: width: must be of more than one row",
+                                    ["-sheet_length", "4", "-sheet_width", "1", "-sheet_element_size", "1"]),
     "strength that does not scatter": (BREAKABLE + "fracture: {seed: 3}\n", "weibull_modulus"),
     "no strength": (BREAKABLE + "fracture: {tensile_strength: 0}\n", "fracture: tensile_strength: 0"),
     "buoyancy without gravity": ("forces: [beam, buoyancy]\n" + SHEET, "gravity"),
