@@ -5,6 +5,7 @@ Each case is (scene text or None for no scene file, words after the scene, words
 in a temporary folder of its own, as a user would run it, with a time limit: a rank that waits for another
 that has given up is the failure this looks for.
 """
+import concurrent.futures
 import os
 import subprocess
 import sys
@@ -232,26 +233,42 @@ class BadInput(unittest.TestCase):
         self.assertEqual(run.returncode, 2, lines[0])
         self.assertEqual(sorted(folder.rglob("*")), before, "something has been written")
 
+    def setUp(self):
+        self.pool = concurrent.futures.ThreadPoolExecutor(6)  # a run is mostly waiting for MPI to start
+        self.addCleanup(self.pool.shutdown)
+        self.cases = []
+
     def on_ranks(self, name, words, part, prepare):
-        for ranks in (1, 2):
-            with self.subTest(case=name, ranks=ranks), tempfile.TemporaryDirectory() as folder:
+        """Starts the case on 1 and 2 ranks; finish() looks at what came out."""
+        def one(ranks):
+            with tempfile.TemporaryDirectory() as folder:
                 prepare(Path(folder))
                 self.refused(words, part, ranks, Path(folder))
+        for ranks in (1, 2):
+            self.cases.append((name, ranks, self.pool.submit(one, ranks)))
+
+    def finish(self):
+        for name, ranks, case in self.cases:
+            with self.subTest(case=name, ranks=ranks):
+                case.result()
 
     def test_command_line(self):
         for name, (scene, words, part) in COMMAND_LINE.items():
             self.on_ranks(name, ["scene.yaml", *words], part,
-                          lambda folder: (folder / "scene.yaml").write_text(scene))
+                          lambda folder, scene=scene: (folder / "scene.yaml").write_text(scene))
+        self.finish()
 
     def test_what_needs_space(self):
         for name, (scene, words, part) in NEEDS_SPACE.items():
             self.on_ranks(name, ["scene.yaml", *words], part,
-                          lambda folder: (folder / "scene.yaml").write_text(scene))
+                          lambda folder, scene=scene: (folder / "scene.yaml").write_text(scene))
+        self.finish()
 
     def test_scenes(self):
         for name, (scene, part, *words) in SCENES.items():
             self.on_ranks(name, ["scene.yaml", *(words[0] if words else [])], part,
-                          lambda folder: (folder / "scene.yaml").write_text(scene))
+                          lambda folder, scene=scene: (folder / "scene.yaml").write_text(scene))
+        self.finish()
 
     def test_scene_files(self):
         self.on_ranks("no scene", [], "usage", lambda folder: None)
@@ -260,11 +277,12 @@ class BadInput(unittest.TestCase):
         self.on_ranks("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())
         self.on_ranks("device", ["/dev/null"], "/dev/null", lambda folder: None)
         self.on_ranks("binary", ["a.h5"], "a.h5", lambda folder: h5py.File(folder / "a.h5", "w").close())
+        self.finish()
 
     def test_lattice_files(self):
         frame = fl.straight_frame(length=4, elements=4, section=fl.Section(1, 1))
         for name, (change, part) in LATTICE_FILES.items():
-            def prepare(folder):
+            def prepare(folder, change=change):
                 (folder / "scene.yaml").write_text(FILE)
                 frame.write(folder / "bad.h5")
                 with h5py.File(folder / "bad.h5", "r+") as file:
@@ -279,6 +297,7 @@ class BadInput(unittest.TestCase):
         self.on_ranks("not HDF5", ["scene.yaml"], "bad.h5",
                       lambda folder: [(folder / "scene.yaml").write_text(FILE),
                                       (folder / "bad.h5").write_text("no")])
+        self.finish()
 
     def test_more_ranks_than_bodies(self):
         with tempfile.TemporaryDirectory() as folder:
