@@ -38,7 +38,9 @@ class Case {
     lattice_ = {};
   }
   static Case& of(std::int64_t bodies, double damping, bool breakable = false) {
-    static std::map<std::tuple<std::int64_t, double, bool>, std::unique_ptr<Case>> cases;
+    // Never destroyed: PETSc ends before statics do.
+    static auto& cases =
+        *new std::map<std::tuple<std::int64_t, double, bool>, std::unique_ptr<Case>>;
     auto& found = cases[{bodies, damping, breakable}];
     if (!found) found = std::make_unique<Case>(bodies, damping, breakable);
     return *found;

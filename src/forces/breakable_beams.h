@@ -60,7 +60,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       const std::size_t soon = std::min(b + Base::blocks_ahead, blocks_.size() - 1);
       prefetch(blocks_[soon]);
       prefetch(strengths_[soon]);
-      if constexpr (damped) prefetch(dashpots_[soon]);
+      if constexpr (damped) {
+        prefetch(dashpots_[soon]);
+        prefetch(viscous_[soon]);
+      }
       const BeamBlock<Frame>* block = &blocks_[b];
       const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
       const StrengthBlock* strength = &strengths_[b];

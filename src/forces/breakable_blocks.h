@@ -37,16 +37,14 @@ struct alignas(64) ViscousBlock {
 
   BeamStress<Lanes> get() const {
     const auto at = [&](std::size_t k) {
-      return Lanes([&](auto lane) { return static_cast<double>(values[k][lane]); });
+      return Lanes(values[k].data(), std::experimental::element_aligned);
     };
     return {at(0), at(1), at(2), {at(3), at(4), at(5)}};
   }
   void set(const BeamStress<Lanes>& s) {
     const std::array<Lanes, 6> all{s.n, s.qy, s.qz, s.c.x, s.c.y, s.c.z};
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        values[k][lane] = static_cast<float>(all[k][lane]);
-    }
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k].copy_to(values[k].data(), std::experimental::element_aligned);
   }
 };
 
