@@ -80,7 +80,7 @@ int run(const floe::Scene& scene, Start& start) {
   release_setup(scene, model);
   folded.fold_shapes(lattice);
   folded.fold_beams(lattice);
-  folded.fold_bodies(lattice, model.part().bodies);  // on one rank
+  if (size() == 1) folded.fold_bodies(lattice, model.part().bodies);
 
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.
@@ -89,7 +89,7 @@ int run(const floe::Scene& scene, Start& start) {
   std::optional<First<Space>> first;
   const auto open = [&] {
     reject_unused_options();
-    if (rank() == 0) folded.unfold(lattice);
+    if (rank() == 0) folded.unfold(lattice);  // others need no geometry but places
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
                    std::move(lattice), model, loads, scene.options_yaml,
                    restart ? &*restart : nullptr);

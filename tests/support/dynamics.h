@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -87,6 +88,22 @@ class DynamicsIn {
   double dt_ = 0;
 };
 using Dynamics = DynamicsIn<Spatial>;
+
+/// Expects this rank's bodies to be those of a run on one process, to the last bit. Returns the
+/// largest displacement among them [m].
+template <class Space>
+double expect_same_bits(DynamicsIn<Space>& together, DynamicsIn<Space>& alone) {
+  const Part &part = together.model().part(), &whole = alone.model().part();
+  double moved = 0;
+  for (std::int32_t b = 0; b < part.owned; ++b) {
+    const std::int32_t global = part.global[static_cast<std::size_t>(b)];
+    const double* here = together.state().record(static_cast<std::size_t>(b));
+    const double* there = alone.state().record(static_cast<std::size_t>(whole.local_index(global)));
+    EXPECT_EQ(std::memcmp(here, there, Space::record * sizeof(double)), 0) << "body " << global;
+    for (int k = 0; k < Space::translations; ++k) moved = std::max(moved, std::abs(here[k]));
+  }
+  return moved;
+}
 
 /// Gives a frame of equal beams the masses of its material: half beams to either end, rotary
 /// inertias of its section (about axis 1 the polar one). Beams lie along x, axis 2 along y.

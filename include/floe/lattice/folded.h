@@ -10,8 +10,8 @@
 namespace floe {
 
 /// What a sheet's lattice can do without while nobody looks at it: shapes, where they are prisms of
-/// one thickness, properties that all beams share, and bodies that are a part's as well. A large sheet's lattice is most of rank 0's
-/// memory during a run's set-up.
+/// one thickness, properties that all beams share, and bodies that are a part's as well. A large
+/// sheet's lattice is most of rank 0's memory during a run's set-up.
 class Folded {
  public:
   void fold_shapes(Lattice& lattice);
