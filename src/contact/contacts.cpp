@@ -38,45 +38,39 @@ double Contacts::gap(Pair& pair, const Placed& a, const Placed& b, int tries) {
 }
 
 PairConstants Contacts::constants(std::int32_t a, std::int32_t b) const {
-  const auto i = static_cast<std::size_t>(a);
-  const double size_a = std::cbrt(volumes_[i]);
+  const Solid& i = solids_[static_cast<std::size_t>(a)];
   if (b < 0) {
     const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - b)];
-    return {options_.young / (0.5 * size_a), size_a * size_a, masses_[i], o.friction,
+    return {options_.young / (0.5 * i.size), i.size * i.size, i.mass, o.friction,
             o.vertices.empty()};
   }
-  const auto j = static_cast<std::size_t>(b);
-  const double size_b = std::cbrt(volumes_[j]), smaller = std::min(size_a, size_b);
-  return {options_.young / (0.5 * (size_a + size_b)), smaller * smaller,
-          masses_[i] * masses_[j] / (masses_[i] + masses_[j]), options_.friction, false};
+  const Solid& j = solids_[static_cast<std::size_t>(b)];
+  const double smaller = std::min(i.size, j.size);
+  return {options_.young / (0.5 * (i.size + j.size)), smaller * smaller,
+          i.mass * j.mass / (i.mass + j.mass), options_.friction, false};
 }
 
-/// \param centre  relative to A's centroid
-RelativeMotion Contacts::relative(const Pair& pair, const Vec3<double>& centre,
-                                  std::span<const MovingPose> bodies) const {
-  const MovingPose& a = bodies[static_cast<std::size_t>(pair.slot_a)];
-  const Vec3<double> velocity = a.velocity + cross(a.spin, centre);
+/// Of A against B at a point of both. \param centre  from A's centroid
+RelativeMotion Contacts::relative(const Placed& a, const Placed& b, const Vec3<double>& centre) {
+  const Vec3<double> arm = centre + (a.x - b.x);
+  return {(a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, arm)),
+          a.spin - b.spin};
+}
+
+void Contacts::add_power(const Pair& pair, const ContactForce& c, const RelativeMotion& motion,
+                         std::array<double, 4>& power) const {
+  const double parting = dot(c.normal, motion.velocity);
+  power[0] += c.elastic * parting + dot(c.couple, motion.spin);
+  power[1] += c.viscous * parting;
+  power[2] += dot(c.memory.tangential, motion.velocity);
   if (pair.b < 0)
-    return {velocity - obstacles_[static_cast<std::size_t>(-1 - pair.b)].velocity, a.spin};
-  const MovingPose& b = bodies[static_cast<std::size_t>(pair.slot_b)];
-  const Vec3<double> arm = centre + (placed_[static_cast<std::size_t>(pair.slot_a)].x -
-                                     placed_[static_cast<std::size_t>(pair.slot_b)].x);
-  return {velocity - (b.velocity + cross(b.spin, arm)), a.spin - b.spin};
-}
-
-std::array<double, 4> Contacts::powers(const Touch& t, std::span<const MovingPose> bodies) const {
-  const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
-  const RelativeMotion m = relative(pair, t.centre, bodies);
-  const ContactForce& c = t.contact;
-  const double given =
-      pair.b < 0 ? dot(c.force(), obstacles_[static_cast<std::size_t>(-1 - pair.b)].velocity) : 0.0;
-  return {dot(c.elastic, m.velocity) + dot(c.couple, m.spin), dot(c.viscous, m.velocity),
-          dot(c.tangential, m.velocity), given};
+    power[3] += dot(c.force(), obstacles_[static_cast<std::size_t>(-1 - pair.b)].velocity);
 }
 
 /// Overlap and force of a pair that may touch; false if it does not.
-bool Contacts::meet(std::int32_t index, const Placed& b, std::span<const MovingPose> bodies) {
-  Pair& pair = pairs_[static_cast<std::size_t>(index)];
+/// \param memory  null: it remembers nothing
+bool Contacts::meet(std::int32_t index, const Placed& b, const PairMemory* memory) {
+  const Pair& pair = pairs_[static_cast<std::size_t>(index)];
   const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
   // A's vertices in B's frame.
   const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
@@ -84,49 +78,58 @@ bool Contacts::meet(std::int32_t index, const Placed& b, std::span<const MovingP
   const Vec3<double> apart = b.axes.to_local(a.x - b.x);
   work_a_.clear();
   for (const auto& r : vertices(pair.a)) work_a_.push_back(moved(turn, apart, r));
-  Overlap o = clipper_.overlap(shapes_, pair.a, work_a_, planes(pair.b));
-  const double size = radius_[static_cast<std::size_t>(pair.a)];
+  Overlap o = clipper_.overlap(shapes_, solids_[static_cast<std::size_t>(pair.a)].shape, work_a_,
+                               planes(pair.b));
+  const double size = radius(pair.a);
   if (o.volume <= rounding_volume * size * size * size) return false;
   const HalfSpace& first = planes(pair.b)[0];
   const double depth = first.offset - dot(first.normal, o.centroid);
   o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);  // from A's centroid
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);
-  const PairMemory memory =
-      pair.memory < 0 ? PairMemory{} : memories_[static_cast<std::size_t>(pair.memory)].memory;
-  pair.touch = static_cast<std::int32_t>(touches_.size());
-  touches_.push_back({index,
-                      o.centroid,
-                      contact_force(options_, constants(pair.a, pair.b), o, depth,
-                                    relative(pair, o.centroid, bodies), memory, pair.fresh),
-                      {}});
-  touches_.back().power = powers(touches_.back(), bodies);
+  const RelativeMotion motion = relative(a, b, o.centroid);
+  StoredEnergy stored;
+  touches_.push_back(
+      {index, o.centroid,
+       contact_force(options_, constants(pair.a, pair.b), o, depth, motion,
+                     memory != nullptr ? *memory : PairMemory{}, pair.fresh, stored)});
+  if (pair.counted) {
+    ++touching_;
+    totals_.stored.normal += stored.normal;
+    totals_.stored.tangential += stored.tangential;
+    add_power(pair, touches_.back().contact, motion, totals_.power);
+  }
   return true;
 }
 
 void Contacts::evaluate(std::span<const MovingPose> bodies, double time,
                         std::span<ContactWrench> wrenches) {
   for (std::size_t s = 0; s < bodies.size(); ++s)
-    placed_[s] = {bodies[s].pose.x, triad(bodies[s].pose.q)};
+    placed_[s] = {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin};
+  obstacles_at_.clear();
+  for (std::size_t k = 0; k < obstacles_.size(); ++k)
+    obstacles_at_.push_back(at_time(-1 - static_cast<std::int32_t>(k), time));
   std::fill(on_obstacle_.begin(), on_obstacle_.end(), ContactWrench{});
   touches_.clear();
   touching_ = 0;
+  totals_ = {};
+  auto memory = memories_.cbegin();  // in the order of the pairs
   constexpr int tries = 8;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     Pair& pair = pairs_[k];
-    pair.touch = -1;
     const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
-    const Placed b =
-        pair.b < 0 ? at_time(pair.b, time) : placed_[static_cast<std::size_t>(pair.slot_b)];
-    const double clear = rounding * radius_[static_cast<std::size_t>(pair.a)];
-    if (pair.memory < 0 && gap(pair, a, b, tries) > clear) continue;
-    if (!meet(static_cast<std::int32_t>(k), b, bodies)) continue;
+    const Placed& b = pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)]
+                                 : placed_[static_cast<std::size_t>(pair.slot_b)];
+    const auto index = static_cast<std::int32_t>(k);
+    const PairMemory* remembered = nullptr;
+    if (memory != memories_.cend() && memory->pair == index) remembered = &(memory++)->memory;
+    if (remembered == nullptr && gap(pair, a, b, tries) > rounding * radius(pair.a)) continue;
+    if (!meet(index, b, remembered)) continue;
     const Touch& t = touches_.back();
     const Vec3<double> force = t.contact.force();
     ContactWrench& on_a = wrenches[static_cast<std::size_t>(pair.slot_a)];
     on_a.force = on_a.force + force;
     on_a.moment = on_a.moment + cross(t.centre, force) + t.contact.couple;
-    touching_ += pair.counted ? 1 : 0;
     ContactWrench& on_b = pair.b < 0 ? on_obstacle_[static_cast<std::size_t>(-1 - pair.b)]
                                      : wrenches[static_cast<std::size_t>(pair.slot_b)];
     on_b.force = on_b.force - force;
@@ -140,44 +143,42 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     sums_[5] = energies().stored;
     sums_[6] = 1;
   }
-  for (const Remembered& r : memories_) {
-    if (r.pair >= 0) pairs_[static_cast<std::size_t>(r.pair)].memory = -1;
-  }
   memories_.clear();
+  std::array<double, 4> power{};
   for (const Touch& t : touches_) {
-    Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
-    if (pair.counted) {
-      const std::array<double, 4> power = powers(t, bodies);
-      for (std::size_t k = 0; k < power.size(); ++k)
-        sums_[k] += 0.5 * (last_dt * t.power[k] + dt * power[k]);
-    }
-    PairMemory memory = t.contact.memory;
-    const MovingPose& a = bodies[static_cast<std::size_t>(pair.slot_a)];
-    const Vec3<double> other =
-        pair.b < 0 ? Vec3<double>{} : bodies[static_cast<std::size_t>(pair.slot_b)].spin;
-    slide(memory, relative(pair, t.centre, bodies), 0.5 * (a.spin + other), dt);
-    pair.memory = static_cast<std::int32_t>(memories_.size());
-    memories_.push_back({pair.a, pair.b, t.pair, memory});
+    const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
+    const auto moving = [&](std::int32_t slot) {  // where it was, as it moves now
+      const auto s = static_cast<std::size_t>(slot);
+      return Placed{placed_[s].x, {}, bodies[s].velocity, bodies[s].spin};
+    };
+    const Placed a = moving(pair.slot_a);
+    const Placed b =
+        pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)] : moving(pair.slot_b);
+    const RelativeMotion motion = relative(a, b, t.centre);
+    if (pair.counted) add_power(pair, t.contact, motion, power);
+    memories_.push_back(
+        {pair.a, pair.b, t.pair, slid(t.contact, motion, 0.5 * (a.spin + b.spin), dt)});
   }
-  for (Pair& pair : pairs_) pair.fresh = false;
+  for (std::size_t k = 0; k < power.size(); ++k)
+    sums_[k] += 0.5 * (last_dt * totals_.power[k] + dt * power[k]);
+  if (fresh_) {
+    for (Pair& pair : pairs_) pair.fresh = false;
+  }
+  fresh_ = false;
   touches_.clear();
+  totals_ = {};
   sums_[4] = dt;
 }
 
 ContactEnergies Contacts::energies() const {
   std::array<double, 4> work{sums_[0], sums_[1], sums_[2], sums_[3]};
-  double normal = 0, tangential = 0;
-  for (const Touch& t : touches_) {
-    if (!pairs_[static_cast<std::size_t>(t.pair)].counted) continue;
-    normal += t.contact.normal_energy;
-    tangential += t.contact.tangential_energy;
-    for (std::size_t k = 0; k < work.size(); ++k) work[k] += 0.5 * sums_[4] * t.power[k];
-  }
+  for (std::size_t k = 0; k < work.size(); ++k) work[k] += 0.5 * sums_[4] * totals_.power[k];
+  const StoredEnergy& stored = totals_.stored;
   ContactEnergies e;
-  e.stored = normal + tangential;
+  e.stored = stored.normal + stored.tangential;
   e.viscous = -work[1];
-  e.friction = -work[2] - tangential;
-  e.crushing = sums_[6] == 0 ? 0.0 : sums_[5] - work[0] - normal;
+  e.friction = -work[2] - stored.tangential;
+  e.crushing = sums_[6] == 0 ? 0.0 : sums_[5] - work[0] - stored.normal;
   e.external = work[3];
   return e;
 }

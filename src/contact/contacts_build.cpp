@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "contact/broad_phase.h"
@@ -34,54 +35,88 @@ std::array<double, 2> face_areas(const Shapes& shapes, std::int32_t body) {
   return areas;
 }
 
+/// All that makes the shape of a body: equal if and only if the bodies are, number by number.
+std::vector<double> description(const Shapes& shapes, std::int32_t body) {
+  const auto b = static_cast<std::size_t>(body);
+  std::vector<double> numbers;
+  const auto at = [](std::int32_t k) { return static_cast<std::size_t>(k); };
+  for (auto v = at(shapes.vertex_of[b]); v < at(shapes.vertex_of[b + 1]); ++v)
+    numbers.insert(numbers.end(), shapes.vertices[v].begin(), shapes.vertices[v].end());
+  for (auto f = at(shapes.face_of[b]); f < at(shapes.face_of[b + 1]); ++f) {
+    numbers.push_back(shapes.corner_of[f + 1] - shapes.corner_of[f]);
+    for (auto c = at(shapes.corner_of[f]); c < at(shapes.corner_of[f + 1]); ++c)
+      numbers.push_back(shapes.corners[c] - shapes.vertex_of[b]);
+  }
+  return numbers;
+}
+
 }  // namespace
 
 Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
                    std::vector<std::array<std::int32_t, 2>> joined, const ContactOptions& options,
                    std::vector<Obstacle> obstacles)
     : shapes_(shapes),
-      masses_(masses.begin(), masses.end()),
       joined_(std::move(joined)),
       options_(options),
       obstacles_(std::move(obstacles)),
       on_obstacle_(obstacles_.size()) {
-  for (const Point3& p : shapes_.vertices) vertices_.push_back({p[0], p[1], p[2]});
+  // Bodies of one shape share it: a heap of equal blocks then finds it in the cache.
+  std::map<std::vector<double>, std::int32_t> known;
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
-    append_half_spaces(shapes_, b, planes_);
-    plane_of_.push_back(static_cast<std::int32_t>(planes_.size()));
-    volumes_.push_back(volume_properties(shapes_, b).volume);
-    double most = 0;
-    for (const auto& r : vertices(b)) most = std::max(most, length(r));
-    radius_.push_back(most);
+    const auto body = static_cast<std::size_t>(b);
+    const std::int32_t shape = known.try_emplace(description(shapes_, b), b).first->second;
+    if (shape == b) {
+      add_solid(b);
+    } else {
+      solids_.push_back(solids_[static_cast<std::size_t>(shape)]);
+    }
+    solids_.back().mass = masses[body];
     const auto [all, widest] = face_areas(shapes_, b);
     surface_.push_back(all);
     widest_.push_back(widest);
-    faces_.push_back(shapes_.face_of[static_cast<std::size_t>(b) + 1] -
-                     shapes_.face_of[static_cast<std::size_t>(b)]);
+    faces_.push_back(shapes_.face_of[body + 1] - shapes_.face_of[body]);
   }
   // Enough for a few hundred steps of slow bodies, and no more pairs than necessary.
   constexpr double part_of_radius = 0.15;
   double mean = 0;
-  for (const double r : radius_) mean += r / static_cast<double>(radius_.size());
+  for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
   reach_ = part_of_radius * mean;
   find_pieces();
 }
 
+/// A body of a shape of its own; the mass is not set.
+void Contacts::add_solid(std::int32_t body) {
+  const auto b = static_cast<std::size_t>(body);
+  const auto first_vertex = static_cast<std::int32_t>(vertices_.size());
+  const auto first_plane = static_cast<std::int32_t>(planes_.size());
+  double radius = 0;
+  for (auto v = static_cast<std::size_t>(shapes_.vertex_of[b]);
+       v < static_cast<std::size_t>(shapes_.vertex_of[b + 1]); ++v) {
+    const Point3& p = shapes_.vertices[v];
+    vertices_.push_back({p[0], p[1], p[2]});
+    radius = std::max(radius, length(vertices_.back()));
+  }
+  append_half_spaces(shapes_, body, planes_);
+  solids_.push_back({body, first_vertex, static_cast<std::int32_t>(vertices_.size()) - first_vertex,
+                     first_plane, static_cast<std::int32_t>(planes_.size()) - first_plane,
+                     std::cbrt(volume_properties(shapes_, body).volume), 0, radius});
+}
+
 std::span<const Vec3<double>> Contacts::vertices(std::int32_t body) const {
   if (body < 0) return obstacles_[static_cast<std::size_t>(-1 - body)].vertices;
-  const auto b = static_cast<std::size_t>(body);
-  return {vertices_.data() + shapes_.vertex_of[b], vertices_.data() + shapes_.vertex_of[b + 1]};
+  const Solid& s = solids_[static_cast<std::size_t>(body)];
+  return {vertices_.data() + s.first_vertex, static_cast<std::size_t>(s.vertices)};
 }
 
 std::span<const HalfSpace> Contacts::planes(std::int32_t body) const {
   if (body < 0) return obstacles_[static_cast<std::size_t>(-1 - body)].planes;
-  const auto b = static_cast<std::size_t>(body);
-  return {planes_.data() + plane_of_[b], planes_.data() + plane_of_[b + 1]};
+  const Solid& s = solids_[static_cast<std::size_t>(body)];
+  return {planes_.data() + s.first_plane, static_cast<std::size_t>(s.planes)};
 }
 
 Contacts::Placed Contacts::at_time(std::int32_t obstacle, double time) const {
   const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - obstacle)];
-  return {o.point + time * o.velocity, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  return {o.point + time * o.velocity, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, o.velocity, {}};
 }
 
 void Contacts::release(std::array<std::int32_t, 2> pair) {
@@ -160,6 +195,7 @@ void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> 
     p.slot_b = p.b >= 0 ? slot(p.b) : -1;
   }
   take_memories();
+  fresh_ = std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.fresh; });
   touches_.clear();
   placed_.resize(involved_.size());
   changed_ = first_ = false;
@@ -170,7 +206,9 @@ void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::
   centres.reserve(placed.size());
   for (const Placed& p : placed) centres.push_back(p.x);
   std::vector<BodyPair> near;
-  std::vector<double> radii = radius_;
+  std::vector<double> radii;
+  radii.reserve(solids_.size());
+  for (const Solid& s : solids_) radii.push_back(s.radius);
   if (pieces_ == 1) {  // an intact sheet: all but its edges is left out
     for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
       if (!on_surface(b)) radii[static_cast<std::size_t>(b)] = -1;
@@ -193,7 +231,7 @@ void Contacts::list_obstacles(std::span<const Placed> placed, std::span<const st
       if (here[body] == 0) continue;
       const Vec3<double> x = placed[body].x - at.x;
       const auto beyond = [&](const HalfSpace& h) {
-        return dot(h.normal, x) - h.offset > radius_[body] + reach_;
+        return dot(h.normal, x) - h.offset > solids_[body].radius + reach_;
       };
       const auto sides = planes(-1 - k);
       if (std::none_of(sides.begin(), sides.end(), beyond)) list(b, -1 - k, placed[body], at, true);
@@ -208,7 +246,7 @@ bool Contacts::obstacle_listed() const {
 /// Lists a pair unless there is a wide gap.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
-  Pair pair{a, b, -1, -1, -1, -1, counted, changed_ && !first_, at_a.x - at_b.x};
+  Pair pair{a, b, -1, -1, counted, changed_ && !first_, at_a.x - at_b.x};
   const double size = length(pair.axis);
   pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
   if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;
@@ -226,7 +264,6 @@ void Contacts::take_memories() {
            (memories_[at].a < p.a || (memories_[at].a == p.a && memories_[at].b < p.b)))
       ++at;
     if (at == memories_.size() || memories_[at].a != p.a || memories_[at].b != p.b) continue;
-    p.memory = static_cast<std::int32_t>(next_memories_.size());
     p.fresh = false;
     next_memories_.push_back({p.a, p.b, static_cast<std::int32_t>(k), memories_[at].memory});
   }
@@ -238,9 +275,8 @@ std::vector<double> Contacts::history() const {
   for (const Remembered& r : memories_) {
     if (r.pair >= 0 && !pairs_[static_cast<std::size_t>(r.pair)].counted) continue;
     const PairMemory& m = r.memory;
-    rows.insert(rows.end(),
-                {static_cast<double>(r.a), static_cast<double>(r.b), m.plastic, m.shear, m.normal.x,
-                 m.normal.y, m.normal.z, m.tangential.x, m.tangential.y, m.tangential.z});
+    rows.insert(rows.end(), {static_cast<double>(r.a), static_cast<double>(r.b), m.plastic, m.shear,
+                             m.tangential.x, m.tangential.y, m.tangential.z});
   }
   return rows;
 }
@@ -255,21 +291,22 @@ void Contacts::restore(std::span<const double> rows, bool changed) {
     memories_.push_back({static_cast<std::int32_t>(r[0]),
                          static_cast<std::int32_t>(r[1]),
                          -1,
-                         {r[2], r[3], {r[4], r[5], r[6]}, {r[7], r[8], r[9]}}});
+                         {r[2], r[3], {r[4], r[5], r[6]}}});
   }
 }
 
 Contacts::Rates Contacts::rates() const {
   // L of the stiffest partner.
   double smallest = obstacles_.empty() ? std::numeric_limits<double>::max() : 0.0;
-  for (const double v : volumes_) smallest = std::min(smallest, 0.5 * std::cbrt(v));
+  for (const Solid& s : solids_) smallest = std::min(smallest, 0.5 * s.size);
   double most = 0;
-  for (std::size_t b = 0; b < masses_.size(); ++b) {
-    const double k = options_.young / (0.5 * std::cbrt(volumes_[b]) + smallest);
-    const double reference = std::pow(volumes_[b], 2.0 / 3);
+  for (std::size_t b = 0; b < solids_.size(); ++b) {
+    const Solid& s = solids_[b];
+    const double k = options_.young / (0.5 * s.size + smallest);
+    const double reference = s.size * s.size;
     const double steeper =
         options_.law == ContactLaw::potential ? std::max(1.0, widest_[b] / reference) : 1.0;
-    most = std::max(most, 2 * k * steeper * surface_[b] / masses_[b]);
+    most = std::max(most, 2 * k * steeper * surface_[b] / s.mass);
   }
   return {most, 4 * options_.damping_ratio * std::sqrt(most)};
 }

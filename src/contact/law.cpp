@@ -41,8 +41,9 @@ double damping_ratio_of(double restitution) {
 
 ContactForce contact_force(const ContactOptions& options, const PairConstants& pair,
                            const Overlap& o, double depth, const RelativeMotion& motion,
-                           const PairMemory& memory, bool fresh) {
+                           const PairMemory& memory, bool fresh, StoredEnergy& stored) {
   ContactForce c;
+  stored = {};
   c.memory = memory;
   if (fresh) c.memory.plastic = o.volume;
   const double area = length(o.area);
@@ -50,47 +51,47 @@ ContactForce contact_force(const ContactOptions& options, const PairConstants& p
     c.memory.tangential = {};
     return c;
   }
-  const Vec3<double> normal = (1 / area) * o.area;
+  c.normal = (1 / area) * o.area;
   const bool potential = options.law == ContactLaw::potential;
   // Elastic force per volume of overlap [N/m^3].
   const double rate = potential ? pair.stiffness * area / pair.area : pair.stiffness;
   const double yield = options.plastic_limit * area;
   if (rate * (o.volume - c.memory.plastic) > yield) c.memory.plastic = o.volume - yield / rate;
   const double left = std::max(o.volume - c.memory.plastic, 0.0);
-  const double elastic = rate * left;
-  const double approach = -dot(motion.velocity, normal);
+  c.elastic = rate * left;
+  const double approach = -dot(motion.velocity, c.normal);
   const double dashpot = 2 * options.damping_ratio * std::sqrt(pair.mass * pair.stiffness * area);
-  const double pressing = std::min(std::max(elastic + dashpot * approach, 0.0), yield);
-  c.elastic = elastic * normal;
-  c.viscous = (pressing - elastic) * normal;
+  const double pressing = std::min(std::max(c.elastic + dashpot * approach, 0.0), yield);
+  c.viscous = pressing - c.elastic;
   if (potential) {
     c.couple = (pair.stiffness * left / pair.area) * o.moment;
-    c.normal_energy = 0.5 * pair.stiffness * left * left / pair.area;
+    stored.normal = 0.5 * pair.stiffness * left * left / pair.area;
   } else if (pair.half_space && c.memory.plastic == 0) {
-    c.normal_energy = pair.stiffness * o.volume * depth;
+    stored.normal = pair.stiffness * o.volume * depth;
   } else {
-    c.normal_energy = 0.5 * pair.stiffness * left * left / area;
+    stored.normal = 0.5 * pair.stiffness * left * left / area;
   }
   const double shear = 0.6 * pair.stiffness * area;
-  c.tangential = carried(memory, normal, shear);
-  const double size = length(c.tangential), most = pair.friction * pressing;
-  if (size > most) c.tangential = (most / size) * c.tangential;
-  c.tangential_energy = 0.5 * dot(c.tangential, c.tangential) / shear;
-  c.memory.normal = normal;
+  Vec3<double> tangential = carried(memory, c.normal, shear);
+  const double size = length(tangential), most = pair.friction * pressing;
+  if (size > most) tangential = (most / size) * tangential;
+  stored.tangential = 0.5 * dot(tangential, tangential) / shear;
   c.memory.shear = shear;
-  c.memory.tangential = c.tangential;
+  c.memory.tangential = tangential;
   return c;
 }
 
-void slide(PairMemory& memory, const RelativeMotion& motion, const Vec3<double>& mean_spin,
-           double dt) {
-  const Vec3<double>& n = memory.normal;
-  if (memory.shear == 0) return;
+PairMemory slid(const ContactForce& contact, const RelativeMotion& motion,
+                const Vec3<double>& mean_spin, double dt) {
+  PairMemory memory = contact.memory;
+  const Vec3<double>& n = contact.normal;
+  if (dot(n, n) == 0 || memory.shear == 0) return memory;
   const double turn = dt * dot(mean_spin, n);
   const Vec3<double> turned =
       std::cos(turn) * memory.tangential + std::sin(turn) * cross(n, memory.tangential);
   const Vec3<double> slip = motion.velocity - dot(motion.velocity, n) * n;
   memory.tangential = turned - (dt * memory.shear) * slip;
+  return memory;
 }
 
 }  // namespace floe

@@ -49,32 +49,51 @@ double concavity(const Shapes& shapes, std::int32_t body) {
 
 Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
                          std::span<const Vec3<double>> placed, std::span<const HalfSpace> planes) {
-  const auto b = static_cast<std::size_t>(body);
-  const std::int32_t base = shapes.vertex_of[b];
-  now_.points.assign(placed.begin(), placed.end());
-  now_.faces.clear();
-  now_.corners.clear();
-  const std::int32_t first = shapes.corner_of[static_cast<std::size_t>(shapes.face_of[b])];
-  for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
-    const auto face = static_cast<std::size_t>(f);
-    now_.faces.push_back(
-        {shapes.corner_of[face] - first, shapes.corner_of[face + 1] - first, false});
+  // The plane that leaves least comes first: what the others then cut is small.
+  std::size_t first_plane = 0;
+  double shallowest = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    double deepest = std::numeric_limits<double>::infinity();
+    for (const Vec3<double>& p : placed) deepest = std::min(deepest, dot(planes[k].normal, p));
+    deepest -= planes[k].offset;
+    if (deepest > 0) return {};
+    if (deepest > shallowest) {
+      shallowest = deepest;
+      first_plane = k;
+    }
   }
-  for (auto c = static_cast<std::size_t>(first);
-       c <
-       static_cast<std::size_t>(shapes.corner_of[static_cast<std::size_t>(shapes.face_of[b + 1])]);
-       ++c)
-    now_.corners.push_back(shapes.corners[c] - base);
-  for (const HalfSpace& plane : planes) {
-    if (!cut(plane)) return {};
+  start(shapes, body, placed);
+  if (!cut(planes[first_plane])) return {};
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    if (k != first_plane && !cut(planes[k])) return {};
   }
   return integrals();
+}
+
+/// The whole body.
+void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed) {
+  const auto b = static_cast<std::size_t>(body);
+  const std::int32_t base = shapes.vertex_of[b];
+  const std::int32_t first = shapes.corner_of[static_cast<std::size_t>(shapes.face_of[b])];
+  const std::int32_t last = shapes.corner_of[static_cast<std::size_t>(shapes.face_of[b + 1])];
+  now_.clear(placed.size(), static_cast<std::size_t>(last - first),
+             static_cast<std::size_t>(shapes.face_of[b + 1] - shapes.face_of[b]));
+  for (const Vec3<double>& p : placed) now_.points.push(p);
+  for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
+    const auto face = static_cast<std::size_t>(f);
+    now_.faces.push({shapes.corner_of[face] - first, shapes.corner_of[face + 1] - first, false});
+  }
+  for (auto c = static_cast<std::size_t>(first); c < static_cast<std::size_t>(last); ++c)
+    now_.corners.push(shapes.corners[c] - base);
 }
 
 /// Clips by one half-space; false if nothing is left.
 bool Clipper::cut(const HalfSpace& plane) {
   const std::size_t n = now_.points.size();
-  distance_.resize(n);
+  if (distance_.size() < n) {
+    distance_.resize(n);
+    place_.resize(n);
+  }
   std::size_t inside = 0;
   for (std::size_t k = 0; k < n; ++k) {
     distance_[k] = dot(plane.normal, now_.points[k]) - plane.offset;
@@ -83,18 +102,19 @@ bool Clipper::cut(const HalfSpace& plane) {
   if (inside == n) return true;
   if (inside == 0) return false;
 
-  place_.resize(n);
-  next_.points.clear();
-  next_.corners.clear();
-  next_.faces.clear();
-  crossings_.clear();
-  for (std::size_t k = 0; k < n; ++k) {
-    if (distance_[k] > 0) continue;
-    place_[k] = static_cast<std::int32_t>(next_.points.size());
-    next_.points.push_back(now_.points[k]);
+  // At the most every edge is crossed, that is every second corner, which both of its faces get
+  // and a cap.
+  const std::size_t corners = now_.corners.size();
+  next_.clear(n + corners, 3 * corners, now_.faces.size() + corners);
+  crossings_.clear(corners);
+  for (std::size_t k = 0; k < n; ++k) {  // without a branch that would be guessed wrong
+    const bool in = distance_[k] <= 0;
+    place_[k] = in ? static_cast<std::int32_t>(next_.points.size()) : -1;
+    next_.points.push(now_.points[k]);
+    next_.points.cut_back(next_.points.size() - (in ? 0 : 1));
   }
   const auto kept = static_cast<std::int32_t>(inside);
-  for (const Face& face : now_.faces) clip_face(face, kept);
+  for (std::size_t f = 0; f < now_.faces.size(); ++f) clip_face(now_.faces[f], kept);
   close_caps(kept);
   std::swap(now_, next_);
   return true;
@@ -108,25 +128,33 @@ std::int32_t Clipper::crossing(std::int32_t inside, std::int32_t outside) {
   }
   const auto i = static_cast<std::size_t>(inside), o = static_cast<std::size_t>(outside);
   const double t = distance_[i] / (distance_[i] - distance_[o]);  // in [0, 1)
-  next_.points.push_back(now_.points[i] + t * (now_.points[o] - now_.points[i]));
-  crossings_.push_back({inside, outside, -1, false});
+  next_.points.push(now_.points[i] + t * (now_.points[o] - now_.points[i]));
+  crossings_.push({inside, outside, -1, false});
   return static_cast<std::int32_t>(crossings_.size()) - 1;
 }
 
 void Clipper::clip_face(const Face& face, std::int32_t kept) {
+  std::int32_t inside = 0;
+  for (std::int32_t c = face.begin; c < face.end; ++c) inside += place(c) >= 0 ? 1 : 0;
+  if (inside == 0) return;
   const auto begin = static_cast<std::int32_t>(next_.corners.size());
+  if (inside == face.end - face.begin) {
+    for (std::int32_t c = face.begin; c < face.end; ++c) next_.corners.push(place(c));
+    next_.faces.push({begin, static_cast<std::int32_t>(next_.corners.size()), face.on_b});
+    return;
+  }
   std::int32_t first_entered = -1, left = -1;
-  std::int32_t a = now_.corners[static_cast<std::size_t>(face.end) - 1];
-  bool a_in = distance_[static_cast<std::size_t>(a)] <= 0;
-  for (std::int32_t c = face.begin; c < face.end; ++c) {
+  std::int32_t last = face.end - 1;
+  for (std::int32_t c = face.begin; c < face.end; last = c++) {
+    const bool a_in = place(last) >= 0, b_in = place(c) >= 0;
+    const std::int32_t a = now_.corners[static_cast<std::size_t>(last)];
     const std::int32_t b = now_.corners[static_cast<std::size_t>(c)];
-    const bool b_in = distance_[static_cast<std::size_t>(b)] <= 0;
     if (a_in && !b_in) {
       left = crossing(a, b);
-      next_.corners.push_back(kept + left);
+      next_.corners.push(kept + left);
     } else if (!a_in && b_in) {
       const std::int32_t entered = crossing(b, a);
-      next_.corners.push_back(kept + entered);
+      next_.corners.push(kept + entered);
       // The cap runs against the face: from where the face enters to where it has left.
       if (left >= 0) {
         crossings_[static_cast<std::size_t>(entered)].next = left;
@@ -135,13 +163,10 @@ void Clipper::clip_face(const Face& face, std::int32_t kept) {
         first_entered = entered;
       }
     }
-    if (b_in) next_.corners.push_back(place_[static_cast<std::size_t>(b)]);
-    a = b;
-    a_in = b_in;
+    if (b_in) next_.corners.push(place(c));
   }
   if (first_entered >= 0) crossings_[static_cast<std::size_t>(first_entered)].next = left;
-  const auto end = static_cast<std::int32_t>(next_.corners.size());
-  if (end > begin) next_.faces.push_back({begin, end, face.on_b});
+  next_.faces.push({begin, static_cast<std::int32_t>(next_.corners.size()), face.on_b});
 }
 
 void Clipper::close_caps(std::int32_t kept) {
@@ -151,16 +176,16 @@ void Clipper::close_caps(std::int32_t kept) {
     auto k = static_cast<std::int32_t>(start);
     while (!crossings_[static_cast<std::size_t>(k)].done) {
       crossings_[static_cast<std::size_t>(k)].done = true;
-      next_.corners.push_back(kept + k);
+      next_.corners.push(kept + k);
       k = crossings_[static_cast<std::size_t>(k)].next;
     }
     const auto end = static_cast<std::int32_t>(next_.corners.size());
     // A cap of two corners has no area; without it the two faces beside it share that edge, and no
     // edge ever has more than two faces.
     if (end - begin > 2) {
-      next_.faces.push_back({begin, end, true});
+      next_.faces.push({begin, end, true});
     } else {
-      next_.corners.resize(static_cast<std::size_t>(begin));
+      next_.corners.cut_back(static_cast<std::size_t>(begin));
     }
   }
 }
@@ -171,7 +196,8 @@ Overlap Clipper::integrals() const {
   const Vec3<double> apex = now_.points[0];
   double volume6 = 0;
   Vec3<double> moment24{}, area2{}, moment6{};  // about the apex
-  for (const Face& face : now_.faces) {
+  for (std::size_t f = 0; f < now_.faces.size(); ++f) {
+    const Face& face = now_.faces[f];
     const auto corner = [&](std::int32_t c) {
       return now_.points[static_cast<std::size_t>(now_.corners[static_cast<std::size_t>(c)])] -
              apex;

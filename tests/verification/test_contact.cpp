@@ -254,7 +254,8 @@ TEST(Contact, CrushingIsRemembered) {
     Overlap o;
     o.volume = depth;  // 1 m^2 sunk by `depth`
     o.area = {0, 0, 1};
-    const ContactForce c = contact_force(options, pair, o, 0.5 * depth, {}, memory, false);
+    StoredEnergy stored;
+    const ContactForce c = contact_force(options, pair, o, 0.5 * depth, {}, memory, false, stored);
     memory = c.memory;
     return c.force().z;
   };

@@ -53,7 +53,7 @@ class Contacts {
   /// How far a vertex may move between two builds [m]: half the reach of the list of pairs.
   double slack() const { return 0.5 * reach_; }
   /// Distance of body's farthest vertex from its centroid [m].
-  double radius(std::int32_t body) const { return radius_[static_cast<std::size_t>(body)]; }
+  double radius(std::int32_t body) const { return solids_[static_cast<std::size_t>(body)].radius; }
   /// Whether pairs may have become eligible since the last build.
   bool changed() const { return changed_; }
 
@@ -93,7 +93,7 @@ class Contacts {
   Rates rates() const;
 
   /// What goes to a checkpoint: rows of `width` numbers per pair with history that is counted here.
-  static constexpr std::size_t width = 10;
+  static constexpr std::size_t width = 7;
   std::vector<double> history() const;
   /// Rows of all pairs, sorted; the next build takes them over. \param changed  whether
   /// pairs had become eligible since the last build.
@@ -103,20 +103,26 @@ class Contacts {
   std::vector<std::array<std::int32_t, 2>> released() const { return released_; }
 
  private:
+  /// What a step asks of a body that does not change, side by side.
+  struct Solid {
+    std::int32_t shape;  ///< the first body of this very shape
+    std::int32_t first_vertex, vertices;
+    std::int32_t first_plane, planes;
+    double size;    ///< cube root of the volume [m]
+    double mass;    ///< [kg]
+    double radius;  ///< of the farthest vertex [m]
+  };
   struct Pair {
     std::int32_t a, b;            ///< bodies; b < 0: obstacle -1 - b
     std::int32_t slot_a, slot_b;  ///< among the involved
-    std::int32_t touch;           ///< among the touches of the last evaluation, or -1
-    std::int32_t memory;          ///< among the memories, or -1
     bool counted, fresh;
     Vec3<double> axis;  ///< along which they were apart last, from B to A
   };
   /// A contact of the last evaluation.
   struct Touch {
     std::int32_t pair;
-    Vec3<double> centre;
+    Vec3<double> centre;  ///< from A's centroid
     ContactForce contact;
-    std::array<double, 4> power;  ///< elastic, viscous, friction, of a moving obstacle
   };
   struct Remembered {
     std::int32_t a, b;
@@ -126,8 +132,16 @@ class Contacts {
   struct Placed {
     Vec3<double> x;
     Triad<double> axes;
+    Vec3<double> velocity{}, spin{};
+  };
+  /// Over the contacts that are counted here: what they store [J], and their power [W]: elastic,
+  /// viscous, friction, of moving obstacles.
+  struct Totals {
+    StoredEnergy stored;
+    std::array<double, 4> power{};
   };
 
+  void add_solid(std::int32_t body);
   bool on_surface(std::int32_t body) const;
   bool may_touch(std::int32_t a, std::int32_t b) const;
   void find_pieces();
@@ -141,16 +155,16 @@ class Contacts {
   Placed at_time(std::int32_t obstacle, double time) const;
   PairConstants constants(std::int32_t a, std::int32_t b) const;
   double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
-  bool meet(std::int32_t index, const Placed& b, std::span<const MovingPose> bodies);
-  RelativeMotion relative(const Pair& pair, const Vec3<double>& centre,
-                          std::span<const MovingPose> bodies) const;
-  std::array<double, 4> powers(const Touch& touch, std::span<const MovingPose> bodies) const;
+  bool meet(std::int32_t index, const Placed& b, const PairMemory* memory);
+  static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
+  void add_power(const Pair& pair, const ContactForce& contact, const RelativeMotion& motion,
+                 std::array<double, 4>& power) const;
 
   Shapes shapes_;
   std::vector<Vec3<double>> vertices_;
   std::vector<HalfSpace> planes_;
-  std::vector<std::int32_t> plane_of_{0};
-  std::vector<double> masses_, volumes_, radius_, surface_, widest_;
+  std::vector<Solid> solids_;
+  std::vector<double> surface_, widest_;  ///< area of all faces, of the largest [m^2]
   std::vector<std::array<std::int32_t, 2>> joined_, released_;
   std::vector<std::int32_t> faces_, beams_, piece_;  ///< per body
   std::int32_t pieces_ = 0;
@@ -158,16 +172,19 @@ class Contacts {
   std::vector<Obstacle> obstacles_;
   double reach_ = 0;
   bool changed_ = true, first_ = true;
+  bool fresh_ = false;  ///< some pair is
 
   std::vector<Pair> pairs_;
   std::vector<std::int32_t> involved_;
   std::vector<Remembered> memories_, next_memories_;  ///< of pairs that touch, sorted as the pairs
   std::vector<Touch> touches_;
-  std::vector<Placed> placed_;  ///< per slot
+  std::vector<Placed> placed_;        ///< per slot, of the last evaluation
+  std::vector<Placed> obstacles_at_;  ///< in the last evaluation
   std::vector<ContactWrench> on_obstacle_;
   Clipper clipper_;
   std::vector<Vec3<double>> work_a_, work_b_;  ///< placed vertices
   std::int64_t touching_ = 0;
+  Totals totals_;  ///< of the last evaluation
 
   std::array<double, 7> sums_{};  ///< work of elastic, viscous, friction, obstacles [J]; last dt;
                                   ///< energy stored at the start; whether that is known

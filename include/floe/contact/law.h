@@ -39,7 +39,6 @@ struct PairConstants {
 struct PairMemory {
   double plastic = 0;         ///< V_p [m^3]
   double shear = 0;           ///< k_t of the last step [N/m]
-  Vec3<double> normal{};      ///< of the last step
   Vec3<double> tangential{};  ///< F_t on A, as the springs have it now [N]
 };
 
@@ -51,24 +50,28 @@ struct RelativeMotion {
 
 /// The wrench of one contact on A, about the overlap's centroid; on B it is the opposite.
 struct ContactForce {
-  Vec3<double> elastic{}, viscous{}, tangential{};  ///< [N]
-  Vec3<double> couple{};                            ///< elastic; zero with law overlap [N m]
-  double normal_energy = 0, tangential_energy = 0;  ///< stored [J]
-  PairMemory memory;                                ///< if this evaluation is committed
+  Vec3<double> normal{};            ///< from B to A; zero if there is no force
+  double elastic = 0, viscous = 0;  ///< along the normal [N]
+  Vec3<double> couple{};            ///< elastic; zero with law overlap [N m]
+  PairMemory memory;                ///< if this evaluation is committed: its tangential force acts
 
-  Vec3<double> force() const { return elastic + viscous + tangential; }
+  Vec3<double> force() const { return (elastic + viscous) * normal + memory.tangential; }
+};
+/// Energy that a contact stores [J].
+struct StoredEnergy {
+  double normal = 0, tangential = 0;
 };
 
 /// \param o  the overlap in world axes, with V > 0   \param depth  of its centroid below the plane
 /// of a half-space [m]; not used otherwise   \param fresh  the pair may touch since now: what it
-/// overlaps by is plastic
+/// overlaps by is plastic   \param[out] stored  what the contact stores
 ContactForce contact_force(const ContactOptions& options, const PairConstants& pair,
                            const Overlap& o, double depth, const RelativeMotion& motion,
-                           const PairMemory& memory, bool fresh);
+                           const PairMemory& memory, bool fresh, StoredEnergy& stored);
 
-/// Moves the springs of friction on over a step. \param memory  as contact_force left it
-/// \param mean_spin  of the two bodies
-void slide(PairMemory& memory, const RelativeMotion& motion, const Vec3<double>& mean_spin,
-           double dt);
+/// What the pair remembers after a step: the springs of friction, moved on. \param contact  as
+/// contact_force left it   \param mean_spin  of the two bodies
+PairMemory slid(const ContactForce& contact, const RelativeMotion& motion,
+                const Vec3<double>& mean_spin, double dt);
 
 }  // namespace floe

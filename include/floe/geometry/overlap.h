@@ -61,21 +61,48 @@ class Clipper {
     std::int32_t next;             ///< along the cap
     bool done;
   };
-  struct Mesh {
-    std::vector<Vec3<double>> points;
-    std::vector<std::int32_t> corners;
-    std::vector<Face> faces;
+  /// Entries whose room is made before they come, so that pushing does not look.
+  template <class T>
+  class Stack {
+   public:
+    void clear(std::size_t room) {
+      if (entries_.size() < room) entries_.resize(2 * room);
+      size_ = 0;
+    }
+    void push(const T& entry) { entries_[size_++] = entry; }
+    void cut_back(std::size_t size) { size_ = size; }
+    std::size_t size() const { return size_; }
+    T& operator[](std::size_t k) { return entries_[k]; }
+    const T& operator[](std::size_t k) const { return entries_[k]; }
+
+   private:
+    std::vector<T> entries_;
+    std::size_t size_ = 0;
   };
+  struct Mesh {
+    Stack<Vec3<double>> points;
+    Stack<std::int32_t> corners;
+    Stack<Face> faces;
+    void clear(std::size_t most_points, std::size_t most_corners, std::size_t most_faces) {
+      points.clear(most_points);
+      corners.clear(most_corners);
+      faces.clear(most_faces);
+    }
+  };
+  void start(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed);
   bool cut(const HalfSpace& plane);
   void clip_face(const Face& face, std::int32_t kept);
   void close_caps(std::int32_t kept);
   std::int32_t crossing(std::int32_t inside, std::int32_t outside);
+  std::int32_t place(std::int32_t corner) const {
+    return place_[static_cast<std::size_t>(now_.corners[static_cast<std::size_t>(corner)])];
+  }
   Overlap integrals() const;
 
   Mesh now_, next_;
   std::vector<double> distance_;
-  std::vector<std::int32_t> place_;  ///< of a vertex among those that are kept
-  std::vector<Crossing> crossings_;
+  std::vector<std::int32_t> place_;  ///< of a vertex among those that are kept, or -1
+  Stack<Crossing> crossings_;
 };
 
 }  // namespace floe
