@@ -50,11 +50,13 @@ void evaluate(benchmark::State& state, double gap, double turn = 0.02) {
     bodies.push_back({blocks.poses[static_cast<std::size_t>(b)], {}, {}});
   std::vector<ContactWrench> wrenches(bodies.size());
   for (auto _ : state) {
-    contacts.evaluate(bodies, 0, wrenches);
+    contacts.place(bodies, 0);
+    contacts.evaluate(wrenches);
     contacts.commit(bodies, 1e-4);
   }
   const auto listed = static_cast<double>(contacts.listed());
-  contacts.evaluate(bodies, 0, wrenches);
+  contacts.place(bodies, 0);
+  contacts.evaluate(wrenches);
   const auto touching = static_cast<double>(contacts.touching());
   state.counters["listed"] = listed;
   state.counters["touching"] = touching;
