@@ -115,11 +115,25 @@ void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
 }
 
 void Contacts::place(std::span<const MovingPose> bodies, double time) {
+  const auto move = [&](Placed& p, const Placed& to, double radius) {
+    const double way = placed_before_ ? p.way + farthest_way(p, to, radius) : 0.0;
+    p = to;
+    p.way = way;
+  };
   for (std::size_t s = 0; s < bodies.size(); ++s)
-    placed_[s] = {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin};
-  obstacles_at_.clear();
+    move(placed_[s],
+         {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin},
+         radius(involved_[s]));
   for (std::size_t k = 0; k < obstacles_.size(); ++k)
-    obstacles_at_.push_back(at_time(-1 - static_cast<std::int32_t>(k), time));
+    move(obstacles_at_[k], at_time(-1 - static_cast<std::int32_t>(k), time), obstacle_radius_[k]);
+  placed_before_ = true;
+}
+
+/// Bound of the way of any point of a body within `radius` of its centroid [m].
+double Contacts::farthest_way(const Placed& from, const Placed& to, double radius) {
+  const Vec3<double> d1 = to.axes.e1 - from.axes.e1, d2 = to.axes.e2 - from.axes.e2,
+                     d3 = to.axes.e3 - from.axes.e3, x = to.x - from.x;
+  return std::sqrt(dot(x, x)) + radius * std::sqrt(dot(d1, d1) + dot(d2, d2) + dot(d3, d3));
 }
 
 void Contacts::meet_borrowed(std::span<Meeting> meetings) {
@@ -152,7 +166,14 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
         touch(index, b, met, remembered, wrenches);
       continue;
     }
-    if (remembered == nullptr && gap(pair, a, b, tries) > rounding * radius(pair.a)) continue;
+    if (remembered == nullptr) {
+      const double ways = a.way + b.way;
+      if (ways < pair.safe) continue;
+      if (const double apart = gap(pair, a, b, tries); apart > rounding * radius(pair.a)) {
+        pair.safe = ways + (1 - 1e-6) * apart;  // less what ways lose by rounding
+        continue;
+      }
+    }
     if (const Meeting met = meeting(pair, a, b); met.overlap.volume > 0)
       touch(index, b, met, remembered, wrenches);
   }

@@ -59,6 +59,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       joined_(std::move(joined)),
       options_(options),
       obstacles_(std::move(obstacles)),
+      obstacles_at_(obstacles_.size()),
       on_obstacle_(obstacles_.size()) {
   // Bodies of one shape share it: a heap of equal blocks then finds it in the cache.
   std::map<std::vector<double>, std::int32_t> known;
@@ -81,6 +82,11 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   double mean = 0;
   for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
   reach_ = part_of_radius * mean;
+  for (const Obstacle& o : obstacles_) {
+    double farthest = 0;
+    for (const auto& r : o.vertices) farthest = std::max(farthest, length(r));
+    obstacle_radius_.push_back(farthest);
+  }
   find_pieces();
 }
 
@@ -208,6 +214,7 @@ void Contacts::find_involved() {
     }
   }
   placed_.resize(involved_.size());
+  placed_before_ = false;
 }
 
 std::vector<BodyPair> Contacts::lend(std::size_t count) {
@@ -222,7 +229,7 @@ std::vector<BodyPair> Contacts::lend(std::size_t count) {
 
 void Contacts::borrow(std::span<const BodyPair> pairs) {
   borrowed_.clear();
-  for (const auto& [a, b] : pairs) borrowed_.push_back({a, b, -1, -1, false, false, false, {}});
+  for (const auto& [a, b] : pairs) borrowed_.push_back({a, b, -1, -1, false, false, false, {}, 0});
   find_involved();
 }
 
@@ -271,7 +278,7 @@ bool Contacts::obstacle_listed() const {
 /// Lists a pair unless there is a wide gap.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
-  Pair pair{a, b, -1, -1, counted, changed_ && !first_, false, at_a.x - at_b.x};
+  Pair pair{a, b, -1, -1, counted, changed_ && !first_, false, at_a.x - at_b.x, 0};
   const double size = length(pair.axis);
   pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
   if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;
