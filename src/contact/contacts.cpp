@@ -57,14 +57,21 @@ RelativeMotion Contacts::relative(const Placed& a, const Placed& b, const Vec3<d
           a.spin - b.spin};
 }
 
-void Contacts::add_power(const Pair& pair, const ContactForce& c, const RelativeMotion& motion,
-                         std::array<double, 4>& power) const {
+/// Of the elastic, viscous and friction terms.
+void Contacts::add_power(const Touch& touch, const RelativeMotion& motion,
+                         std::array<double, 4>& power) {
+  const ContactForce& c = touch.contact;
   const double parting = dot(c.normal, motion.velocity);
   power[0] += c.elastic * parting + dot(c.couple, motion.spin);
   power[1] += c.viscous * parting;
   power[2] += dot(c.memory.tangential, motion.velocity);
-  if (pair.b < 0)
-    power[3] += dot(c.force(), obstacles_[static_cast<std::size_t>(-1 - pair.b)].velocity);
+}
+
+/// What a moving obstacle gives [W].
+double Contacts::power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle) {
+  const Vec3<double> arm = touch.centre + (a.x - obstacle.x);
+  return dot(touch.contact.force(), obstacle.velocity + cross(obstacle.spin, arm)) +
+         dot(touch.contact.couple, obstacle.spin);
 }
 
 /// Overlap and force of a pair that may touch; false if it does not.
@@ -97,7 +104,8 @@ bool Contacts::meet(std::int32_t index, const Placed& b, const PairMemory* memor
     ++touching_;
     totals_.stored.normal += stored.normal;
     totals_.stored.tangential += stored.tangential;
-    add_power(pair, touches_.back().contact, motion, totals_.power);
+    add_power(touches_.back(), motion, totals_.power);
+    if (pair.b < 0) totals_.power[3] += power_of_obstacle(touches_.back(), a, b);
   }
   return true;
 }
@@ -107,8 +115,10 @@ void Contacts::evaluate(std::span<const MovingPose> bodies, double time,
   for (std::size_t s = 0; s < bodies.size(); ++s)
     placed_[s] = {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin};
   obstacles_at_.clear();
-  for (std::size_t k = 0; k < obstacles_.size(); ++k)
-    obstacles_at_.push_back(at_time(-1 - static_cast<std::int32_t>(k), time));
+  const double half_a_step_ago = time - 0.5 * sums_[4];  // as the bodies' velocities
+  for (std::int32_t k = 0; k < static_cast<std::int32_t>(obstacles_.size()); ++k)
+    obstacles_at_.push_back(at_time(-1 - k, time, half_a_step_ago));
+  time_ = time;
   std::fill(on_obstacle_.begin(), on_obstacle_.end(), ContactWrench{});
   touches_.clear();
   touching_ = 0;
@@ -144,6 +154,10 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     sums_[6] = 1;
   }
   memories_.clear();
+  for (std::size_t k = 0; k < obstacles_at_.size(); ++k) {
+    obstacles_at_[k].velocity = obstacles_[k].motion.rate(time_ + 0.5 * dt);
+    obstacles_at_[k].spin = obstacles_[k].motion.spin(time_ + 0.5 * dt);
+  }
   std::array<double, 4> power{};
   for (const Touch& t : touches_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
@@ -155,7 +169,8 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     const Placed b =
         pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)] : moving(pair.slot_b);
     const RelativeMotion motion = relative(a, b, t.centre);
-    if (pair.counted) add_power(pair, t.contact, motion, power);
+    if (pair.counted) add_power(t, motion, power);
+    if (pair.b < 0) power[3] += power_of_obstacle(t, a, b);
     memories_.push_back(
         {pair.a, pair.b, t.pair, slid(t.contact, motion, 0.5 * (a.spin + b.spin), dt)});
   }

@@ -47,8 +47,13 @@ class Watch {
                          length({is[7], is[8], is[9]}) + radius * length({is[10], is[11], is[12]}));
     }
     for (const Obstacle& o : contacts.obstacles()) {
-      mine[0] = std::max(mine[0], std::abs(state.time - time_) * length(o.velocity));
-      mine[1] = std::max(mine[1], length(o.velocity));
+      const ObstacleMotion& m = o.motion;
+      if (m.at_rest()) continue;
+      const double radius = o.radius();
+      const Quat<double> turn = product(m.turn(state.time), conjugate(m.turn(time_)));
+      mine[0] = std::max(mine[0], length(m.way(state.time) - m.way(time_)) +
+                                      2 * radius * length({turn.x, turn.y, turn.z}));
+      mine[1] = std::max(mine[1], m.largest_speed(radius));
     }
     MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part.comm);
     constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
@@ -129,7 +134,7 @@ class ContactOfModel final : public Contact {
     columns.add("energy_friction", e.friction);
     columns.add("energy_crushing", e.crushing);
     bool moving = false;
-    for (const Obstacle& o : contacts_.obstacles()) moving = moving || length(o.velocity) > 0;
+    for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
     if (moving) columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
     const bool first = rank(part_.comm) == 0;  // of what all ranks know alike

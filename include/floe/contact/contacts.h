@@ -152,13 +152,15 @@ class Contacts {
   void take_memories();
   std::span<const Vec3<double>> vertices(std::int32_t body) const;
   std::span<const HalfSpace> planes(std::int32_t body) const;
-  Placed at_time(std::int32_t obstacle, double time) const;
+  /// \param position, motion  the times of its place and of its velocities [s]
+  Placed at_time(std::int32_t obstacle, double position, double motion) const;
   PairConstants constants(std::int32_t a, std::int32_t b) const;
   double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
   bool meet(std::int32_t index, const Placed& b, const PairMemory* memory);
   static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
-  void add_power(const Pair& pair, const ContactForce& contact, const RelativeMotion& motion,
-                 std::array<double, 4>& power) const;
+  static void add_power(const Touch& touch, const RelativeMotion& motion,
+                        std::array<double, 4>& power);
+  static double power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle);
 
   Shapes shapes_;
   std::vector<Vec3<double>> vertices_;
@@ -180,6 +182,7 @@ class Contacts {
   std::vector<Touch> touches_;
   std::vector<Placed> placed_;        ///< per slot, of the last evaluation
   std::vector<Placed> obstacles_at_;  ///< in the last evaluation
+  double time_ = 0;                   ///< of the last evaluation
   std::vector<ContactWrench> on_obstacle_;
   Clipper clipper_;
   std::vector<Vec3<double>> work_a_, work_b_;  ///< placed vertices
