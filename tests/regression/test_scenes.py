@@ -388,6 +388,15 @@ def check_stopping(test, run):
     test.assertAlmostEqual(output.summary["mean_force"]["floor"][2] / -1805.04, 1, delta=0.05)
 
 
+def check_ice_vibration(test, run):
+    output = run()
+    force = output.history("leg_force_x")[output.history("time") > 3]  # two periods
+    test.assertAlmostEqual(force.max() / 1.5e6, 1, delta=0.08)
+    test.assertAlmostEqual((force > 7.5e5).mean(), 0.496, delta=0.05)
+    test.assertGreater((force < 1.5e4).mean(), 0.2)
+    test.assertAlmostEqual(output.summary["energy"]["balance_error"], 0, delta=10)
+
+
 def check_floes_collide(test, run):
     output = run()
     row = last_row(output)
@@ -581,6 +590,7 @@ EXPECTED = {
     "verify/ice_slope.yaml": check_ice_slope_strip,
     "punch_through.yaml": check_punch_through,
     "floes_collide.yaml": check_floes_collide,
+    "ice_vibration.yaml": check_ice_vibration,
     "rubble_pile.yaml": check_rubble_pile,
     "verify/stopping.yaml": check_stopping,
     "break_strip.yaml": check_break_strip,
