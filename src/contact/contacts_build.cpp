@@ -82,11 +82,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   double mean = 0;
   for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
   reach_ = part_of_radius * mean;
-  for (const Obstacle& o : obstacles_) {
-    double farthest = 0;
-    for (const auto& r : o.vertices) farthest = std::max(farthest, length(r));
-    obstacle_radius_.push_back(farthest);
-  }
+  for (const Obstacle& o : obstacles_) obstacle_radius_.push_back(o.radius());
   find_pieces();
 }
 
@@ -120,9 +116,10 @@ std::span<const HalfSpace> Contacts::planes(std::int32_t body) const {
   return {planes_.data() + s.first_plane, static_cast<std::size_t>(s.planes)};
 }
 
-Contacts::Placed Contacts::at_time(std::int32_t obstacle, double time) const {
+Contacts::Placed Contacts::at_time(std::int32_t obstacle, double position, double motion) const {
   const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - obstacle)];
-  return {o.point + time * o.velocity, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, o.velocity, {}};
+  return {o.point + o.motion.way(position), triad(o.motion.turn(position)), o.motion.rate(motion),
+          o.motion.spin(motion)};
 }
 
 void Contacts::release(std::array<std::int32_t, 2> pair) {
@@ -257,11 +254,11 @@ void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::
 void Contacts::list_obstacles(std::span<const Placed> placed, std::span<const std::uint8_t> here,
                               double time) {
   for (std::int32_t k = 0; k < static_cast<std::int32_t>(obstacles_.size()); ++k) {
-    const Placed at = at_time(-1 - k, time);
+    const Placed at = at_time(-1 - k, time, time);
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(placed.size()); ++b) {
       const auto body = static_cast<std::size_t>(b);
       if (here[body] == 0) continue;
-      const Vec3<double> x = placed[body].x - at.x;
+      const Vec3<double> x = at.axes.to_local(placed[body].x - at.x);
       const auto beyond = [&](const HalfSpace& h) {
         return dot(h.normal, x) - h.offset > solids_[body].radius + reach_;
       };

@@ -44,10 +44,9 @@ class Watch {
   /// The same on every rank.
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
     if (--asks_in_ > 0) return false;
-    const double obstacles = speed_of(contacts.obstacles());
-    const double theirs = std::abs(state.time - time_) * obstacles;
+    const auto [theirs, their_speed] = of_obstacles(contacts.obstacles(), state.time);
     std::array<double, 2> all =
-        largest({std::max(way_, theirs), std::max(speed_, obstacles)}, part.comm);
+        largest({std::max(way_, theirs), std::max(speed_, their_speed)}, part.comm);
     const double slack = contacts.slack();
     if (all[0] > slack) {
       way_ = ways(state, part, contacts);
@@ -68,10 +67,19 @@ class Watch {
     if (size(comm) > 1) MPI_Allreduce(MPI_IN_PLACE, mine.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
     return mine;
   }
-  static double speed_of(const std::vector<Obstacle>& obstacles) {
-    double speed = 0;
-    for (const Obstacle& o : obstacles) speed = std::max(speed, length(o.velocity));
-    return speed;
+  /// The farthest way of an obstacle's vertex since the list was made, and their largest speed.
+  std::array<double, 2> of_obstacles(const std::vector<Obstacle>& obstacles, double time) const {
+    std::array<double, 2> most{};
+    for (const Obstacle& o : obstacles) {
+      const ObstacleMotion& m = o.motion;
+      if (m.at_rest()) continue;
+      const double radius = o.radius();
+      const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
+      most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
+                                      2 * radius * length({turn.x, turn.y, turn.z}));
+      most[1] = std::max(most[1], m.largest_speed(radius));
+    }
+    return most;
   }
   /// The farthest way of a vertex of an owned body since the list was made.
   double ways(const State<Spatial>& state, const Part& part, const Contacts& contacts) const {
@@ -166,7 +174,7 @@ class ContactOfModel final : public Contact {
     columns.add("energy_friction", e.friction);
     columns.add("energy_crushing", e.crushing);
     bool moving = false;
-    for (const Obstacle& o : contacts_.obstacles()) moving = moving || length(o.velocity) > 0;
+    for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
     if (moving) columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
     const bool first = rank(part_.comm) == 0;  // of what all ranks know alike

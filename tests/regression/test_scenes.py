@@ -388,6 +388,17 @@ def check_stopping(test, run):
     test.assertAlmostEqual(output.summary["mean_force"]["floor"][2] / -1805.04, 1, delta=0.05)
 
 
+def check_ice_vibration(test, run):
+    output = run()
+    time, force = output.history("time"), output.history("leg_force_x")
+    crushing = time[(force > 1.45e6) & (time > 3.5) & (time < 4.5)]
+    test.assertAlmostEqual(crushing[0], 3.843, delta=0.03)
+    test.assertAlmostEqual(crushing[-1], 4.339, delta=0.03)
+    test.assertAlmostEqual(force.max() / 1.5e6, 1, delta=0.08)
+    test.assertEqual(force[(time > 3.45) & (time < 3.65)].max(), 0)
+    test.assertAlmostEqual(output.summary["energy"]["balance_error"], 0, delta=10)
+
+
 def check_floes_collide(test, run):
     output = run()
     row = last_row(output)
@@ -581,6 +592,7 @@ EXPECTED = {
     "verify/ice_slope.yaml": check_ice_slope_strip,
     "punch_through.yaml": check_punch_through,
     "floes_collide.yaml": check_floes_collide,
+    "ice_vibration.yaml": check_ice_vibration,
     "rubble_pile.yaml": check_rubble_pile,
     "verify/stopping.yaml": check_stopping,
     "break_strip.yaml": check_break_strip,

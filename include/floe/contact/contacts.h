@@ -173,7 +173,8 @@ class Contacts {
   void take_memories();
   std::span<const Vec3<double>> vertices(std::int32_t body) const;
   std::span<const HalfSpace> planes(std::int32_t body) const;
-  Placed at_time(std::int32_t obstacle, double time) const;
+  /// \param position, motion  the times of its place and of its velocities [s]
+  Placed at_time(std::int32_t obstacle, double position, double motion) const;
   PairConstants constants(std::int32_t a, std::int32_t b) const;
   double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
   Meeting meeting(const Pair& pair, const Placed& a, const Placed& b);
@@ -186,8 +187,9 @@ class Contacts {
   void find_involved();
   static double farthest_way(const Placed& from, const Placed& to, double radius);
   static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
-  void add_power(const Pair& pair, const ContactForce& contact, const RelativeMotion& motion,
-                 std::array<double, 4>& power) const;
+  static void add_power(const Touch& touch, const RelativeMotion& motion,
+                        std::array<double, 4>& power);
+  static double power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle);
 
   Shapes shapes_;
   std::vector<Vec3<double>> vertices_;
@@ -210,6 +212,7 @@ class Contacts {
   std::vector<Placed> placed_;           ///< per slot, of the last evaluation
   std::vector<Placed> obstacles_at_;     ///< in the last evaluation
   std::vector<double> obstacle_radius_;  ///< of the farthest vertex from the frame's origin [m]
+  double time_ = 0;                      ///< of the last evaluation
   bool placed_before_ = false;           ///< since the last build
   std::vector<ContactWrench> on_obstacle_;
   Clipper clipper_;
