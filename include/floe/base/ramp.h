@@ -2,8 +2,6 @@
 /// The linear rise of motions and loads.
 #pragma once
 
-#include <algorithm>
-
 namespace floe {
 
 /// Linear rise from 0 to 1 over `seconds`, 1 from then on (0 s: 1 at once).
@@ -11,7 +9,10 @@ struct Ramp {
   double seconds = 0;
 
   /// Factor at `time`.
-  double value(double time) const { return time >= seconds ? 1.0 : std::max(0.0, time) / seconds; }
+  double value(double time) const {
+    if (time >= seconds) return 1;
+    return time > 0 ? time / seconds : 0;
+  }
   /// Its integral from 0 to `time` [s].
   double integral(double time) const {
     if (time <= 0) return 0;
