@@ -53,11 +53,14 @@ MPI_Datatype Ghosts::record_type(int width) const {
   return type;
 }
 
-void Ghosts::update(std::span<double> records, int width) const {
+void Ghosts::begin(std::span<double> records, int width) const {
   if (alone_) return;
-  const MPI_Datatype type = record_type(width);
-  check(PetscSFBcastBegin(sf_, type, records.data(), records.data(), MPI_REPLACE));
-  check(PetscSFBcastEnd(sf_, type, records.data(), records.data(), MPI_REPLACE));
+  check(PetscSFBcastBegin(sf_, record_type(width), records.data(), records.data(), MPI_REPLACE));
+}
+
+void Ghosts::end(std::span<double> records, int width) const {
+  if (alone_) return;
+  check(PetscSFBcastEnd(sf_, record_type(width), records.data(), records.data(), MPI_REPLACE));
 }
 
 }  // namespace floe

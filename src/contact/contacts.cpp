@@ -74,32 +74,37 @@ double Contacts::power_of_obstacle(const Touch& touch, const Placed& a, const Pl
          dot(touch.contact.couple, obstacle.spin);
 }
 
-/// Overlap and force of a pair that may touch; false if it does not.
-/// \param memory  null: it remembers nothing
-bool Contacts::meet(std::int32_t index, const Placed& b, const PairMemory* memory) {
-  const Pair& pair = pairs_[static_cast<std::size_t>(index)];
-  const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
+Contacts::Meeting Contacts::meeting(const Pair& pair, const Placed& a, const Placed& b) {
   // A's vertices in B's frame.
   const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
                            b.axes.to_local(a.axes.e3)};
   const Vec3<double> apart = b.axes.to_local(a.x - b.x);
   work_a_.clear();
   for (const auto& r : vertices(pair.a)) work_a_.push_back(moved(turn, apart, r));
-  Overlap o = clipper_.overlap(shapes_, solids_[static_cast<std::size_t>(pair.a)].shape, work_a_,
-                               planes(pair.b));
-  const double size = radius(pair.a);
-  if (o.volume <= rounding_volume * size * size * size) return false;
+  const Solid& solid = solids_[static_cast<std::size_t>(pair.a)];
+  Overlap o = clipper_.overlap(shapes_, solid.shape, work_a_, planes(pair.b));
+  if (o.volume <= rounding_volume * solid.radius * solid.radius * solid.radius) return {};
   const HalfSpace& first = planes(pair.b)[0];
   const double depth = first.offset - dot(first.normal, o.centroid);
-  o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);  // from A's centroid
+  o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);
-  const RelativeMotion motion = relative(a, b, o.centroid);
+  return {o, depth};
+}
+
+/// Takes up a contact. \param memory  null: the pair remembers nothing
+void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
+                     const PairMemory* memory, std::span<ContactWrench> wrenches) {
+  const Pair& pair = pairs_[static_cast<std::size_t>(index)];
+  const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
+  const Vec3<double>& centre = met.overlap.centroid;
+  const RelativeMotion motion = relative(a, b, centre);
   StoredEnergy stored;
   touches_.push_back(
-      {index, o.centroid,
-       contact_force(options_, constants(pair.a, pair.b), o, depth, motion,
+      {index, centre,
+       contact_force(options_, constants(pair.a, pair.b), met.overlap, met.depth, motion,
                      memory != nullptr ? *memory : PairMemory{}, pair.fresh, stored)});
+  const ContactForce& contact = touches_.back().contact;
   if (pair.counted) {
     ++touching_;
     totals_.stored.normal += stored.normal;
@@ -107,43 +112,81 @@ bool Contacts::meet(std::int32_t index, const Placed& b, const PairMemory* memor
     add_power(touches_.back(), motion, totals_.power);
     if (pair.b < 0) totals_.power[3] += power_of_obstacle(touches_.back(), a, b);
   }
-  return true;
+  const Vec3<double> force = contact.force();
+  ContactWrench& on_a = wrenches[static_cast<std::size_t>(pair.slot_a)];
+  on_a.force = on_a.force + force;
+  on_a.moment = on_a.moment + cross(centre, force) + contact.couple;
+  ContactWrench& on_b = pair.b < 0 ? on_obstacle_[static_cast<std::size_t>(-1 - pair.b)]
+                                   : wrenches[static_cast<std::size_t>(pair.slot_b)];
+  on_b.force = on_b.force - force;
+  on_b.moment = on_b.moment - cross(centre + (a.x - b.x), force) - contact.couple;
 }
 
-void Contacts::evaluate(std::span<const MovingPose> bodies, double time,
-                        std::span<ContactWrench> wrenches) {
+void Contacts::place(std::span<const MovingPose> bodies, double time) {
+  const auto move = [&](Placed& p, const Placed& to, double radius) {
+    const double way = placed_before_ ? p.way + farthest_way(p, to, radius) : 0.0;
+    p = to;
+    p.way = way;
+  };
   for (std::size_t s = 0; s < bodies.size(); ++s)
-    placed_[s] = {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin};
-  obstacles_at_.clear();
+    move(placed_[s],
+         {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin},
+         radius(involved_[s]));
   const double half_a_step_ago = time - 0.5 * sums_[4];  // as the bodies' velocities
-  for (std::int32_t k = 0; k < static_cast<std::int32_t>(obstacles_.size()); ++k)
-    obstacles_at_.push_back(at_time(-1 - k, time, half_a_step_ago));
+  for (std::size_t k = 0; k < obstacles_.size(); ++k)
+    move(obstacles_at_[k], at_time(-1 - static_cast<std::int32_t>(k), time, half_a_step_ago),
+         obstacle_radius_[k]);
+  placed_before_ = true;
   time_ = time;
+}
+
+/// Bound of the way of any point of a body within `radius` of its centroid [m].
+double Contacts::farthest_way(const Placed& from, const Placed& to, double radius) {
+  const Vec3<double> d1 = to.axes.e1 - from.axes.e1, d2 = to.axes.e2 - from.axes.e2,
+                     d3 = to.axes.e3 - from.axes.e3, x = to.x - from.x;
+  return std::sqrt(dot(x, x)) + radius * std::sqrt(dot(d1, d1) + dot(d2, d2) + dot(d3, d3));
+}
+
+void Contacts::meet_borrowed(std::span<Meeting> meetings) {
+  for (std::size_t k = 0; k < borrowed_.size(); ++k) {
+    const Pair& pair = borrowed_[k];
+    meetings[k] = meeting(pair, placed_[static_cast<std::size_t>(pair.slot_a)], partner(pair));
+  }
+}
+
+void Contacts::evaluate(std::span<ContactWrench> wrenches,
+                        const std::function<std::span<const Meeting>()>& lent) {
   std::fill(on_obstacle_.begin(), on_obstacle_.end(), ContactWrench{});
   touches_.clear();
   touching_ = 0;
   totals_ = {};
   auto memory = memories_.cbegin();  // in the order of the pairs
+  std::span<const Meeting> given;    // to the lent pairs, in their order
+  std::size_t taken = 0;
   constexpr int tries = 8;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     Pair& pair = pairs_[k];
     const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
-    const Placed& b = pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)]
-                                 : placed_[static_cast<std::size_t>(pair.slot_b)];
+    const Placed& b = partner(pair);
     const auto index = static_cast<std::int32_t>(k);
     const PairMemory* remembered = nullptr;
     if (memory != memories_.cend() && memory->pair == index) remembered = &(memory++)->memory;
-    if (remembered == nullptr && gap(pair, a, b, tries) > rounding * radius(pair.a)) continue;
-    if (!meet(index, b, remembered)) continue;
-    const Touch& t = touches_.back();
-    const Vec3<double> force = t.contact.force();
-    ContactWrench& on_a = wrenches[static_cast<std::size_t>(pair.slot_a)];
-    on_a.force = on_a.force + force;
-    on_a.moment = on_a.moment + cross(t.centre, force) + t.contact.couple;
-    ContactWrench& on_b = pair.b < 0 ? on_obstacle_[static_cast<std::size_t>(-1 - pair.b)]
-                                     : wrenches[static_cast<std::size_t>(pair.slot_b)];
-    on_b.force = on_b.force - force;
-    on_b.moment = on_b.moment - cross(t.centre + (a.x - b.x), force) - t.contact.couple;
+    if (pair.lent) {
+      if (given.empty()) given = lent();
+      if (const Meeting& met = given[taken++]; met.overlap.volume > 0)
+        touch(index, b, met, remembered, wrenches);
+      continue;
+    }
+    if (remembered == nullptr) {
+      const double ways = a.way + b.way;
+      if (ways < pair.safe) continue;
+      if (const double apart = gap(pair, a, b, tries); apart > rounding * radius(pair.a)) {
+        pair.safe = ways + (1 - 1e-6) * apart;  // less what ways lose by rounding
+        continue;
+      }
+    }
+    if (const Meeting met = meeting(pair, a, b); met.overlap.volume > 0)
+      touch(index, b, met, remembered, wrenches);
   }
 }
 

@@ -59,6 +59,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       joined_(std::move(joined)),
       options_(options),
       obstacles_(std::move(obstacles)),
+      obstacles_at_(obstacles_.size()),
       on_obstacle_(obstacles_.size()) {
   // Bodies of one shape share it: a heap of equal blocks then finds it in the cache.
   std::map<std::vector<double>, std::int32_t> known;
@@ -81,6 +82,11 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   double mean = 0;
   for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
   reach_ = part_of_radius * mean;
+  for (const Obstacle& o : obstacles_) {
+    double farthest = 0;
+    for (const auto& r : o.vertices) farthest = std::max(farthest, length(r));
+    obstacle_radius_.push_back(farthest);
+  }
   find_pieces();
 }
 
@@ -180,10 +186,21 @@ void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> 
   list_obstacles(placed, here, time);
   std::sort(pairs_.begin(), pairs_.end(),
             [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+  borrowed_.clear();
+  find_involved();
+  take_memories();
+  fresh_ = std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.fresh; });
+  touches_.clear();
+  changed_ = first_ = false;
+}
+
+void Contacts::find_involved() {
   involved_.clear();
-  for (const Pair& p : pairs_) {
-    involved_.push_back(p.a);
-    if (p.b >= 0) involved_.push_back(p.b);
+  for (const std::vector<Pair>* list : {&pairs_, &borrowed_}) {
+    for (const Pair& p : *list) {
+      involved_.push_back(p.a);
+      if (p.b >= 0) involved_.push_back(p.b);
+    }
   }
   std::sort(involved_.begin(), involved_.end());
   involved_.erase(std::unique(involved_.begin(), involved_.end()), involved_.end());
@@ -191,15 +208,30 @@ void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> 
     return static_cast<std::int32_t>(std::lower_bound(involved_.begin(), involved_.end(), body) -
                                      involved_.begin());
   };
-  for (Pair& p : pairs_) {
-    p.slot_a = slot(p.a);
-    p.slot_b = p.b >= 0 ? slot(p.b) : -1;
+  for (std::vector<Pair>* list : {&pairs_, &borrowed_}) {
+    for (Pair& p : *list) {
+      p.slot_a = slot(p.a);
+      p.slot_b = p.b >= 0 ? slot(p.b) : -1;
+    }
   }
-  take_memories();
-  fresh_ = std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.fresh; });
-  touches_.clear();
   placed_.resize(involved_.size());
-  changed_ = first_ = false;
+  placed_before_ = false;
+}
+
+std::vector<BodyPair> Contacts::lend(std::size_t count) {
+  std::vector<BodyPair> keys;
+  for (std::size_t k = memories_.size() - std::min(count, memories_.size()); k < memories_.size();
+       ++k) {
+    keys.push_back({memories_[k].a, memories_[k].b});
+    pairs_[static_cast<std::size_t>(memories_[k].pair)].lent = true;
+  }
+  return keys;
+}
+
+void Contacts::borrow(std::span<const BodyPair> pairs) {
+  borrowed_.clear();
+  for (const auto& [a, b] : pairs) borrowed_.push_back({a, b, -1, -1, false, false, false, {}, 0});
+  find_involved();
 }
 
 void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::uint8_t> here) {
@@ -247,7 +279,7 @@ bool Contacts::obstacle_listed() const {
 /// Lists a pair unless there is a wide gap.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
-  Pair pair{a, b, -1, -1, counted, changed_ && !first_, at_a.x - at_b.x};
+  Pair pair{a, b, -1, -1, counted, changed_ && !first_, false, at_a.x - at_b.x, 0};
   const double size = length(pair.axis);
   pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
   if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;

@@ -7,6 +7,7 @@
 #include "floe/base/petsc.h"
 #include "forces/all_gathered.h"
 #include "forces/contact_exchange.h"
+#include "forces/contact_sharing.h"
 
 namespace floe {
 namespace {
@@ -78,6 +79,7 @@ class ContactOfModel final : public Contact {
         contacts_(lattice.shapes, lattice.bodies.mass, sorted(lattice.beams.bodies), options,
                   std::move(obstacles)),
         exchange_(part),
+        sharing_(part.comm),
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
@@ -94,7 +96,8 @@ class ContactOfModel final : public Contact {
       build(state);
     exchange_.gather(state, bodies_);
     std::fill(mine_.begin(), mine_.end(), ContactWrench{});
-    contacts_.evaluate(bodies_, state.time, mine_);
+    contacts_.place(bodies_, state.time);
+    sharing_.evaluate(contacts_, mine_);
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = exchange_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
@@ -169,6 +172,7 @@ class ContactOfModel final : public Contact {
     possible_ = possible_ || contacts_.pieces() > 1;
     if (!possible_) possible_ = anywhere(contacts_.obstacle_listed());
     if (!possible_) near_ = anywhere(contacts_.listed() > 0);
+    sharing_.plan(contacts_);
     exchange_.choose(contacts_.involved());
     bodies_.resize(contacts_.involved().size());
     mine_.resize(bodies_.size());
@@ -196,6 +200,7 @@ class ContactOfModel final : public Contact {
   const Part& part_;
   mutable Contacts contacts_;
   mutable ContactExchange exchange_;
+  mutable ContactSharing sharing_;
   mutable Watch watch_;
   mutable std::vector<MovingPose> bodies_;
   mutable std::vector<ContactWrench> mine_;

@@ -26,7 +26,13 @@ class Ghosts {
 
   /// Fills the ghosts' records from their owners'. Collective.
   /// \param records  (owned + ghosts) x width, row-major
-  void update(std::span<double> records, int width) const;
+  void update(std::span<double> records, int width) const {
+    begin(records, width);
+    end(records, width);
+  }
+  /// The same in two parts, between which neither owned records nor ghosts are touched.
+  void begin(std::span<double> records, int width) const;
+  void end(std::span<double> records, int width) const;
 
   std::int32_t owned() const { return owned_; }
   std::int32_t ghosts() const { return ghosts_; }

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -63,8 +64,26 @@ class Contacts {
   /// Bodies that are in a listed pair, sorted: evaluate() wants these, in this order.
   std::span<const std::int32_t> involved() const { return involved_; }
 
-  /// Adds the contacts' wrenches on involved bodies; changes no history.
-  void evaluate(std::span<const MovingPose> bodies, double time, std::span<ContactWrench> wrenches);
+  /// The overlap of a pair, in world axes from A's centroid; volume 0: there is none.
+  struct Meeting {
+    Overlap overlap;
+    double depth = 0;  ///< of its centroid below the first face of B [m]
+  };
+  /// Listed pairs that remember something: their overlaps are most of an evaluation.
+  std::size_t remembering() const { return memories_.size(); }
+  /// The last `count` of them: until the next build their meetings come from another rank.
+  std::vector<std::array<std::int32_t, 2>> lend(std::size_t count);
+  /// Pairs whose meetings another rank wants until the next build: their bodies are involved.
+  void borrow(std::span<const std::array<std::int32_t, 2>> pairs);
+
+  /// Before an evaluation. \param bodies  the involved ones
+  void place(std::span<const MovingPose> bodies, double time);
+  /// Meetings of the borrowed pairs, in their order.
+  void meet_borrowed(std::span<Meeting> meetings);
+  /// Adds the contacts' wrenches on involved bodies, as placed; changes no history.
+  /// \param lent  called when the meetings of the lent pairs are needed, if there are any
+  void evaluate(std::span<ContactWrench> wrenches,
+                const std::function<std::span<const Meeting>()>& lent = {});
   /// Takes over what the last evaluation found. \param bodies  after the step: velocities half a
   /// step on   \param dt  the step [s]
   void commit(std::span<const MovingPose> bodies, double dt);
@@ -115,8 +134,9 @@ class Contacts {
   struct Pair {
     std::int32_t a, b;            ///< bodies; b < 0: obstacle -1 - b
     std::int32_t slot_a, slot_b;  ///< among the involved
-    bool counted, fresh;
+    bool counted, fresh, lent;
     Vec3<double> axis;  ///< along which they were apart last, from B to A
+    double safe = 0;    ///< as long as their ways add up to less, there is still a gap [m]
   };
   /// A contact of the last evaluation.
   struct Touch {
@@ -133,6 +153,7 @@ class Contacts {
     Vec3<double> x;
     Triad<double> axes;
     Vec3<double> velocity{}, spin{};
+    double way = 0;  ///< no point of it has gone farther since the last build [m]
   };
   /// Over the contacts that are counted here: what they store [J], and their power [W]: elastic,
   /// viscous, friction, of moving obstacles.
@@ -156,7 +177,15 @@ class Contacts {
   Placed at_time(std::int32_t obstacle, double position, double motion) const;
   PairConstants constants(std::int32_t a, std::int32_t b) const;
   double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
-  bool meet(std::int32_t index, const Placed& b, const PairMemory* memory);
+  Meeting meeting(const Pair& pair, const Placed& a, const Placed& b);
+  void touch(std::int32_t index, const Placed& b, const Meeting& meeting, const PairMemory* memory,
+             std::span<ContactWrench> wrenches);
+  const Placed& partner(const Pair& pair) const {
+    return pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)]
+                      : placed_[static_cast<std::size_t>(pair.slot_b)];
+  }
+  void find_involved();
+  static double farthest_way(const Placed& from, const Placed& to, double radius);
   static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
   static void add_power(const Touch& touch, const RelativeMotion& motion,
                         std::array<double, 4>& power);
@@ -176,13 +205,15 @@ class Contacts {
   bool changed_ = true, first_ = true;
   bool fresh_ = false;  ///< some pair is
 
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_, borrowed_;
   std::vector<std::int32_t> involved_;
   std::vector<Remembered> memories_, next_memories_;  ///< of pairs that touch, sorted as the pairs
   std::vector<Touch> touches_;
-  std::vector<Placed> placed_;        ///< per slot, of the last evaluation
-  std::vector<Placed> obstacles_at_;  ///< in the last evaluation
-  double time_ = 0;                   ///< of the last evaluation
+  std::vector<Placed> placed_;           ///< per slot, of the last evaluation
+  std::vector<Placed> obstacles_at_;     ///< in the last evaluation
+  std::vector<double> obstacle_radius_;  ///< of the farthest vertex from the frame's origin [m]
+  double time_ = 0;                      ///< of the last evaluation
+  bool placed_before_ = false;           ///< since the last build
   std::vector<ContactWrench> on_obstacle_;
   Clipper clipper_;
   std::vector<Vec3<double>> work_a_, work_b_;  ///< placed vertices
