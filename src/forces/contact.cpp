@@ -20,54 +20,90 @@ std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int3
 double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 /// Says when the list of pairs must be made anew: before a vertex has moved by the list's slack.
-/// Looks seldom: speeds tell how many steps are safe.
+/// Steps say how fast the fastest body was, which bounds all ways; only when that bound has reached
+/// the slack are the ways themselves looked at. A scene in which little moves pays next to nothing.
 class Watch {
  public:
+  explicit Watch(double radius = 0) : radius_(radius) {}
   void start(const State<Spatial>& state, std::int32_t owned) {
     at_build_.assign(state.records.begin(),
                      state.records.begin() + static_cast<std::ptrdiff_t>(owned) * Spatial::record);
     time_ = state.time;
-    looks_in_ = 0;
+    way_ = 0;
+    asks_in_ = 0;
+    started_ = true;
   }
   bool started() const { return started_; }
+  /// A step was made.
+  void went(const State<Spatial>& state, double dt) {
+    // Spins change within a step as a body tumbles; that half as much again is far more.
+    constexpr double tumbling = 1.5;
+    speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
+    way_ += dt * speed_;
+  }
   /// The same on every rank.
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
-    started_ = true;
-    if (--looks_in_ > 0) return false;
-    std::array<double, 2> mine{}, all{};  // way and speed of any vertex
+    if (--asks_in_ > 0) return false;
+    const auto [theirs, obstacles] = of_obstacles(state.time, contacts);
+    std::array<double, 2> all =
+        largest({std::max(way_, theirs), std::max(speed_, obstacles)}, part.comm);
+    const double slack = contacts.slack();
+    if (all[0] > slack) {
+      way_ = ways(state, part, contacts);
+      all[0] = largest({std::max(way_, theirs), 0}, part.comm)[0];
+      constexpr double enough = 0.8;  // of the slack: what is left is not worth another look
+      if (all[0] > enough * slack) return true;
+    }
+    if (size(part.comm) > 1) {        // a look costs a message
+      constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
+      const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : slack;
+      asks_in_ = static_cast<std::int64_t>(std::clamp((slack - all[0]) / per_step, 0.0, 1000.0));
+    }
+    return false;
+  }
+
+ private:
+  static std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
+    if (size(comm) > 1) MPI_Allreduce(MPI_IN_PLACE, mine.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
+    return mine;
+  }
+  /// The farthest way of a vertex of an obstacle since the list was made [m], and the most that
+  /// one may ever do [m/s].
+  std::array<double, 2> of_obstacles(double time, const Contacts& contacts) const {
+    std::array<double, 2> most{};
+    for (std::size_t k = 0; k < contacts.obstacles().size(); ++k) {
+      const ObstacleMotion& m = contacts.obstacles()[k].motion;
+      if (m.at_rest()) continue;
+      const double radius = contacts.obstacle_radius(k);
+      const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
+      most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
+                                      2 * radius * length({turn.x, turn.y, turn.z}));
+      most[1] = std::max(most[1], m.largest_speed(radius));
+    }
+    return most;
+  }
+  /// The farthest way of a vertex of an owned body since the list was made.
+  double ways(const State<Spatial>& state, const Part& part, const Contacts& contacts) const {
+    double farthest = 0;
     for (std::int32_t b = 0; b < part.owned; ++b) {
       const auto k = static_cast<std::size_t>(b);
       const double* was = &at_build_[k * Spatial::record];
       const double* is = state.record(k);
-      const double radius = contacts.radius(part.global[k]);
       const Vec3<double> way{is[0] - was[0], is[1] - was[1], is[2] - was[2]};
       const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
                                         Quat<double>{was[3], -was[4], -was[5], -was[6]});
-      mine[0] = std::max(mine[0], length(way) + 2 * radius * length({turn.x, turn.y, turn.z}));
-      mine[1] = std::max(mine[1],
-                         length({is[7], is[8], is[9]}) + radius * length({is[10], is[11], is[12]}));
+      farthest = std::max(farthest, length(way) + 2 * contacts.radius(part.global[k]) *
+                                                      length({turn.x, turn.y, turn.z}));
     }
-    for (const Obstacle& o : contacts.obstacles()) {
-      const ObstacleMotion& m = o.motion;
-      if (m.at_rest()) continue;
-      const double radius = o.radius();
-      const Quat<double> turn = product(m.turn(state.time), conjugate(m.turn(time_)));
-      mine[0] = std::max(mine[0], length(m.way(state.time) - m.way(time_)) +
-                                      2 * radius * length({turn.x, turn.y, turn.z}));
-      mine[1] = std::max(mine[1], m.largest_speed(radius));
-    }
-    MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part.comm);
-    constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
-    const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : contacts.slack();
-    looks_in_ =
-        static_cast<std::int64_t>(std::clamp((contacts.slack() - all[0]) / per_step, 0.0, 1000.0));
-    return all[0] > contacts.slack();
+    return farthest;
   }
 
- private:
+  double radius_;  ///< of the largest body [m]
   std::vector<double> at_build_;
   double time_ = 0;
-  std::int64_t looks_in_ = 0;
+  double way_ = 0;    ///< bound of the way of any vertex of this rank since the list was made [m]
+  double speed_ = 0;  ///< bound of their speeds in the last step [m/s]
+  std::int64_t asks_in_ = 0;
   bool started_ = false;
 };
 
@@ -80,6 +116,7 @@ class ContactOfModel final : public Contact {
                   std::move(obstacles)),
         exchange_(part),
         sharing_(part.comm),
+        watch_(largest_radius(contacts_, part.global_bodies)),
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
@@ -119,6 +156,7 @@ class ContactOfModel final : public Contact {
   void commit(const State<Spatial>& state, double dt) override {
     exchange_.gather(state, bodies_);
     contacts_.commit(bodies_, dt);
+    watch_.went(state, dt);
     dt_ = dt;
     watch_obstacles(dt);
   }
@@ -155,6 +193,11 @@ class ContactOfModel final : public Contact {
   void remember(Memory& memory) override;
 
  private:
+  static double largest_radius(const Contacts& contacts, std::int32_t bodies) {
+    double largest = 0;
+    for (std::int32_t b = 0; b < bodies; ++b) largest = std::max(largest, contacts.radius(b));
+    return largest;
+  }
   static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
     columns.add(name + "_x", v.x);
     columns.add(name + "_y", v.y);
@@ -177,7 +220,6 @@ class ContactOfModel final : public Contact {
     bodies_.resize(contacts_.involved().size());
     mine_.resize(bodies_.size());
     watch_.start(state, part_.owned);
-    (void)watch_.is_due(state, part_, contacts_, dt_);
   }
 
   /// Peak and impulse of the forces on obstacles; with several ranks a sum over them per step.
@@ -256,7 +298,7 @@ void ContactOfModel::remember(Memory& memory) {
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
-  watch_ = {};
+  watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
 }
 
 void check_shapes(const Lattice& lattice) {

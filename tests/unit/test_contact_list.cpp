@@ -8,8 +8,8 @@
 namespace floe {
 namespace {
 
-/// Loose blocks that drift and turn at random, in a box that moves; without a history, so that a
-/// list made long ago must say what a list made now says.
+/// Loose blocks that drift and turn at random, and a box that goes, turns and swings; without a
+/// history, so that a list made long ago must say what a list made now says.
 struct Crowd {
   Lattice lattice;
   std::vector<MovingPose> bodies;
@@ -17,7 +17,10 @@ struct Crowd {
   std::vector<Obstacle> obstacles{box({2, 2, 2}, {3, 1, 1}, {10, 20, 30}),
                                   half_space({0, 0, -0.6}, {0, 0, 1})};
   Crowd() {
-    obstacles[0].velocity = {0.3, 0.2, -0.1};
+    obstacles[0].motion = {.velocity = {0.3, 0.2, -0.1},
+                           .angular_velocity = {0.1, -0.2, 0.2},
+                           .amplitude = {0, 0.03, 0.02},
+                           .frequency = 0.7};
     for (int k = 0; k < 64; ++k) {
       const Vec3<double> x{1.3 * (k % 4), 1.3 * (k / 4 % 4), 1.3 * (k / 16)};
       const Quat<double> q = random.rotation(random.uniform(0, 3));

@@ -92,6 +92,8 @@ class Contacts {
   void release(std::array<std::int32_t, 2> pair);
 
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  /// Distance of its farthest vertex from the origin of its frame [m]; 0 for a half-space.
+  double obstacle_radius(std::size_t k) const { return obstacle_radius_[k]; }
   /// Force and moment about its frame's origin on obstacle k, in the last evaluation, of bodies
   /// that are here.
   const ContactWrench& on_obstacle(std::size_t k) const { return on_obstacle_[k]; }

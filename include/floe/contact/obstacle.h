@@ -19,9 +19,6 @@ struct Obstacle {
   double friction = 0;  ///< mu against bodies
   std::vector<HalfSpace> planes;
   std::vector<Vec3<double>> vertices;  ///< empty: a half-space, which has none
-
-  /// Distance of the farthest vertex from the origin of its frame [m].
-  double radius() const;
 };
 
 /// \param normal  out of the obstacle, of any length but 0
