@@ -3,6 +3,7 @@
 
 A scene without an entry in EXPECTED fails; the checks are in scenes/, by subject. The commands run in a
 temporary folder that looks like the repository (build/release/floe, input, tools), so nothing is left behind.
+Commands on several ranks: test_scenes_ranks.py.
 """
 import os
 import subprocess
@@ -67,7 +68,7 @@ EXPECTED = {
 }
 
 
-class Scenes(unittest.TestCase):
+class SceneTest(unittest.TestCase):
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
@@ -92,8 +93,8 @@ class Scenes(unittest.TestCase):
         return run
 
 
-def add_tests():
-    """One test per scene, named after it."""
+def add_tests(case, on_ranks):
+    """One test per scene, named after it: those whose command is for several ranks, or the others."""
     for scene in sorted((REPOSITORY / "input").rglob("*.yaml")):
         name = str(scene.relative_to(REPOSITORY / "input"))
 
@@ -101,10 +102,15 @@ def add_tests():
             self.assertIn(name, EXPECTED, "a scene needs an entry in EXPECTED")
             EXPECTED[name](self, self.runner(scene))
 
-        setattr(Scenes, "test_" + name.removesuffix(".yaml").replace("/", "_"), test)
+        if scene.read_text().startswith("# mpiexec") == on_ranks:
+            setattr(case, "test_" + name.removesuffix(".yaml").replace("/", "_"), test)
 
 
-add_tests()
+class Scenes(SceneTest):
+    pass
+
+
+add_tests(Scenes, on_ranks=False)
 
 if __name__ == "__main__":
     unittest.main()
