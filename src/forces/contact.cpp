@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "floe/base/petsc.h"
@@ -30,6 +31,22 @@ class Watch {
     looks_in_ = 0;
   }
   bool started() const { return started_; }
+  /// Where bodies were at the last build, and when a look is due. Loading, build() goes between.
+  void remember(Memory& memory, const Part& part) {
+    std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
+    std::iota(owned.begin(), owned.end(), 0);
+    at_build_.resize(owned.size() * Spatial::record);
+    memory.rows("at_build", owned, at_build_, Spatial::record);
+    memory.common("build_time", time_);
+    memory.common("looks_in", looks_in_);
+    started_ = true;
+  }
+  State<Spatial> at_build(const Part& part) const {
+    State<Spatial> state(static_cast<std::size_t>(part.local));
+    std::copy(at_build_.begin(), at_build_.end(), state.records.begin());
+    state.time = time_;
+    return state;
+  }
   /// The same on every rank.
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
     started_ = true;
@@ -109,6 +126,27 @@ class ContactOfModel final : public Contact {
   }
   Rates own_rates() const override {
     return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
+  }
+
+  /// At rest; the run makes its own list. Collective.
+  void refuse_enclosed() {
+    const State<Spatial> rest(static_cast<std::size_t>(part_.local));
+    Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
+    add(rest, none);
+    watch_ = {};
+    std::vector<std::int32_t> mine;
+    if (const auto pair = contacts_.enclosed()) mine.assign(pair->begin(), pair->end());
+    const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
+    if (all.empty()) return;
+    std::array<std::int32_t, 2> first{all[0], all[1]};  // whatever the ranks
+    for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
+    const std::string body = "body " + std::to_string(first[0]);
+    if (first[1] >= 0)
+      throw InputError("forces: contact: " + body + " and body " + std::to_string(first[1]) +
+                       ": one lies wholly inside the other, they would feel nothing");
+    const Obstacle& o = contacts_.obstacles()[static_cast<std::size_t>(-1 - first[1])];
+    throw InputError("obstacle: " + o.name + ": " + body +
+                     " lies wholly inside it: obstacles are solid, it would feel nothing");
   }
 
   void commit(const State<Spatial>& state, double dt) override {
@@ -209,7 +247,8 @@ class ContactOfModel final : public Contact {
   double dt_ = 0, time_ = 0;
 };
 
-/// The list of pairs is made anew from the state; what a pair remembers goes with it.
+/// The list of pairs is made anew, from the state once contacts are possible: then it does not show
+/// in the results; what a pair remembers goes with it.
 void ContactOfModel::remember(Memory& memory) {
   for (std::size_t k = 0; k < contacts_.sums().size(); ++k) {
     // The last step and whether the start is known are no sums.
@@ -235,6 +274,8 @@ void ContactOfModel::remember(Memory& memory) {
   bool changed = contacts_.changed();
   memory.common("changed", changed);
   memory.common("possible", possible_);
+  Watch watch = watch_;
+  if (!possible_) watch.remember(memory, part_);  // what is listed decides when it becomes so
   memory.common("pairs", rows);
   memory.common("released", pairs);
   for (std::size_t k = 0; k < peak_.size(); ++k) {
@@ -252,6 +293,9 @@ void ContactOfModel::remember(Memory& memory) {
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
   watch_ = {};
+  if (possible_ || changed) return;
+  build(watch.at_build(part_));  // the list that the run had
+  watch_ = watch;
 }
 
 void check_shapes(const Lattice& lattice) {
@@ -272,7 +316,9 @@ std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles) {
   check_shapes(lattice);
-  return std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+  auto contact = std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+  contact->refuse_enclosed();
+  return contact;
 }
 
 }  // namespace floe
