@@ -21,9 +21,14 @@ struct Cell {
 void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
                 std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs) {
   pairs.clear();
-  double size = 0;
-  for (const double r : radii) size = std::max(size, 2 * r + reach);
-  if (size <= 0) return;
+  // The few bodies far larger than the mean are tested against all: cells as large as they are
+  // would hold too many of the others.
+  constexpr double far_larger = 4;
+  double mean = 0, size = 0;
+  for (const double r : radii) mean += std::max(r, 0.0) / static_cast<double>(radii.size());
+  const auto is_large = [&](std::size_t b) { return radii[b] > far_larger * mean; };
+  for (std::size_t b = 0; b < radii.size(); ++b)
+    if (radii[b] >= 0 && !is_large(b)) size = std::max(size, 2 * radii[b] + reach);
   Vec3<double> low{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(),
                    std::numeric_limits<double>::max()};
   for (const auto& c : centres)
@@ -35,7 +40,7 @@ void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> r
     return static_cast<std::int32_t>(std::min(std::floor(x / size), farthest));
   };
   for (std::size_t b = 0; b < centres.size(); ++b) {
-    if (radii[b] < 0) continue;
+    if (radii[b] < 0 || is_large(b)) continue;
     const Vec3<double> r = centres[b] - low;
     cells.push_back({{place(r.x), place(r.y), place(r.z)}, static_cast<std::int32_t>(b)});
   }
@@ -48,6 +53,13 @@ void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> r
     const double most = radii[a] + radii[b] + reach;
     if (dot(d, d) <= most * most) pairs.push_back({std::min(i, j), std::max(i, j)});
   };
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    if (radii[i] < 0 || !is_large(i)) continue;
+    for (std::size_t j = 0; j < centres.size(); ++j) {
+      if (radii[j] < 0 || (is_large(j) && j <= i)) continue;
+      test(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+    }
+  }
   // Each cell with itself and with half of its neighbours: the one above, and the columns beside
   // it. For each column offset a pointer runs along, since both go through cells in order.
   const std::array<std::array<std::int32_t, 2>, 4> columns{{{0, 1}, {1, -1}, {1, 0}, {1, 1}}};

@@ -190,6 +190,15 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
   }
 }
 
+std::optional<std::array<std::int32_t, 2>> Contacts::enclosed() const {
+  for (const Touch& t : touches_) {
+    const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
+    const Vec3<double>& n = t.contact.normal;
+    if (pair.counted && dot(n, n) == 0) return std::array{pair.a, pair.b};
+  }
+  return std::nullopt;
+}
+
 void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
   const double last_dt = sums_[4];
   if (sums_[6] == 0) {

@@ -131,10 +131,11 @@ void Contacts::release(std::array<std::int32_t, 2> pair) {
   changed_ = true;
 }
 
-/// Pieces joined by beams (their smallest body's index), and how many beams each body has.
+/// Pieces joined by beams (their smallest body's index), and the bodies on their surfaces: those
+/// with fewer beams than a prism has sides, or that have lost one.
 void Contacts::find_pieces() {
   const auto n = static_cast<std::size_t>(shapes_.bodies());
-  beams_.assign(n, 0);
+  std::vector<std::int32_t> beams(n, 0);
   piece_.resize(n);
   std::iota(piece_.begin(), piece_.end(), 0);
   const auto root = [&](std::int32_t b) {
@@ -146,8 +147,8 @@ void Contacts::find_pieces() {
     return b;
   };
   for (const auto& [a, b] : joined_) {
-    ++beams_[static_cast<std::size_t>(a)];
-    ++beams_[static_cast<std::size_t>(b)];
+    ++beams[static_cast<std::size_t>(a)];
+    ++beams[static_cast<std::size_t>(b)];
     const std::int32_t i = root(a), j = root(b);
     piece_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
   }
@@ -156,12 +157,10 @@ void Contacts::find_pieces() {
     piece_[b] = root(static_cast<std::int32_t>(b));
     pieces_ += piece_[b] == static_cast<std::int32_t>(b) ? 1 : 0;
   }
-}
-
-/// With fewer beams than a prism has sides.
-bool Contacts::on_surface(std::int32_t body) const {
-  const auto b = static_cast<std::size_t>(body);
-  return beams_[b] < faces_[b] - 2;
+  outer_.resize(n);
+  for (std::size_t b = 0; b < n; ++b) outer_[b] = beams[b] < faces_[b] - 2 ? 1 : 0;
+  for (const auto& [a, b] : released_)
+    outer_[static_cast<std::size_t>(a)] = outer_[static_cast<std::size_t>(b)] = 1;
 }
 
 /// Bodies of different pieces may touch, and of one piece those on its surface.

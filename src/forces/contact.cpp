@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "floe/base/petsc.h"
@@ -40,6 +41,35 @@ class Watch {
     constexpr double tumbling = 1.5;
     speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
     way_ += dt * speed_;
+  }
+  /// Where bodies were at the last build, and when a look is due. Loading, build() goes between.
+  void remember(Memory& memory, const Part& part) {
+    std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
+    std::iota(owned.begin(), owned.end(), 0);
+    at_build_.resize(owned.size() * Spatial::record);
+    memory.rows("at_build", owned, at_build_, Spatial::record);
+    memory.common("build_time", time_);
+    memory.common("asks_in", asks_in_);
+    std::vector<double> all = all_gathered(std::vector{way_, speed_}, MPI_DOUBLE, part.comm);
+    const std::size_t ranks = all.size();
+    memory.common("ways_of_ranks", all);
+    started_ = true;
+    if (!memory.loading()) return;
+    // On another number of ranks decisions may differ: each takes the largest.
+    const auto me = static_cast<std::size_t>(rank(part.comm));
+    for (const std::size_t k : {0UL, 1UL}) {
+      double& mine = k == 0 ? way_ : speed_;
+      mine = 0;
+      for (std::size_t r = 0; 2 * r + k < all.size(); ++r) {
+        if (all.size() != ranks || r == me) mine = std::max(mine, all[2 * r + k]);
+      }
+    }
+  }
+  State<Spatial> at_build(const Part& part) const {
+    State<Spatial> state(static_cast<std::size_t>(part.local));
+    std::copy(at_build_.begin(), at_build_.end(), state.records.begin());
+    state.time = time_;
+    return state;
   }
   /// The same on every rank.
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
@@ -152,6 +182,27 @@ class ContactOfModel final : public Contact {
     return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
   }
 
+  /// At rest; the run makes its own list. Collective.
+  void refuse_enclosed() {
+    const State<Spatial> rest(static_cast<std::size_t>(part_.local));
+    Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
+    add(rest, none);
+    watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
+    std::vector<std::int32_t> mine;
+    if (const auto pair = contacts_.enclosed()) mine.assign(pair->begin(), pair->end());
+    const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
+    if (all.empty()) return;
+    std::array<std::int32_t, 2> first{all[0], all[1]};  // whatever the ranks
+    for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
+    const std::string body = "body " + std::to_string(first[0]);
+    if (first[1] >= 0)
+      throw InputError("forces: contact: " + body + " and body " + std::to_string(first[1]) +
+                       ": one lies wholly inside the other, they would feel nothing");
+    const Obstacle& o = contacts_.obstacles()[static_cast<std::size_t>(-1 - first[1])];
+    throw InputError("obstacle: " + o.name + ": " + body +
+                     " lies wholly inside it: obstacles are solid, it would feel nothing");
+  }
+
   void commit(const State<Spatial>& state, double dt) override {
     exchange_.gather(state, bodies_);
     contacts_.commit(bodies_, dt);
@@ -255,7 +306,8 @@ class ContactOfModel final : public Contact {
   double dt_ = 0, time_ = 0;
 };
 
-/// The list of pairs is made anew from the state; what a pair remembers goes with it.
+/// The list of pairs is made anew, from the state once contacts are possible: then it does not show
+/// in the results; what a pair remembers goes with it.
 void ContactOfModel::remember(Memory& memory) {
   for (std::size_t k = 0; k < contacts_.sums().size(); ++k) {
     // The last step and whether the start is known are no sums.
@@ -281,6 +333,8 @@ void ContactOfModel::remember(Memory& memory) {
   bool changed = contacts_.changed();
   memory.common("changed", changed);
   memory.common("possible", possible_);
+  Watch watch = watch_;
+  if (!possible_) watch.remember(memory, part_);  // what is listed decides when it becomes so
   memory.common("pairs", rows);
   memory.common("released", pairs);
   for (std::size_t k = 0; k < peak_.size(); ++k) {
@@ -298,6 +352,9 @@ void ContactOfModel::remember(Memory& memory) {
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
   watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
+  if (possible_ || changed) return;
+  build(watch.at_build(part_));  // the list that the run had
+  watch_ = watch;
 }
 
 void check_shapes(const Lattice& lattice) {
@@ -318,7 +375,9 @@ std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles) {
   check_shapes(lattice);
-  return std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+  auto contact = std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+  contact->refuse_enclosed();
+  return contact;
 }
 
 }  // namespace floe

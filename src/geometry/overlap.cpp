@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace floe {
@@ -10,39 +11,52 @@ namespace {
 
 Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
 
+std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face) {
+  return {shapes.corners.data() + shapes.corner_of[face],
+          shapes.corners.data() + shapes.corner_of[face + 1]};
+}
+
+/// Nothing for a face without area: it bounds nothing.
+std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
+  const auto corners = corners_of(shapes, face);
+  const auto at = [&](std::size_t k) {
+    return vector(shapes.vertices[static_cast<std::size_t>(corners[k])]);
+  };
+  Vec3<double> normal{};
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k)
+    normal = normal + cross(at(k) - at(0), at(k + 1) - at(0));
+  const double size = std::sqrt(dot(normal, normal));
+  if (size == 0) return std::nullopt;
+  normal = (1 / size) * normal;
+  double offset = -std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < corners.size(); ++k) offset = std::max(offset, dot(normal, at(k)));
+  return HalfSpace{normal, offset};
+}
+
 }  // namespace
 
 void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<HalfSpace>& planes) {
   const auto b = static_cast<std::size_t>(body);
   for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
        f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
-    const std::span corners(shapes.corners.data() + shapes.corner_of[f],
-                            shapes.corners.data() + shapes.corner_of[f + 1]);
-    const auto at = [&](std::size_t k) {
-      return vector(shapes.vertices[static_cast<std::size_t>(corners[k % corners.size()])]);
-    };
-    Vec3<double> normal{};
-    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
-      normal = normal + cross(at(k) - at(0), at(k + 1) - at(0));
-    const double size = std::sqrt(dot(normal, normal));
-    if (size == 0) continue;  // a face without area bounds nothing
-    normal = (1 / size) * normal;
-    double offset = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < corners.size(); ++k) offset = std::max(offset, dot(normal, at(k)));
-    planes.push_back({normal, offset});
+    if (const auto plane = plane_of(shapes, f)) planes.push_back(*plane);
   }
 }
 
 double concavity(const Shapes& shapes, std::int32_t body) {
-  std::vector<HalfSpace> planes;
-  append_half_spaces(shapes, body, planes);
   double most = 0;
   const auto b = static_cast<std::size_t>(body);
-  for (const HalfSpace& plane : planes) {
+  for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
+       f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
+    const auto plane = plane_of(shapes, f);
+    if (!plane) continue;
+    const auto beyond = [&](std::int32_t v) {
+      return dot(plane->normal, vector(shapes.vertices[static_cast<std::size_t>(v)])) -
+             plane->offset;
+    };
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v)
-      most =
-          std::max(most, dot(plane.normal, vector(shapes.vertices[static_cast<std::size_t>(v)])) -
-                             plane.offset);
+      most = std::max(most, beyond(v));
+    for (const std::int32_t v : corners_of(shapes, f)) most = std::max(most, -beyond(v));
   }
   return most;
 }

@@ -1,5 +1,7 @@
 #include "floe/geometry/polyhedron.h"
 
+#include <algorithm>
+
 namespace floe {
 
 PlanProperties plan_properties(std::span<const Point2> polygon) {
@@ -173,6 +175,30 @@ Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Poi
   s.wyy = yy / 12 + 2 * o[1] * ly + s.waterplane * o[1] * o[1];
   s.wxy = xy / 24 + o[0] * ly + o[1] * lx + s.waterplane * o[0] * o[1];
   return s;
+}
+
+std::optional<std::array<std::int32_t, 2>> open_edge(const Shapes& shapes, std::int32_t body) {
+  using Edge = std::array<std::int32_t, 2>;
+  std::vector<Edge> edges;
+  const auto b = static_cast<std::size_t>(body);
+  for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
+       f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
+    std::int32_t last = shapes.corners[static_cast<std::size_t>(shapes.corner_of[f + 1] - 1)];
+    for (auto c = static_cast<std::size_t>(shapes.corner_of[f]);
+         c < static_cast<std::size_t>(shapes.corner_of[f + 1]); ++c) {
+      const std::int32_t next = shapes.corners[c];
+      if (next != last) edges.push_back({last, next});
+      last = next;
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  if (const auto twice = std::adjacent_find(edges.begin(), edges.end()); twice != edges.end())
+    return *twice;
+  const auto alone = std::find_if(edges.begin(), edges.end(), [&](const Edge& e) {
+    return !std::binary_search(edges.begin(), edges.end(), Edge{e[1], e[0]});
+  });
+  if (alone == edges.end()) return std::nullopt;
+  return *alone;
 }
 
 }  // namespace floe

@@ -168,9 +168,15 @@ void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
       if (s.corner_of[f + 1] - s.corner_of[f] < 3)
         in.refuse("/shapes/corner_of", name + ": a face must have 3 corners or more");
     }
+    if (const auto edge = open_edge(s, b))
+      in.refuse("/shapes/corners", name + ": faces must close: the edge from vertex " +
+                                       std::to_string((*edge)[0]) + " to " +
+                                       std::to_string((*edge)[1]) +
+                                       " must be in two faces, once in each direction");
     const VolumeProperties p = volume_properties(s, b);
     if (!(p.volume > 0))
-      in.refuse("/shapes/corners", name + ": faces must be counter-clockwise seen from outside");
+      in.refuse("/shapes/corners",
+                name + ": faces must be counter-clockwise seen from outside, around a volume > 0");
     if (!centred_at_origin) continue;
     constexpr double centred = 1e-6;  // of the body's size
     if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
@@ -247,7 +253,8 @@ Shapes read_polyhedron(const std::string& file, const std::string& key) {
   if (shapes.empty()) in.refuse("/shapes", "is not there");
   const double size = std::cbrt(volume_properties(shapes, 0).volume);
   constexpr double rounding = 1e-6;
-  if (concavity(shapes, 0) > rounding * size) in.refuse("/shapes", "the polyhedron is not convex");
+  if (concavity(shapes, 0) > rounding * size)
+    in.refuse("/shapes", "the polyhedron is not convex, or a face of it is not plane");
   return shapes;
 }
 

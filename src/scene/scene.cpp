@@ -111,8 +111,10 @@ Obstacle read_shape(Options& options, const std::string& name) {
   const auto shape = options.choice<Shape>("obstacle: NAME: shape", name);
   if (shape == Shape::halfspace) {
     const Vec3<double> point = of("point"), normal = of("normal");
-    if (dot(normal, normal) == 0)
-      throw InputError("obstacle: " + name + ": normal: 0 0 0 is no direction");
+    const double length2 = dot(normal, normal);
+    if (!(length2 > 0 && std::isfinite(length2)))
+      throw InputError("obstacle: " + name + ": normal: " + text_of(normal.x) + " " +
+                       text_of(normal.y) + " " + text_of(normal.z) + " is no direction");
     return half_space(point, normal);
   }
   if (shape == Shape::box) {

@@ -8,6 +8,12 @@
 #include "solve/text.h"
 
 namespace floe {
+namespace {
+
+/// A year has 3e13 microseconds: who asks for more steps has mistaken a unit.
+constexpr double most_steps = 1e13;
+
+}  // namespace
 
 template <class Space>
 ExplicitRun<Space>::ExplicitRun(std::string_view type, Model<Space>& model,
@@ -38,6 +44,10 @@ void ExplicitRun<Space>::choose_step() {
   const double wanted = given > 0 ? given : explicit_options_.safety * stable.dt;
   if (!std::isfinite(wanted))
     throw InputError("time: dt: auto finds no force that limits the step; give one");
+  if (!(this->options().end / wanted < most_steps))
+    throw InputError("time: dt: " + text(wanted) + " s (stable: " + text(stable.dt) +
+                     ", limited by the " + stable.limit + ") would take more than " +
+                     text(most_steps) + " steps to time: end");
   this->plan(wanted);
 }
 
@@ -95,6 +105,11 @@ bool ExplicitRun<Space>::keep_step_stable(TS ts) {
         text(this->time()) + " s, limited by the " + stable.limit +
         " (time: dt: auto would take shorter steps from there on; allow_unstable: true goes on "
         "all the same)");
+    return false;
+  }
+  if (!(this->options().end / stable.dt < most_steps)) {
+    this->give_up("the stable step has fallen to " + text(stable.dt) + " s at time " +
+                  text(this->time()) + " s, limited by the " + stable.limit);
     return false;
   }
   const double before = this->dt();

@@ -176,6 +176,13 @@ SCENES = {
     "half-space without a direction": (obstacle("shape: halfspace, normal: [0, 0, 0]"), "obstacle: o: normal"),
     "flat box": (obstacle("shape: box, size: [1, 0, 1]"), "obstacle: o: size"),
     "cylinder of two facets": (obstacle("shape: cylinder, facets: 2"), "obstacle: o: facets"),
+    "half-space whose direction overflows": (obstacle("shape: halfspace, normal: [1e200, 0, 0]"), "obstacle: o: normal"),
+    "obstacle around a body": (obstacle("shape: box, size: [30, 30, 30]"), "obstacle: o: body 0 lies wholly inside"),
+    "half-space the wrong way round":
+        (obstacle("shape: halfspace, point: [0, 0, -5], normal: [0, 0, -1]"), "obstacle: o: body 0 lies wholly inside"),
+    "contacts of no stable step": (TOUCHING + FLOOR.replace("shape: halfspace", "point: [0, 0, -0.5], shape: halfspace")
+                                   + "contact: {young: 1e40}\n", "time: dt"),
+    "a step of no use": (MOVING, "steps to time: end", ["-time_dt", "1e-30"]),
     "radius of a box": (obstacle("shape: box, radius: 1"), "obstacle: o: radius"),
     "half-space that turns":
         (obstacle("shape: halfspace, angular_velocity: [0, 0, 1]"), "obstacle: o: angular_velocity"),
@@ -306,6 +313,64 @@ class BadInput(unittest.TestCase):
         self.on_ranks("not HDF5", ["scene.yaml"], "bad.h5",
                       lambda folder: [(folder / "scene.yaml").write_text(FILE),
                                       (folder / "bad.h5").write_text("no")])
+        self.finish()
+
+    def test_shapes(self):
+        """Of an obstacle and of loose bodies: cubes that are no closed convex polyhedra with plane faces."""
+        cube = np.array([[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], float) / 2
+        faces = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+        dented = cube.copy()
+        dented[6] = 0.1  # a corner that no plane of another face is beyond
+        cases = {"without a top": (cube, faces[:1] + faces[2:], "faces must close"),
+                 "without two sides": (cube, faces[:2] + faces[2:5:2], "faces must close"),
+                 "a face twice": (cube, faces + faces[:1], "faces must close"),
+                 "a face the other way round": (cube, faces[:5] + [faces[5][::-1]], "faces must close"),
+                 "vertices of each face its own":
+                     (cube[np.concatenate(faces)], [list(range(4 * k, 4 * k + 4)) for k in range(6)], "faces must close"),
+                 "flat": (cube * [1, 1, 0], faces, "volume > 0"),
+                 "inside out": (cube, [face[::-1] for face in faces], "counter-clockwise"),
+                 "dented": (dented, faces, "not plane")}
+        scene = "integrator: explicit\nforces: [contact]\nlattice_file: good.h5\ncontact: {young: 1e7}\n"
+        for name, (vertices, corners, part) in cases.items():
+            def spoilt(path, vertices=vertices, corners=corners):
+                with h5py.File(path, "a") as file:
+                    if "shapes" in file:
+                        del file["shapes"]
+                    file["shapes/vertices"] = vertices
+                    file["shapes/corners"] = np.concatenate(corners).astype(np.int32)
+                    file["shapes/corner_of"] = np.cumsum([0, *map(len, corners)]).astype(np.int32)
+                    file["shapes/face_of"] = np.array([0, len(corners)], np.int32)
+                    file["shapes/vertex_of"] = np.array([0, len(vertices)], np.int32)
+
+            def good(path):
+                fl.Lattice(np.array([[0.0, 0, 9]]), np.array([[1.0, 0, 0, 0]]), np.array([920.0]),
+                           np.full((1, 3), 920 / 6), shapes=fl.Shapes.boxes(np.ones((1, 3)))).write(path)
+
+            def an_obstacle(folder, spoilt=spoilt):
+                good(folder / "good.h5")
+                spoilt(folder / "bad.h5")
+                (folder / "scene.yaml").write_text(
+                    scene + "obstacle: {names: [o], o: {shape: file, file: bad.h5}}\n")
+
+            def a_body(folder, spoilt=spoilt):
+                good(folder / "good.h5")
+                spoilt(folder / "good.h5")
+                (folder / "scene.yaml").write_text(scene)
+
+            self.on_ranks("obstacle " + name, ["scene.yaml"], part, an_obstacle)
+            if name != "dented":  # its centroid is not the origin, which is what is found first
+                self.on_ranks("body " + name, ["scene.yaml"], "/shapes", a_body)
+        self.finish()
+
+    def test_a_body_inside_another(self):
+        def nested(folder):
+            sizes = np.array([[3.0, 3, 3], [1, 1, 1]])
+            mass = 920 * sizes.prod(1)
+            fl.Lattice(np.zeros((2, 3)), np.array([[1.0, 0, 0, 0]] * 2), mass, mass[:, None] * sizes**2 / 6,
+                       shapes=fl.Shapes.boxes(sizes)).write(folder / "bad.h5")
+            (folder / "scene.yaml").write_text("integrator: explicit\nforces: [contact]\nlattice_file: bad.h5\n"
+                                               "contact: {young: 1e7}\n")
+        self.on_ranks("nested", ["scene.yaml"], "wholly inside", nested)
         self.finish()
 
     def test_more_ranks_than_bodies(self):

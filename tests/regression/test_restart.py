@@ -284,6 +284,63 @@ class Breaking(RestartTest):
             self.assertTrue(np.array_equal(first[name], second[name]), name)
 
 
+class Contact(RestartTest):
+    def goes_on(self, scene, stops):
+        """A run in parts, which end at the given shares of its steps, is the run in one piece; its summary."""
+        (self.folder / "scene.yaml").write_text(scene)
+        a = self.run_whole(dir="a")
+        summary = json.loads((a / "summary.json").read_text())
+        resume = []
+        for part in stops:
+            end = ["-ts_max_steps", str(int(part * summary["steps"]))]
+            self.run_whole(*end, *resume, dir="b")
+            resume = ["-checkpoint_restart", "b/checkpoint.h5"]
+        b = self.go_on()
+        rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
+        for row in (a / "history.csv").read_text().split("\n"):
+            self.assertIn(row, rows)
+        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
+        self.assertEqual(first["run/step"], second["run/step"])
+        for name, values in first.items():
+            if name == "bodies/records" or name.startswith("force_"):
+                np.testing.assert_array_equal(values, second[name], name)
+        return summary
+
+    def test_a_sheet_near_a_wall(self):
+        """The step gets shorter when the run finds the wall near, not when a restart looks again."""
+        summary = self.goes_on("""integrator: explicit
+forces: [beam, contact]
+sheet: {length: 10, thickness: 1, element_size: 1, iterations: 5}
+beam: {damping_ratio: 0.02}
+contact: {young: 4e9}
+initial: {names: [all], all: {set: all, velocity: [0.2, 0, 0]}}
+obstacle: {names: [wall], wall: {shape: halfspace, point: [5.16, 0, 0], normal: [-1, 0, 0]}}
+time: {end: 1}
+checkpoint: {every: 1000}
+""", [0.12, 0.18, 0.24, 0.3])
+        self.assertEqual(summary["dt_limited_by"], "contacts that may come")
+
+    def test_a_sheet_that_breaks_against_a_slope(self):
+        """Friction, crushing and contacts that were born at breaks go on bit for bit, with an obstacle on its way."""
+        summary = self.goes_on("""integrator: explicit
+forces: [beam, fracture, gravity, buoyancy, drag, contact]
+sheet: {length: 12, width: 6, thickness: 0.5, element_size: 1.5, iterations: 10}
+beam: {damping_ratio: 0.1}
+fracture: {tensile_strength: 3e5, shear_strength: 3e5, energy: 15}
+water: {drag_coefficient: 1, drag_linear: 200}
+contact: {young: 1e8, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
+obstacle:
+  names: [slope, mover]
+  slope: {shape: halfspace, point: [6.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
+  mover: {shape: cylinder, base: [1, 0, -3], radius: 1, height: 2.5, facets: 12, velocity: [0, 0, 0.5]}
+boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [1, 0, 0], ramp: 0.1}}
+time: {end: 0.8}
+checkpoint: {every: 1000}
+""", [0.1, 0.3, 0.5, 0.51, 0.8])
+        self.assertGreater(summary["beams_broken"], 10)
+        self.assertGreater(summary["contacts"], 3)
+
+
 class Fracture(Breaking):
     def test_a_sheet_that_breaks(self):
         self.check_breaking(1)

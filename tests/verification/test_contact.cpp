@@ -128,8 +128,10 @@ TEST(Contact, StackOfTenStaysAndCarriesItsWeight) {
 }
 
 /// Returned part of the speed of a block that falls on a plane without gravity.
-double returned(double restitution, double speed, const Quat<double>& q, double reach) {
+double returned(double restitution, double speed, const Quat<double>& q, double reach,
+                ContactLaw law = ContactLaw::overlap) {
   Scene scene = contact_scene(0, restitution, false);
+  scene.contact.law = law;
   add_plane(scene, {0, 0, 1});
   Lattice lattice;
   test::append_block(lattice, {1, 1, 1}, {0, 0, reach + 0.001}, q, {0, 0, -speed});
@@ -159,6 +161,12 @@ TEST(Contact, RestitutionOfEdgesAndCornersDoesNotDependOnSpeed) {
   EXPECT_NEAR(returned(0.451, 0.1, corner, std::sqrt(0.75)), at_corner, 0.02 * at_corner);
   EXPECT_NEAR(at_edge, 0.407, 0.01);
   EXPECT_NEAR(at_corner, 0.389, 0.01);
+  // Without damping a half-space gives back everything, with both laws.
+  for (const ContactLaw law : {ContactLaw::overlap, ContactLaw::potential}) {
+    EXPECT_NEAR(returned(1, 1, {1, 0, 0, 0}, 0.5, law), 1, 1e-3);
+    EXPECT_NEAR(returned(1, 1, edge, std::sqrt(0.5), law), 1, 1e-3);
+    EXPECT_NEAR(returned(1, 1, corner, std::sqrt(0.75), law), 1, 1e-3);
+  }
 }
 
 /// 100 pairs of random polyhedra that meet without friction or damping.
@@ -267,6 +275,23 @@ TEST(Contact, ThatIsBornWhenABeamBreaksHasNoEnergy) {
   EXPECT_EQ(force(), 0);
   state.record(1)[0] = -0.01;  // nearer than they were born
   EXPECT_NEAR(force(), -young * 0.01, 1e-6 * young);
+}
+
+/// Weights that stand beside a floor's point turn it: r x F.
+TEST(Contact, MomentOnAnObstacleIsAboutItsPoint) {
+  Scene scene = contact_scene(0.3, 0.3);
+  scene.obstacles.push_back(box({1, -2, -0.5}, {20, 20, 1}, {0, 0, 0}));
+  scene.obstacles.back().name = "floor";
+  Lattice lattice;
+  test::append_block(lattice, {1, 1, 1}, {3, 4, 0.5 - 920 * g / (2 * young)});
+  test::Dynamics d(scene, lattice);
+  const double dt = start(d);
+  d.steps(static_cast<long>(1 / dt));
+  const double weight = 920 * g;
+  EXPECT_NEAR(d.reported("floor_force_z"), -weight, 1e-6 * weight);
+  EXPECT_NEAR(d.reported("floor_moment_x"), (4 + 2) * -weight, 1e-6 * weight);
+  EXPECT_NEAR(d.reported("floor_moment_y"), -(3 - 1) * -weight, 1e-6 * weight);
+  EXPECT_NEAR(d.reported("floor_moment_z"), 0, 1e-6 * weight);
 }
 
 /// A plate that is moved against a block on a floor pushes with mu m g and does that work.

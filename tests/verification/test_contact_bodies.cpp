@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "floe/forces/contact.h"
 #include "floe/solve/integrator.h"
 #include "solve/stable_step.h"
 #include "support/blocks.h"
@@ -177,6 +178,39 @@ TEST(ContactOfBrokenBeams, AddsNoEnergy) {
   // The overlap itself would store 0.5 k_v V^2/|S|.
   EXPECT_LT(most, 0.1 * 0.5 * young * 0.05 * 0.05);
   EXPECT_LT(worst, 1e-4 * kinetic);
+}
+
+/// In a block of 3 x 3 x 2 boxes the two in the middle have five beams each, more than a prism has
+/// sides less one; when the beam between them breaks, they touch all the same.
+TEST(ContactOfBrokenBeams, TouchAlsoInsideABlockOfSeveralLayers) {
+  Lattice lattice;
+  const auto index = [](int i, int j, int k) { return i + 3 * j + 9 * k; };
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        test::append_block(lattice, {1, 1, 1}, {1.0 * i, 1.0 * j, 1.0 * k});
+        if (i < 2) lattice.beams.bodies.push_back({index(i, j, k), index(i + 1, j, k)});
+        if (j < 2) lattice.beams.bodies.push_back({index(i, j, k), index(i, j + 1, k)});
+        if (k < 1) lattice.beams.bodies.push_back({index(i, j, k), index(i, j, k + 1)});
+      }
+    }
+  }
+  const Part part = partition(lattice, PETSC_COMM_SELF);
+  const auto contact = make_contact(part, lattice, {.young = young}, {});
+  State<Spatial> state(18);
+  const int below = index(1, 1, 0), above = index(1, 1, 1);
+  const auto force = [&] {
+    Wrenches<Spatial> w(18);
+    contact->add(state, w);
+    return w.of(static_cast<std::size_t>(above))[2];
+  };
+  EXPECT_EQ(force(), 0);
+  const std::array<std::int32_t, 2> pair{below, above};
+  contact->release({&pair, 1});
+  EXPECT_NEAR(force(), 0, 1e-6);
+  contact->commit(state, 1e-3);
+  state.record(static_cast<std::size_t>(above))[2] = -0.01;
+  EXPECT_NEAR(force(), young * 0.01, 1e-3 * young * 0.01);
 }
 
 /// A sheet that drifts against a wall steps as without contact until it is near, then as its

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -99,6 +100,9 @@ class Contacts {
   std::int64_t touching() const { return touching_; }
   std::size_t listed() const { return pairs_.size(); }
   bool obstacle_listed() const;
+  /// A counted pair of the last evaluation, A and B, of which one lies wholly inside the other:
+  /// they press on each other nowhere.
+  std::optional<std::array<std::int32_t, 2>> enclosed() const;
   /// Pieces joined by beams, as of the last build, or at first.
   std::int32_t pieces() const { return pieces_; }
   ContactEnergies energies() const;
@@ -163,7 +167,7 @@ class Contacts {
   };
 
   void add_solid(std::int32_t body);
-  bool on_surface(std::int32_t body) const;
+  bool on_surface(std::int32_t body) const { return outer_[static_cast<std::size_t>(body)] != 0; }
   bool may_touch(std::int32_t a, std::int32_t b) const;
   void find_pieces();
   void list_bodies(std::span<const Placed> placed, std::span<const std::uint8_t> here);
@@ -197,7 +201,8 @@ class Contacts {
   std::vector<Solid> solids_;
   std::vector<double> surface_, widest_;  ///< area of all faces, of the largest [m^2]
   std::vector<std::array<std::int32_t, 2>> joined_, released_;
-  std::vector<std::int32_t> faces_, beams_, piece_;  ///< per body
+  std::vector<std::int32_t> faces_, piece_;  ///< per body
+  std::vector<std::uint8_t> outer_;  ///< per body: whether it is on the surface of its piece
   std::int32_t pieces_ = 0;
   ContactOptions options_;
   std::vector<Obstacle> obstacles_;

@@ -24,7 +24,8 @@ class Contact : public Force<Spatial> {
 /// (lost), energy_external of moving obstacles, contacts, and per obstacle NAME_force_x..,
 /// NAME_moment_x.. (about its point), NAME_peak_force_x.. (largest so far), NAME_mean_force_x..
 /// (over the run so far). \param part  must outlive the force   \param lattice  whole; needed
-/// during construction only \throws InputError if the lattice has no shapes or one is not convex
+/// during construction only \throws InputError if the lattice has no shapes, one is not convex, or
+/// a body lies wholly inside another or an obstacle. Collective.
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles);

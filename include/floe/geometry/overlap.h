@@ -32,8 +32,8 @@ struct Overlap {
 /// Newell's sums, offsets that hold all corners of the face.
 void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<HalfSpace>& planes);
 
-/// Largest distance of a vertex of body b beyond one of its faces' planes [m]: rounding if the body
-/// is convex.
+/// Largest distance of a vertex of body b beyond one of its faces' planes, or of a face's corner
+/// from its plane [m]: rounding if the body is convex and its faces are plane.
 double concavity(const Shapes& shapes, std::int32_t body);
 
 /// Clips polyhedra; the memory it works in is its own and kept, so that calls do not allocate once

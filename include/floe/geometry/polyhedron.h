@@ -59,6 +59,10 @@ struct VolumeProperties {
 };
 VolumeProperties volume_properties(const Shapes& shapes, std::int32_t body);
 
+/// An edge of a face of body b, from vertex to vertex, that no other face has in the other
+/// direction, or that two have in the same; none if the faces close.
+std::optional<std::array<std::int32_t, 2>> open_edge(const Shapes& shapes, std::int32_t body);
+
 /// The part of a convex polyhedron below the plane z = level, after its vertices were placed in the
 /// world. Waterplane moments are about the point (x0, y0) given to the function.
 struct Submerged {

@@ -1,0 +1,134 @@
+// The law of one contact, term by term (model.md, "Contact"): signs, factors, axes.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "floe/contact/law.h"
+
+namespace floe {
+namespace {
+
+constexpr double tolerance = 1e-12;
+
+void expect_vector(const Vec3<double>& a, const Vec3<double>& b, double scale = 1) {
+  EXPECT_NEAR(a.x, b.x, tolerance * scale);
+  EXPECT_NEAR(a.y, b.y, tolerance * scale);
+  EXPECT_NEAR(a.z, b.z, tolerance * scale);
+}
+
+/// An overlap whose facets on B have the area vector `area`.
+Overlap overlap_of(double volume, const Vec3<double>& area, const Vec3<double>& moment = {}) {
+  Overlap o;
+  o.volume = volume;
+  o.area = area;
+  o.moment = moment;
+  return o;
+}
+
+struct Law {
+  ContactOptions options{.law = ContactLaw::overlap, .young = 1, .friction = 0.5};
+  PairConstants pair{.stiffness = 1e6, .area = 4, .mass = 10, .friction = 0.5};
+  PairMemory memory;
+  RelativeMotion motion;
+  bool fresh = false;
+  StoredEnergy stored;
+  ContactForce operator()(const Overlap& o) {
+    return contact_force(options, pair, o, 0, motion, memory, fresh, stored);
+  }
+};
+
+TEST(ContactLaw, NormalForceIsStiffnessTimesVolumeAlongTheArea) {
+  Law law;
+  const ContactForce c = law(overlap_of(0.01, {0, 0, -2}, {3, 0, 0}));
+  expect_vector(c.force(), {0, 0, -1e4}, 1e4);
+  expect_vector(c.couple, {0, 0, 0});
+  EXPECT_NEAR(law.stored.normal, 0.5 * 1e6 * 0.01 * 0.01 / 2, tolerance);
+}
+
+TEST(ContactLaw, PotentialGivesAPressureAndItsCouple) {
+  Law law;
+  law.options.law = ContactLaw::potential;
+  const ContactForce c = law(overlap_of(0.01, {0, -2, 0}, {0, 0.3, -0.1}));
+  const double pressure = 1e6 / 4 * 0.01;
+  expect_vector(c.force(), {0, -2 * pressure, 0}, pressure);
+  expect_vector(c.couple, {0, 0.3 * pressure, -0.1 * pressure}, pressure);
+  EXPECT_NEAR(law.stored.normal, 0.5 * 1e6 / 4 * 0.01 * 0.01, tolerance);
+  // Crushed to p |S| = sigma_p |S|: V - V_p = sigma_p A_r/k_v.
+  law.options.plastic_limit = 1000;
+  const ContactForce crushed = law(overlap_of(0.01, {0, -2, 0}));
+  expect_vector(crushed.force(), {0, -2000, 0}, 2000);
+  EXPECT_NEAR(crushed.memory.plastic, 0.01 - 1000 * 4 / 1e6, tolerance);
+}
+
+TEST(ContactLaw, ViscousTermResistsApproachAndNeverPulls) {
+  Law law;
+  law.options.damping_ratio = 0.2;
+  law.motion.velocity = {7, 0, -0.1};  // B's face looks up: A comes down
+  const Overlap o = overlap_of(0.01, {0, 0, 2});
+  const double viscous = 2 * 0.2 * std::sqrt(10 * 1e6 * 2) * 0.1;
+  EXPECT_NEAR(law(o).force().z, 1e4 + viscous, tolerance * 1e4);
+  law.motion.velocity = {7, 0, 0.1};
+  EXPECT_NEAR(law(o).force().z, 1e4 - viscous, tolerance * 1e4);
+  law.motion.velocity = {7, 0, 100};
+  EXPECT_EQ(law(o).force().z, 0);
+  law.motion.velocity = {7, 0, -100};
+  law.options.plastic_limit = 6000;  // of both terms together
+  EXPECT_NEAR(law(o).force().z, 12000, tolerance * 1e4);
+}
+
+TEST(ContactLaw, BornContactHasItsOverlapAsPlastic) {
+  Law law;
+  law.fresh = true;
+  const ContactForce c = law(overlap_of(0.01, {0, 0, 2}));
+  expect_vector(c.force(), {0, 0, 0});
+  EXPECT_EQ(c.memory.plastic, 0.01);
+  EXPECT_EQ(law.stored.normal, 0);
+}
+
+TEST(ContactLaw, FrictionOpposesSlipAndTurnsWithTheMeanSpin) {
+  Law law;
+  const ContactForce c = law(overlap_of(0.01, {0, 0, 2}));
+  EXPECT_NEAR(c.memory.shear, 0.6 * 1e6 * 2, tolerance * 1e6);
+  const double dt = 1e-3;
+  // What A moves along the normal does not count.
+  expect_vector(slid(c, {{0.3, -0.4, 5}, {}}, {}, dt).tangential, {-360, 480, 0}, 1e3);
+  ContactForce stuck = c;
+  stuck.memory.tangential = {100, 0, 0};
+  const double turn = 20 * dt;
+  expect_vector(slid(stuck, {}, {3, 4, 20}, dt).tangential,
+                {100 * std::cos(turn), 100 * std::sin(turn), 0}, 100);
+}
+
+TEST(ContactLaw, StoredFrictionTurnsWithTheNormalAndFallsWithTheStiffness) {
+  Law law;
+  law.memory.tangential = {100, 20, 0};  // under a normal along z
+  law.memory.shear = 0.6 * 1e6 * 2;
+  const double tilt = 0.3, size = std::hypot(100, 20);
+  const Vec3<double> normal{std::sin(tilt), 0, std::cos(tilt)};
+  const Vec3<double> f = law(overlap_of(0.01, 2.0 * normal)).memory.tangential;
+  EXPECT_NEAR(dot(f, normal), 0, tolerance * size);
+  EXPECT_NEAR(std::sqrt(dot(f, f)), size, tolerance * size);
+  // Its part in the new plane, lengthened.
+  const Vec3<double> in_plane{100 * std::cos(tilt) * std::cos(tilt), 20,
+                              -100 * std::cos(tilt) * std::sin(tilt)};
+  expect_vector(f, (size / std::sqrt(dot(in_plane, in_plane))) * in_plane, size);
+  // Half of the area, half of the force; more area, no more force.
+  expect_vector(law(overlap_of(0.01, {0, 0, 1})).memory.tangential, {50, 10, 0}, size);
+  expect_vector(law(overlap_of(0.01, {0, 0, 8})).memory.tangential, {100, 20, 0}, size);
+}
+
+TEST(ContactLaw, FrictionIsCutToTheCoefficientTimesTheNormalForce) {
+  Law law;
+  law.memory.tangential = {3e4, -4e4, 0};
+  law.memory.shear = 1;
+  const Overlap o = overlap_of(0.01, {0, 0, 2});
+  expect_vector(law(o).memory.tangential, {3000, -4000, 0}, 5e3);
+  law.options.plastic_limit = 1000;  // of the normal force that acts
+  expect_vector(law(o).memory.tangential, {600, -800, 0}, 1e3);
+  law.pair.friction = 0;
+  expect_vector(law(o).memory.tangential, {0, 0, 0});
+}
+
+}  // namespace
+}  // namespace floe
