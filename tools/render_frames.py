@@ -81,7 +81,7 @@ def bodies_of(reader):
 
 
 def show_surroundings(job, view, towards):
-    """Water level and obstacles; the displays of obstacles that move, with their velocities."""
+    """Water level and obstacles; the displays of obstacles that move, with their places."""
     moving = []
     for o in job["obstacles"]:
         display = pv.Show(polygons(o["points"], o["faces"]), view)
@@ -94,8 +94,8 @@ def show_surroundings(job, view, towards):
             # It would hide the ice. (math.fsum: ParaView puts a sum of its own in the place of Python's.)
             behind = math.fsum(n * t for n, t in zip(normal, towards)) < 0
             display.Opacity = 0.12 if behind else 0.6
-        if any(o["velocity"]):
-            moving.append((display, o["velocity"]))
+        if o["placements"]:
+            moving.append((display, o["placements"]))
     if job["water"]:
         low, high = job["low"], job["high"]
         level = [[low[0], low[1], 0], [high[0], low[1], 0], [high[0], high[1], 0], [low[0], high[1], 0]]
@@ -118,10 +118,10 @@ def main():
     show_bodies(job, view)
     towards = place_camera(view, job)
     moving = show_surroundings(job, view, towards)
-    for time, file in zip(job["times"], job["files"]):
+    for k, (time, file) in enumerate(zip(job["times"], job["files"])):
         view.ViewTime = time
-        for display, velocity in moving:
-            display.Position = [time * v for v in velocity]
+        for display, placements in moving:
+            display.Position, display.Orientation = placements[k]
         pv.SaveScreenshot(file, view, ImageResolution=job["size"], OverrideColorPalette="",
                           CompressionLevel="9")
 

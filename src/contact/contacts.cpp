@@ -57,14 +57,21 @@ RelativeMotion Contacts::relative(const Placed& a, const Placed& b, const Vec3<d
           a.spin - b.spin};
 }
 
-void Contacts::add_power(const Pair& pair, const ContactForce& c, const RelativeMotion& motion,
-                         std::array<double, 4>& power) const {
+/// Of the elastic, viscous and friction terms.
+void Contacts::add_power(const Touch& touch, const RelativeMotion& motion,
+                         std::array<double, 4>& power) {
+  const ContactForce& c = touch.contact;
   const double parting = dot(c.normal, motion.velocity);
   power[0] += c.elastic * parting + dot(c.couple, motion.spin);
   power[1] += c.viscous * parting;
   power[2] += dot(c.memory.tangential, motion.velocity);
-  if (pair.b < 0)
-    power[3] += dot(c.force(), obstacles_[static_cast<std::size_t>(-1 - pair.b)].velocity);
+}
+
+/// What a moving obstacle gives [W].
+double Contacts::power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle) {
+  const Vec3<double> arm = touch.centre + (a.x - obstacle.x);
+  return dot(touch.contact.force(), obstacle.velocity + cross(obstacle.spin, arm)) +
+         dot(touch.contact.couple, obstacle.spin);
 }
 
 Contacts::Meeting Contacts::meeting(const Pair& pair, const Placed& a, const Placed& b) {
@@ -102,7 +109,8 @@ void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
     ++touching_;
     totals_.stored.normal += stored.normal;
     totals_.stored.tangential += stored.tangential;
-    add_power(pair, contact, motion, totals_.power);
+    add_power(touches_.back(), motion, totals_.power);
+    if (pair.b < 0) totals_.power[3] += power_of_obstacle(touches_.back(), a, b);
   }
   const Vec3<double> force = contact.force();
   ContactWrench& on_a = wrenches[static_cast<std::size_t>(pair.slot_a)];
@@ -115,11 +123,28 @@ void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
 }
 
 void Contacts::place(std::span<const MovingPose> bodies, double time) {
+  const auto move = [&](Placed& p, const Placed& to, double radius) {
+    const double way = placed_before_ ? p.way + farthest_way(p, to, radius) : 0.0;
+    p = to;
+    p.way = way;
+  };
   for (std::size_t s = 0; s < bodies.size(); ++s)
-    placed_[s] = {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin};
-  obstacles_at_.clear();
+    move(placed_[s],
+         {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin},
+         radius(involved_[s]));
+  const double half_a_step_ago = time - 0.5 * sums_[4];  // as the bodies' velocities
   for (std::size_t k = 0; k < obstacles_.size(); ++k)
-    obstacles_at_.push_back(at_time(-1 - static_cast<std::int32_t>(k), time));
+    move(obstacles_at_[k], at_time(-1 - static_cast<std::int32_t>(k), time, half_a_step_ago),
+         obstacle_radius_[k]);
+  time_ = time;
+  placed_before_ = true;
+}
+
+/// Bound of the way of any point of a body within `radius` of its centroid [m].
+double Contacts::farthest_way(const Placed& from, const Placed& to, double radius) {
+  const Vec3<double> d1 = to.axes.e1 - from.axes.e1, d2 = to.axes.e2 - from.axes.e2,
+                     d3 = to.axes.e3 - from.axes.e3, x = to.x - from.x;
+  return std::sqrt(dot(x, x)) + radius * std::sqrt(dot(d1, d1) + dot(d2, d2) + dot(d3, d3));
 }
 
 void Contacts::meet_borrowed(std::span<Meeting> meetings) {
@@ -152,7 +177,14 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
         touch(index, b, met, remembered, wrenches);
       continue;
     }
-    if (remembered == nullptr && gap(pair, a, b, tries) > rounding * radius(pair.a)) continue;
+    if (remembered == nullptr) {
+      const double ways = a.way + b.way;
+      if (ways < pair.safe) continue;
+      if (const double apart = gap(pair, a, b, tries); apart > rounding * radius(pair.a)) {
+        pair.safe = ways + (1 - 1e-6) * apart;  // less what ways lose by rounding
+        continue;
+      }
+    }
     if (const Meeting met = meeting(pair, a, b); met.overlap.volume > 0)
       touch(index, b, met, remembered, wrenches);
   }
@@ -174,6 +206,10 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     sums_[6] = 1;
   }
   memories_.clear();
+  for (std::size_t k = 0; k < obstacles_at_.size(); ++k) {
+    obstacles_at_[k].velocity = obstacles_[k].motion.rate(time_ + 0.5 * dt);
+    obstacles_at_[k].spin = obstacles_[k].motion.spin(time_ + 0.5 * dt);
+  }
   std::array<double, 4> power{};
   for (const Touch& t : touches_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
@@ -185,7 +221,8 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     const Placed b =
         pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)] : moving(pair.slot_b);
     const RelativeMotion motion = relative(a, b, t.centre);
-    if (pair.counted) add_power(pair, t.contact, motion, power);
+    if (pair.counted) add_power(t, motion, power);
+    if (pair.b < 0) power[3] += power_of_obstacle(t, a, b);
     memories_.push_back(
         {pair.a, pair.b, t.pair, slid(t.contact, motion, 0.5 * (a.spin + b.spin), dt)});
   }

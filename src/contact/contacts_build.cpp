@@ -59,6 +59,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       joined_(std::move(joined)),
       options_(options),
       obstacles_(std::move(obstacles)),
+      obstacles_at_(obstacles_.size()),
       on_obstacle_(obstacles_.size()) {
   // Bodies of one shape share it: a heap of equal blocks then finds it in the cache.
   std::map<std::vector<double>, std::int32_t> known;
@@ -81,6 +82,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   double mean = 0;
   for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
   reach_ = part_of_radius * mean;
+  for (const Obstacle& o : obstacles_) obstacle_radius_.push_back(o.radius());
   find_pieces();
 }
 
@@ -114,9 +116,10 @@ std::span<const HalfSpace> Contacts::planes(std::int32_t body) const {
   return {planes_.data() + s.first_plane, static_cast<std::size_t>(s.planes)};
 }
 
-Contacts::Placed Contacts::at_time(std::int32_t obstacle, double time) const {
+Contacts::Placed Contacts::at_time(std::int32_t obstacle, double position, double motion) const {
   const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - obstacle)];
-  return {o.point + time * o.velocity, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, o.velocity, {}};
+  return {o.point + o.motion.way(position), triad(o.motion.turn(position)), o.motion.rate(motion),
+          o.motion.spin(motion)};
 }
 
 void Contacts::release(std::array<std::int32_t, 2> pair) {
@@ -207,6 +210,7 @@ void Contacts::find_involved() {
     }
   }
   placed_.resize(involved_.size());
+  placed_before_ = false;
 }
 
 std::vector<BodyPair> Contacts::lend(std::size_t count) {
@@ -221,7 +225,7 @@ std::vector<BodyPair> Contacts::lend(std::size_t count) {
 
 void Contacts::borrow(std::span<const BodyPair> pairs) {
   borrowed_.clear();
-  for (const auto& [a, b] : pairs) borrowed_.push_back({a, b, -1, -1, false, false, false, {}});
+  for (const auto& [a, b] : pairs) borrowed_.push_back({a, b, -1, -1, false, false, false, {}, 0});
   find_involved();
 }
 
@@ -249,11 +253,11 @@ void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::
 void Contacts::list_obstacles(std::span<const Placed> placed, std::span<const std::uint8_t> here,
                               double time) {
   for (std::int32_t k = 0; k < static_cast<std::int32_t>(obstacles_.size()); ++k) {
-    const Placed at = at_time(-1 - k, time);
+    const Placed at = at_time(-1 - k, time, time);
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(placed.size()); ++b) {
       const auto body = static_cast<std::size_t>(b);
       if (here[body] == 0) continue;
-      const Vec3<double> x = placed[body].x - at.x;
+      const Vec3<double> x = at.axes.to_local(placed[body].x - at.x);
       const auto beyond = [&](const HalfSpace& h) {
         return dot(h.normal, x) - h.offset > solids_[body].radius + reach_;
       };
@@ -270,7 +274,7 @@ bool Contacts::obstacle_listed() const {
 /// Lists a pair unless there is a wide gap.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
-  Pair pair{a, b, -1, -1, counted, changed_ && !first_, false, at_a.x - at_b.x};
+  Pair pair{a, b, -1, -1, counted, changed_ && !first_, false, at_a.x - at_b.x, 0};
   const double size = length(pair.axis);
   pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
   if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;

@@ -1,5 +1,6 @@
 #include "floe/contact/obstacle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -38,6 +39,12 @@ Shapes between(const std::vector<Point3>& low, const std::vector<Point3>& high) 
 }
 
 }  // namespace
+
+double Obstacle::radius() const {
+  double most = 0;
+  for (const Vec3<double>& r : vertices) most = std::max(most, dot(r, r));
+  return std::sqrt(most);
+}
 
 Obstacle half_space(const Vec3<double>& point, const Vec3<double>& normal) {
   Obstacle o;

@@ -1,19 +1,6 @@
 #include "floe/forces/boundary.h"
 
-#include <algorithm>
-
 namespace floe {
-
-double Ramp::value(double time) const {
-  return time >= seconds ? 1.0 : std::max(0.0, time) / seconds;
-}
-
-double Ramp::integral(double time) const {
-  if (time <= 0) return 0;
-  return time >= seconds ? time - 0.5 * seconds : 0.5 * time * time / seconds;
-}
-
-double Ramp::slope(double time) const { return time >= 0 && time < seconds ? 1.0 / seconds : 0.0; }
 
 namespace {
 

@@ -21,24 +21,31 @@ std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int3
 double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 /// Says when the list of pairs must be made anew: before a vertex has moved by the list's slack.
-/// Looks seldom: speeds tell how many steps are safe.
+/// Steps say how fast the fastest body was, which bounds all ways; only when that bound has reached
+/// the slack are the ways themselves looked at. A scene in which little moves pays next to nothing.
 class Watch {
  public:
+  explicit Watch(double radius = 0) : radius_(radius) {}
   void start(const State<Spatial>& state, std::int32_t owned) {
     at_build_.assign(state.records.begin(),
                      state.records.begin() + static_cast<std::ptrdiff_t>(owned) * Spatial::record);
     time_ = state.time;
-    looks_in_ = 0;
+    way_ = 0;
+    asks_in_ = 0;
+    started_ = true;
   }
   bool started() const { return started_; }
-  /// Where bodies were at the last build, and when a look is due. Loading, build() goes between.
+  /// Where bodies were at the last build, and what is known of their ways since. Loading, build()
+  /// goes between.
   void remember(Memory& memory, const Part& part) {
     std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
     std::iota(owned.begin(), owned.end(), 0);
     at_build_.resize(owned.size() * Spatial::record);
     memory.rows("at_build", owned, at_build_, Spatial::record);
     memory.common("build_time", time_);
-    memory.common("looks_in", looks_in_);
+    memory.share("way", way_);
+    memory.share("speed", speed_);
+    memory.common("asks_in", asks_in_);
     started_ = true;
   }
   State<Spatial> at_build(const Part& part) const {
@@ -47,39 +54,75 @@ class Watch {
     state.time = time_;
     return state;
   }
+  /// A step was made.
+  void went(const State<Spatial>& state, double dt) {
+    // Spins change within a step as a body tumbles; that half as much again is far more.
+    constexpr double tumbling = 1.5;
+    speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
+    way_ += dt * speed_;
+  }
   /// The same on every rank.
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
-    started_ = true;
-    if (--looks_in_ > 0) return false;
-    std::array<double, 2> mine{}, all{};  // way and speed of any vertex
+    if (--asks_in_ > 0) return false;
+    const auto [theirs, their_speed] = of_obstacles(contacts.obstacles(), state.time);
+    std::array<double, 2> all =
+        largest({std::max(way_, theirs), std::max(speed_, their_speed)}, part.comm);
+    const double slack = contacts.slack();
+    if (all[0] > slack) {
+      way_ = ways(state, part, contacts);
+      all[0] = largest({std::max(way_, theirs), 0}, part.comm)[0];
+      constexpr double enough = 0.8;  // of the slack: what is left is not worth another look
+      if (all[0] > enough * slack) return true;
+    }
+    if (size(part.comm) > 1) {        // a look costs a message
+      constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
+      const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : slack;
+      asks_in_ = static_cast<std::int64_t>(std::clamp((slack - all[0]) / per_step, 0.0, 1000.0));
+    }
+    return false;
+  }
+
+ private:
+  static std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
+    if (size(comm) > 1) MPI_Allreduce(MPI_IN_PLACE, mine.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
+    return mine;
+  }
+  /// The farthest way of an obstacle's vertex since the list was made, and their largest speed.
+  std::array<double, 2> of_obstacles(const std::vector<Obstacle>& obstacles, double time) const {
+    std::array<double, 2> most{};
+    for (const Obstacle& o : obstacles) {
+      const ObstacleMotion& m = o.motion;
+      if (m.at_rest()) continue;
+      const double radius = o.radius();
+      const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
+      most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
+                                      2 * radius * length({turn.x, turn.y, turn.z}));
+      most[1] = std::max(most[1], m.largest_speed(radius));
+    }
+    return most;
+  }
+  /// The farthest way of a vertex of an owned body since the list was made.
+  double ways(const State<Spatial>& state, const Part& part, const Contacts& contacts) const {
+    double farthest = 0;
     for (std::int32_t b = 0; b < part.owned; ++b) {
       const auto k = static_cast<std::size_t>(b);
       const double* was = &at_build_[k * Spatial::record];
       const double* is = state.record(k);
-      const double radius = contacts.radius(part.global[k]);
       const Vec3<double> way{is[0] - was[0], is[1] - was[1], is[2] - was[2]};
       const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
                                         Quat<double>{was[3], -was[4], -was[5], -was[6]});
-      mine[0] = std::max(mine[0], length(way) + 2 * radius * length({turn.x, turn.y, turn.z}));
-      mine[1] = std::max(mine[1],
-                         length({is[7], is[8], is[9]}) + radius * length({is[10], is[11], is[12]}));
+      farthest = std::max(farthest, length(way) + 2 * contacts.radius(part.global[k]) *
+                                                      length({turn.x, turn.y, turn.z}));
     }
-    for (const Obstacle& o : contacts.obstacles()) {
-      mine[0] = std::max(mine[0], std::abs(state.time - time_) * length(o.velocity));
-      mine[1] = std::max(mine[1], length(o.velocity));
-    }
-    MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part.comm);
-    constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
-    const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : contacts.slack();
-    looks_in_ =
-        static_cast<std::int64_t>(std::clamp((contacts.slack() - all[0]) / per_step, 0.0, 1000.0));
-    return all[0] > contacts.slack();
+    return farthest;
   }
 
- private:
+  double radius_;  ///< of the largest body [m]
   std::vector<double> at_build_;
   double time_ = 0;
-  std::int64_t looks_in_ = 0;
+  double way_ = 0;    ///< bound of the way of any vertex of this rank since the list was made [m]
+  double speed_ = 0;  ///< bound of their speeds in the last step [m/s]
+  std::int64_t asks_in_ = 0;
   bool started_ = false;
 };
 
@@ -92,6 +135,7 @@ class ContactOfModel final : public Contact {
                   std::move(obstacles)),
         exchange_(part),
         sharing_(part.comm),
+        watch_(largest_radius(contacts_, part.global_bodies)),
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
@@ -133,7 +177,7 @@ class ContactOfModel final : public Contact {
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
     add(rest, none);
-    watch_ = {};
+    watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
     std::vector<std::int32_t> mine;
     if (const auto pair = contacts_.enclosed()) mine.assign(pair->begin(), pair->end());
     const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
@@ -152,6 +196,7 @@ class ContactOfModel final : public Contact {
   void commit(const State<Spatial>& state, double dt) override {
     exchange_.gather(state, bodies_);
     contacts_.commit(bodies_, dt);
+    watch_.went(state, dt);
     dt_ = dt;
     watch_obstacles(dt);
   }
@@ -170,7 +215,7 @@ class ContactOfModel final : public Contact {
     columns.add("energy_friction", e.friction);
     columns.add("energy_crushing", e.crushing);
     bool moving = false;
-    for (const Obstacle& o : contacts_.obstacles()) moving = moving || length(o.velocity) > 0;
+    for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
     if (moving) columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
     const bool first = rank(part_.comm) == 0;  // of what all ranks know alike
@@ -188,6 +233,11 @@ class ContactOfModel final : public Contact {
   void remember(Memory& memory) override;
 
  private:
+  static double largest_radius(const Contacts& contacts, std::int32_t bodies) {
+    double largest = 0;
+    for (std::int32_t b = 0; b < bodies; ++b) largest = std::max(largest, contacts.radius(b));
+    return largest;
+  }
   static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
     columns.add(name + "_x", v.x);
     columns.add(name + "_y", v.y);
@@ -210,7 +260,6 @@ class ContactOfModel final : public Contact {
     bodies_.resize(contacts_.involved().size());
     mine_.resize(bodies_.size());
     watch_.start(state, part_.owned);
-    (void)watch_.is_due(state, part_, contacts_, dt_);
   }
 
   /// Peak and impulse of the forces on obstacles; with several ranks a sum over them per step.
@@ -292,7 +341,7 @@ void ContactOfModel::remember(Memory& memory) {
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
-  watch_ = {};
+  watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
   if (possible_ || changed) return;
   build(watch.at_build(part_));  // the list that the run had
   watch_ = watch;

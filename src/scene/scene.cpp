@@ -139,6 +139,32 @@ Obstacle read_shape(Options& options, const std::string& name) {
   return cone(base, radius, top, height, static_cast<int>(facets));
 }
 
+ObstacleMotion read_motion(Options& options, const std::string& name, bool half_space) {
+  const auto given = [&](const char* key) {
+    return options.given("obstacle: NAME: " + std::string(key), name);
+  };
+  ObstacleMotion motion;
+  motion.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
+  if (half_space && given("angular_velocity"))
+    throw InputError("obstacle: " + name +
+                     ": angular_velocity: a halfspace cannot turn; box, cone, cylinder and file "
+                     "can");
+  if (!half_space)
+    motion.angular_velocity = vector(options.numbers<3>("obstacle: NAME: angular_velocity", name));
+  if (given("amplitude") != given("frequency"))
+    throw InputError("obstacle: " + name +
+                     (given("amplitude") ? ": amplitude [m] needs frequency [Hz]"
+                                         : ": frequency [Hz] needs amplitude [m]"));
+  if (given("amplitude")) {
+    motion.amplitude = vector(options.numbers<3>("obstacle: NAME: amplitude", name));
+    motion.frequency = options.number("obstacle: NAME: frequency", name);
+  }
+  // Left unread, and so refused, where nothing moves.
+  if (given("velocity") || given("angular_velocity") || given("amplitude"))
+    motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
+  return motion;
+}
+
 void read_contact(Options& options, Scene& scene) {
   ContactOptions& contact = scene.contact;
   contact.law = options.choice<ContactLaw>("contact: law");
@@ -156,7 +182,7 @@ void read_contact(Options& options, Scene& scene) {
     Obstacle obstacle = read_shape(options, name);
     obstacle.name = name;
     obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
-    obstacle.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
+    obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
     scene.obstacles.push_back(std::move(obstacle));
   }
 }

@@ -106,10 +106,10 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
 
 /// \param count  bodies of the block: lanes beyond the last body repeat it, and are not written
 template <class Count>
-[[gnu::always_inline]] inline Lanes Motion::step_block(std::size_t block, Count count,
-                                                       State<Spatial>& state,
-                                                       const Wrenches<Spatial>& wrenches,
-                                                       double dt) const {
+[[gnu::always_inline]] inline Motion::Squares Motion::step_block(std::size_t block, Count count,
+                                                                 State<Spatial>& state,
+                                                                 const Wrenches<Spatial>& wrenches,
+                                                                 double dt) const {
   const auto body_of = [&](std::size_t lane) {
     return block * lanes + (count == lanes ? lane : std::min(lane, count - 1));
   };
@@ -137,23 +137,28 @@ template <class Count>
   put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
   put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
   put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
-  return dot(m.v, m.v);
+  return {dot(m.v, m.v), dot(m.w, m.w)};
 }
 
-[[gnu::flatten]] double Motion::step_blocks(State<Spatial>& state,
-                                            const Wrenches<Spatial>& wrenches, double dt) const {
+[[gnu::flatten]] std::array<double, 2> Motion::step_blocks(State<Spatial>& state,
+                                                           const Wrenches<Spatial>& wrenches,
+                                                           double dt) const {
   const auto owned = static_cast<std::size_t>(part_.owned);
   const std::size_t whole = owned / lanes, left = owned % lanes;
   // A maximum would lose what is not a number, a sum keeps it.
-  Lanes largest(0.0), sum(0.0);
-  const auto take = [&](const Lanes& v2) {
-    largest = max(largest, v2);
-    sum += v2;
+  Squares largest;
+  Lanes sum(0.0);
+  const auto take = [&](const Squares& squares) {
+    largest.speed = max(largest.speed, squares.speed);
+    largest.spin = max(largest.spin, squares.spin);
+    sum += squares.speed;
   };
   for (std::size_t block = 0; block < whole; ++block)
     take(step_block(block, std::integral_constant<std::size_t, lanes>{}, state, wrenches, dt));
   if (left > 0) take(step_block(whole, left, state, wrenches, dt));
-  return std::isfinite(reduce(sum)) ? hmax(largest) : std::numeric_limits<double>::quiet_NaN();
+  return {
+      std::isfinite(reduce(sum)) ? hmax(largest.speed) : std::numeric_limits<double>::quiet_NaN(),
+      hmax(largest.spin)};
 }
 
 double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {
@@ -162,7 +167,7 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
     std::copy_n(record, Spatial::record,
                 saved_.begin() + static_cast<std::ptrdiff_t>(k * Spatial::record));
   }
-  const double largest = step_blocks(state, wrenches, dt);
+  auto [speed2, spin2] = step_blocks(state, wrenches, dt);
   if (!held_.empty()) {
     model_.prescribe(state.time, now_, rows_);
     model_.prescribe(state.time + dt, next_, rows_);
@@ -171,10 +176,16 @@ double Motion::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, do
       step_held(held_[k], &saved_[k * Spatial::record], state, wrenches,
                 std::span(now_).subspan(first, Spatial::unknowns),
                 std::span(next_).subspan(first, Spatial::unknowns), dt);
+      const auto b = static_cast<std::size_t>(held_[k]);
+      const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
+      speed2 = std::max(speed2, dot(v, v));  // what is not a number stays
+      spin2 = std::max(spin2, dot(w, w));
     }
   }
   state.time += dt;
-  return largest;
+  state.fastest = std::sqrt(speed2);
+  state.fastest_spin = std::sqrt(spin2);
+  return speed2;
 }
 
 /// A body of which some components are prescribed, stepped as if it were free: those get the

@@ -24,7 +24,8 @@ class Motion {
   void stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const;
 
   /// From t_n to t_n + dt with the wrenches at t_n. Returns the square of the largest speed of a
-  /// body [m^2/s^2] (not finite if a body's is not).
+  /// body [m^2/s^2] (not finite if a body's is not), and leaves that speed and the largest spin in
+  /// the state.
   double step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt);
 
   /// This rank's kinetic energy and the boundaries' work on its bodies so far, at t_n [J].
@@ -51,10 +52,14 @@ class Motion {
     std::array<std::array<double, lanes>, 8> values;  ///< 1/m, 1/I, axes
     BodyConstants<Lanes> get() const;
   };
+  struct Squares {
+    Lanes speed{0.0}, spin{0.0};
+  };
   template <class Count>
-  Lanes step_block(std::size_t block, Count count, State<Spatial>& state,
-                   const Wrenches<Spatial>& wrenches, double dt) const;
-  double step_blocks(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const;
+  Squares step_block(std::size_t block, Count count, State<Spatial>& state,
+                     const Wrenches<Spatial>& wrenches, double dt) const;
+  std::array<double, 2> step_blocks(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+                                    double dt) const;
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
                  const Wrenches<Spatial>& wrenches, std::span<const double> now,
                  std::span<const double> next, double dt);

@@ -13,7 +13,7 @@
 namespace floe {
 namespace {
 
-/// Stones that fall on a floor and on each other.
+/// Stones that fall on a floor, on each other and on a pier that goes, turns and swings.
 struct Heap {
   Lattice lattice;
   Scene scene;
@@ -27,7 +27,11 @@ struct Heap {
     scene.obstacles = {half_space({0, 0, 0}, {0, 0, 1}), box({4, 4, 0}, {2, 2, 3}, {10, 20, 30})};
     scene.obstacles[0].name = "floor";
     scene.obstacles[1].name = "pier";
-    scene.obstacles[1].velocity = {-0.5, 0, 0};
+    scene.obstacles[1].motion = {.velocity = {-0.5, 0, 0},
+                                 .angular_velocity = {0.3, -0.5, 1.5},
+                                 .amplitude = {0, 0.05, 0.02},
+                                 .frequency = 3,
+                                 .ramp = {0.2}};
     test::Random random(11);
     for (int k = 0; k < 48; ++k)
       test::append_stone(lattice, random, {1.7 * (k % 4), 1.7 * (k / 4 % 4), 1.2 + 1.7 * (k / 16)},

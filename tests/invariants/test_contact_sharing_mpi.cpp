@@ -38,7 +38,7 @@ struct Blocks {
       test::append_block(lattice, {1, 1, 1}, x, q);
       moving.push_back({{x, q}, random.vector(1), random.vector(1)});
     }
-    obstacles[0].velocity = {0.1, 0.2, 0.3};
+    obstacles[0].motion.velocity = {0.1, 0.2, 0.3};
   }
   Contacts contacts() const {
     return {lattice.shapes,

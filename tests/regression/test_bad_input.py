@@ -184,6 +184,15 @@ SCENES = {
                                    + "contact: {young: 1e40}\n", "time: dt"),
     "a step of no use": (MOVING, "steps to time: end", ["-time_dt", "1e-30"]),
     "radius of a box": (obstacle("shape: box, radius: 1"), "obstacle: o: radius"),
+    "half-space that turns":
+        (obstacle("shape: halfspace, angular_velocity: [0, 0, 1]"), "obstacle: o: angular_velocity"),
+    "oscillation without a frequency":
+        (obstacle("shape: box, amplitude: [0, 0, 1]"), "obstacle: o: amplitude [m] needs frequency"),
+    "oscillation without an amplitude":
+        (obstacle("shape: box, frequency: 1"), "obstacle: o: frequency [Hz] needs amplitude"),
+    "ramp of an obstacle at rest": (obstacle("shape: box, ramp: 1"), "obstacle: o: ramp"),
+    "frequency of 0":
+        (obstacle("shape: box, amplitude: [0, 0, 1], frequency: 0"), "obstacle: o: frequency"),
     "obstacle from a file that is not there": (obstacle("shape: file, file: none.h5"), "none.h5"),
     "lattice file without a stiffness of contacts":
         ("integrator: explicit\nforces: [contact]\nlattice_file: bad.h5\n", "contact: young"),

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Checkpoint and restart: a run that was interrupted and went on equals the run that was not.
 
-By the STOP file, by SIGTERM, by kill -9 at random moments; on 1 and 2 ranks, bit for bit on the same number, to 1e-9
-on another. And what a restart refuses, and what a full disk does. FLOE_FULL=1 kills 20 times instead of 4.
+By the STOP file, by SIGTERM, by kill -9 at random moments, bit for bit; what a restart refuses, and what a full disk
+does. On several ranks: test_restart_ranks.py. FLOE_FULL=1 kills 20 times instead of 4.
 """
 import csv
 import json
@@ -119,6 +119,18 @@ class RestartTest(unittest.TestCase):
         options = [(f / "options.yaml").read_text().replace(f"dir: {f.name}", "") for f in (a, b)]
         self.assertEqual(*options)
 
+    def check_stopped(self, how, ranks=1):
+        """A run that stops as `how` asks says how to go on, and then equals the straight run."""
+        straight = self.run_whole(dir="a", ranks=ranks)
+        process = self.interrupted(how, ranks=ranks)
+        said = self.finish(process, INTERRUPTED)
+        self.assertIn("go on with: floe scene.yaml -checkpoint_restart b/checkpoint.h5", said)
+        self.assertFalse((self.folder / "b/STOP").exists())
+        summary = json.loads((self.folder / "b/summary.json").read_text())
+        self.assertEqual(summary["status"], "stopped")
+        self.assertLess(summary["time"], 10)
+        self.assert_same(straight, self.go_on(ranks=ranks))
+
 
 def stop_file(process, folder):
     (folder / "STOP").touch()
@@ -133,28 +145,14 @@ def interrupt(process, folder):
 
 
 class Stopped(RestartTest):
-    def check(self, how, ranks):
-        straight = self.run_whole(dir="a", ranks=ranks)
-        process = self.interrupted(how, ranks=ranks)
-        said = self.finish(process, INTERRUPTED)
-        self.assertIn("go on with: floe scene.yaml -checkpoint_restart b/checkpoint.h5", said)
-        self.assertFalse((self.folder / "b/STOP").exists())
-        summary = json.loads((self.folder / "b/summary.json").read_text())
-        self.assertEqual(summary["status"], "stopped")
-        self.assertLess(summary["time"], 10)
-        self.assert_same(straight, self.go_on(ranks=ranks))
-
     def test_by_file(self):
-        self.check(stop_file, 1)
-
-    def test_by_file_on_two_ranks(self):
-        self.check(stop_file, 2)
+        self.check_stopped(stop_file)
 
     def test_by_sigterm(self):
-        self.check(terminate, 1)
+        self.check_stopped(terminate)
 
     def test_by_sigint(self):
-        self.check(interrupt, 1)
+        self.check_stopped(interrupt)
 
     def test_twice(self):
         straight = self.run_whole(dir="a")
@@ -164,24 +162,6 @@ class Stopped(RestartTest):
         terminate(process, self.folder / "b")
         self.finish(process, INTERRUPTED)
         self.assert_same(straight, self.go_on())
-
-    def test_on_another_number_of_ranks(self):
-        straight = self.run_whole(dir="a")
-        for before, after in ((1, 2), (2, 1), (2, 3)):
-            dir = f"b{before}{after}"
-            self.finish(self.interrupted(stop_file, dir=dir, ranks=before), INTERRUPTED)
-            b = self.go_on(dir=dir, ranks=after)
-            first, second = contents(straight / "fields.h5"), contents(b / "fields.h5")
-            self.assertEqual(set(first), set(second))
-            for key, values in first.items():
-                scale = np.max(np.abs(values)) if np.size(values) else 0
-                np.testing.assert_allclose(second[key], values, rtol=1e-9, atol=1e-9 * scale, err_msg=key)
-            tables = [np.loadtxt(f / "history.csv", delimiter=",", skiprows=1) for f in (straight, b)]
-            names = (b / "history.csv").read_text().split("\n")[0].split(",")
-            for name, one, two in zip(names, tables[0].T, tables[1].T):
-                energies = max(np.max(np.abs(c)) for n, c in zip(names, tables[0].T) if n.startswith("energy"))
-                scale = energies if name.startswith("energy") else np.max(np.abs(one))
-                np.testing.assert_allclose(two, one, rtol=1e-9, atol=1e-9 * max(scale, 1), err_msg=name)
 
 
 class StoppedInThePlane(Stopped):
@@ -274,33 +254,34 @@ class Refused(RestartTest):
         self.assertIn("integrator' is quasistatic", said)
 
 
-class Fracture(RestartTest):
-    def test_a_sheet_that_breaks(self):
+class Breaking(RestartTest):
+    """A check without a test of its own, for one rank and for several."""
+
+    def check_breaking(self, ranks):
         """Damage, breaks and the ledger go on bit for bit; the log of breaks is that of the straight run."""
         (self.folder / "scene.yaml").write_text(SCENE.replace("forces: [beam,", "forces: [beam, fracture,")
                                                 .replace("[0.01, 0, 0]", "[0.02, 0, 0]")
                                                 + "fracture: {energy: 100, weibull_modulus: 8, seed: 3}\n"
                                                 + "limit: {energy_error: 1}\n")
-        for ranks in (1, 2):
-            a = self.run_whole("-time_end", "2", dir=f"a{ranks}", ranks=ranks)
-            summary = json.loads((a / "summary.json").read_text())
-            self.assertGreater(summary["beams_broken"], 5)
-            dir = f"b{ranks}"
-            # One checkpoint before anything is damaged, one in the middle of breaking.
-            self.run_whole("-time_end", "2", "-ts_max_steps", "100", dir=dir, ranks=ranks)
-            with h5py.File(a / "breaks.h5") as file:
-                middle = str(int(np.median(file["time"][:]) / summary["dt"]))
-            b = self.go_on("-time_end", "2", "-ts_max_steps", middle, dir=dir, ranks=ranks)
-            with h5py.File(b / "breaks.h5") as file:
-                self.assertGreater(len(file["time"]), 1)
-            b = self.go_on("-time_end", "2", dir=dir, ranks=ranks)
-            first, second = contents(a / "breaks.h5"), contents(b / "breaks.h5")
-            for name, values in first.items():
-                self.assertTrue(np.array_equal(values, second[name]), name)
-            first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
-            self.assertEqual(first["run/step"], second["run/step"])
-            for name in ("bodies/records", "force_0_beam/cracks", "force_0_beam/energy_fracture"):
-                self.assertTrue(np.array_equal(first[name], second[name]), name)
+        a = self.run_whole("-time_end", "2", dir=f"a{ranks}", ranks=ranks)
+        summary = json.loads((a / "summary.json").read_text())
+        self.assertGreater(summary["beams_broken"], 5)
+        dir = f"b{ranks}"
+        # One checkpoint before anything is damaged, one in the middle of breaking.
+        self.run_whole("-time_end", "2", "-ts_max_steps", "100", dir=dir, ranks=ranks)
+        with h5py.File(a / "breaks.h5") as file:
+            middle = str(int(np.median(file["time"][:]) / summary["dt"]))
+        b = self.go_on("-time_end", "2", "-ts_max_steps", middle, dir=dir, ranks=ranks)
+        with h5py.File(b / "breaks.h5") as file:
+            self.assertGreater(len(file["time"]), 1)
+        b = self.go_on("-time_end", "2", dir=dir, ranks=ranks)
+        first, second = contents(a / "breaks.h5"), contents(b / "breaks.h5")
+        for name, values in first.items():
+            self.assertTrue(np.array_equal(values, second[name]), name)
+        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
+        self.assertEqual(first["run/step"], second["run/step"])
+        for name in ("bodies/records", "force_0_beam/cracks", "force_0_beam/energy_fracture"):
+            self.assertTrue(np.array_equal(first[name], second[name]), name)
 
 
 class Contact(RestartTest):
@@ -360,38 +341,44 @@ checkpoint: {every: 1000}
         self.assertGreater(summary["contacts"], 3)
 
 
-class Killed(RestartTest):
-    def test_at_random_moments(self):
+class Fracture(Breaking):
+    def test_a_sheet_that_breaks(self):
+        self.check_breaking(1)
+
+
+class Killing(RestartTest):
+    """As Breaking."""
+
+    def check_killed(self, ranks):
         """kill -9: every file is readable, rows and frames are whole, and going on gives the straight run."""
-        for ranks in (1, 2):
-            options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", "-time_end", "20" if FULL else "10"]
-            began = time.monotonic()
-            straight = self.run_whole(*options, dir=f"a{ranks}", ranks=ranks)
-            duration = time.monotonic() - began
-            chance = random.Random(ranks)
-            restarts, start = 0, True
-            dir = f"b{ranks}"
-            folder = self.folder / dir
-            for kill in range(20 if FULL else 4):
-                resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
-                process = self.begin(*options, *resume, dir=dir, ranks=ranks)
-                try:
-                    process.communicate(timeout=chance.uniform(0.15, 0.6) * duration)
-                    self.assertEqual(process.returncode, 0)
-                    restarts, start = restarts + (not start), True  # it ended before the kill: from the start again
-                    self.assert_same(straight, folder)
-                    for name in ("checkpoint.h5", "history.csv", "fields.h5", "fields.xmf"):
-                        (folder / name).unlink()
-                    continue
-                except subprocess.TimeoutExpired:
-                    self.kill(process, ranks)
-                self.check_files(folder)
-                start = not (folder / "checkpoint.h5").exists()
-                restarts += not start
+        options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", "-time_end", "20" if FULL else "10"]
+        began = time.monotonic()
+        straight = self.run_whole(*options, dir=f"a{ranks}", ranks=ranks)
+        duration = time.monotonic() - began
+        chance = random.Random(ranks)
+        restarts, start = 0, True
+        dir = f"b{ranks}"
+        folder = self.folder / dir
+        for kill in range(20 if FULL else 4):
             resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
-            self.run_whole(*options, *resume, dir=dir, ranks=ranks)
-            self.assertGreater(restarts, 0)
-            self.assert_same(straight, folder)
+            process = self.begin(*options, *resume, dir=dir, ranks=ranks)
+            try:
+                process.communicate(timeout=chance.uniform(0.15, 0.6) * duration)
+                self.assertEqual(process.returncode, 0)
+                restarts, start = restarts + (not start), True  # it ended before the kill: from the start again
+                self.assert_same(straight, folder)
+                for name in ("checkpoint.h5", "history.csv", "fields.h5", "fields.xmf"):
+                    (folder / name).unlink()
+                continue
+            except subprocess.TimeoutExpired:
+                self.kill(process, ranks)
+            self.check_files(folder)
+            start = not (folder / "checkpoint.h5").exists()
+            restarts += not start
+        resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
+        self.run_whole(*options, *resume, dir=dir, ranks=ranks)
+        self.assertGreater(restarts, 0)
+        self.assert_same(straight, folder)
 
     def kill(self, process, ranks):
         """SIGKILL to every rank; with several they are mpiexec's children, and it ends once they have."""
@@ -416,6 +403,11 @@ class Killed(RestartTest):
                 if name == "fields.h5" and (folder / "fields.xmf").exists():
                     named = (folder / "fields.xmf").read_text().count("<Time ")
                     self.assertGreaterEqual(sum(key.endswith("@time") for key in found), named)
+
+
+class Killed(Killing):
+    def test_at_random_moments(self):
+        self.check_killed(1)
 
 
 class DiskFull(RestartTest):

@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -38,25 +36,8 @@ struct Checked {
   std::string unit = {}, note = {};
 };
 
-inline void record(const Checked& c, bool pass) {
-  const char* file = std::getenv("FLOE_RECORD");
-  if (file == nullptr || *file == '\0') return;
-  nlohmann::ordered_json line;
-  const auto or_null = [](const std::optional<double>& x) {
-    return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr);
-  };
-  line["section"] = c.section;
-  line["quantity"] = c.quantity;
-  line["value"] = c.value;
-  line["reference"] = or_null(c.reference);
-  line["tolerance"] = or_null(c.tolerance);
-  line["unit"] = c.unit;
-  line["note"] = c.note;
-  line["pass"] = pass;
-  std::ofstream out(file, std::ios::app);
-  out << line.dump() << '\n';
-  EXPECT_TRUE(out.flush()) << "cannot write " << file;
-}
+/// Appends it to the file that FLOE_RECORD names, if any.
+void record(const Checked& c, bool pass);
 
 /// Records a number and expects it to lie within its tolerance of the reference.
 inline void verify(const Checked& c) {

@@ -101,13 +101,13 @@ TEST(FloatingSheet, StiffnessAgainstTilting) {
     const StaticSolution s = solve_static(scene, mesh_of(scene));
     ASSERT_TRUE(s.result.done);
     const Vec3<double> turned = log_rotation(rotation(s.last(), 0));
-    verify({.section = section_name,
-            .quantity = std::string("tilt of a rigid sheet about ") + (about_x ? "x" : "y") +
-                        " over the expected",
-            .value = (about_x ? turned.x : turned.y) / angle,
-            .reference = 1.0,
-            .tolerance = 1e-4,
-            .note = "M/(rho_w g (I + V (z_B - z_G)))"});
+    verify(
+        {.section = section_name,
+         .quantity = text("tilt of a rigid sheet about %s over the expected", about_x ? "x" : "y"),
+         .value = (about_x ? turned.x : turned.y) / angle,
+         .reference = 1.0,
+         .tolerance = 1e-4,
+         .note = "M/(rho_w g (I + V (z_B - z_G)))"});
   }
 }
 

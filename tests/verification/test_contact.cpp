@@ -5,45 +5,24 @@
 #include <cmath>
 #include <numbers>
 
-#include "floe/forces/contact.h"
-#include "solve/stable_step.h"
-#include "support/blocks.h"
-#include "support/dynamics.h"
+#include "support/contact_scene.h"
 #include "support/record.h"
 
 namespace floe {
 namespace {
 
+using test::append_obstacle;
+using test::start;
+using test::velocity;
+
 constexpr double g = 9.81, young = 1e7;
 
 Scene contact_scene(double friction, double restitution, bool gravity = true) {
-  Scene scene;
-  scene.integrator = Integrator::leapfrog;
-  scene.forces.contact = true;
-  scene.forces.gravity = gravity;
-  scene.contact.young = young;
-  scene.contact.friction = friction;
-  scene.contact.damping_ratio = damping_ratio_of(restitution);
-  return scene;
+  return test::contact_scene(young, friction, restitution, gravity);
 }
 
 void add_plane(Scene& scene, const Vec3<double>& normal) {
-  scene.obstacles.push_back(half_space({0, 0, 0}, normal));
-  scene.obstacles.back().name = "floor";
-  scene.obstacles.back().friction = scene.contact.friction;
-}
-
-/// Steps a fresh model over `time` and says how long a step is.
-double start(test::Dynamics& d, double part = 0.5) {
-  const double dt = part * stable_step(d.model(), d.state()).dt;
-  d.evaluate();
-  d.set_step(dt);
-  return dt;
-}
-
-Vec3<double> velocity(const test::Dynamics& d, std::size_t body) {
-  const double* r = const_cast<test::Dynamics&>(d).state().record(body);
-  return {r[7], r[8], r[9]};
+  append_obstacle(scene, "floor", half_space({0, 0, 0}, normal));
 }
 
 /// A block on an incline whose downhill direction is (cos a, 0, -sin a), in static contact.
@@ -321,7 +300,7 @@ TEST(Contact, MovingObstacleDoesWork) {
   add_plane(scene, {0, 0, 1});
   scene.obstacles.push_back(box({-1, 0, 0.5}, {1, 4, 0.6}, {0, 0, 0}));
   scene.obstacles.back().name = "ram";
-  scene.obstacles.back().velocity = {0.2, 0, 0};
+  scene.obstacles.back().motion.velocity = {0.2, 0, 0};
   Lattice lattice;
   test::append_block(lattice, {1, 1, 1}, {0, 0, 0.5 - 920 * g / (2 * young)});
   test::Dynamics d(scene, lattice);

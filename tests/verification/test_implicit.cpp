@@ -51,7 +51,7 @@ TEST(Implicit, IsOfOrderTwoAtLargeRotations) {
     };
     const State<Spatial> fine = [&] {
       const PetscOption option = radius(1);
-      return at_end(8000);
+      return at_end(full_form() ? 8000 : 4000);
     }();
     const auto angle = [](const Quat<double>& a) {
       const Vec3<double> t = log_rotation(a);
@@ -174,10 +174,10 @@ TEST(ImplicitEnergy, BalanceClosesWithTheStepAtLargeRotations) {
   const Lattice lattice = flying_bar(6, 12);
   for (const double rho : radii) {
     const PetscOption option = radius(rho);
-    std::array<double, 3> error{}, lost{};
+    std::array<double, 2> error{}, lost{};
     double energy = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      ImplicitRun run = run_implicitly(scene, lattice, scene.time.end / (800 << k));
+    for (std::size_t k = 0; k < 2; ++k) {
+      ImplicitRun run = run_implicitly(scene, lattice, scene.time.end / (k == 0 ? 800 : 3200));
       ASSERT_TRUE(run.result.done) << run.result.message;
       error[k] = std::abs(run.columns["energy_balance_error"]);
       lost[k] = run.columns["energy_numerical"];
@@ -186,12 +186,12 @@ TEST(ImplicitEnergy, BalanceClosesWithTheStepAtLargeRotations) {
     }
     verify({.section = section_name,
             .quantity = text("flying bar: energy balance, 3200 steps, radius %g", rho),
-            .value = error[2] / energy,
+            .value = error[1] / energy,
             .reference = 0.0,
             .tolerance = 1e-4,
             .note = text("800 steps %.1e; the method took %.1e and %.1e", error[0] / energy,
-                         lost[0] / energy, lost[2] / energy)});
-    EXPECT_GT(error[0] / error[2], 10) << rho;
+                         lost[0] / energy, lost[1] / energy)});
+    EXPECT_GT(error[0] / error[1], 10) << rho;
   }
 }
 

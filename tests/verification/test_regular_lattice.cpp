@@ -159,8 +159,7 @@ TEST(RegularLattice, TransverseShearStiffness) {
     const Resultants r = resultants(t.lattice, s, one_body(t.lattice, t.centre, t.cell));
     const double stiffness = kappa * ice.young / (2 * (1 + ice.poisson)) * h;
     verify({.section = section_name,
-            .quantity = std::string("transverse shear stiffness along ") + (along_x ? "x" : "y") +
-                        ", one_point",
+            .quantity = text("transverse shear stiffness along %s, one_point", along_x ? "x" : "y"),
             .value = r.transverse[along_x ? 0 : 1] / (slope * stiffness),
             .reference = 1.0,
             .tolerance = 1e-6,

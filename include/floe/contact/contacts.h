@@ -140,6 +140,7 @@ class Contacts {
     std::int32_t slot_a, slot_b;  ///< among the involved
     bool counted, fresh, lent;
     Vec3<double> axis;  ///< along which they were apart last, from B to A
+    double safe = 0;    ///< as long as their ways add up to less, there is still a gap [m]
   };
   /// A contact of the last evaluation.
   struct Touch {
@@ -156,6 +157,7 @@ class Contacts {
     Vec3<double> x;
     Triad<double> axes;
     Vec3<double> velocity{}, spin{};
+    double way = 0;  ///< no point of it has gone farther since the last build [m]
   };
   /// Over the contacts that are counted here: what they store [J], and their power [W]: elastic,
   /// viscous, friction, of moving obstacles.
@@ -175,7 +177,8 @@ class Contacts {
   void take_memories();
   std::span<const Vec3<double>> vertices(std::int32_t body) const;
   std::span<const HalfSpace> planes(std::int32_t body) const;
-  Placed at_time(std::int32_t obstacle, double time) const;
+  /// \param position, motion  the times of its place and of its velocities [s]
+  Placed at_time(std::int32_t obstacle, double position, double motion) const;
   PairConstants constants(std::int32_t a, std::int32_t b) const;
   double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
   Meeting meeting(const Pair& pair, const Placed& a, const Placed& b);
@@ -186,9 +189,11 @@ class Contacts {
                       : placed_[static_cast<std::size_t>(pair.slot_b)];
   }
   void find_involved();
+  static double farthest_way(const Placed& from, const Placed& to, double radius);
   static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
-  void add_power(const Pair& pair, const ContactForce& contact, const RelativeMotion& motion,
-                 std::array<double, 4>& power) const;
+  static void add_power(const Touch& touch, const RelativeMotion& motion,
+                        std::array<double, 4>& power);
+  static double power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle);
 
   Shapes shapes_;
   std::vector<Vec3<double>> vertices_;
@@ -209,8 +214,11 @@ class Contacts {
   std::vector<std::int32_t> involved_;
   std::vector<Remembered> memories_, next_memories_;  ///< of pairs that touch, sorted as the pairs
   std::vector<Touch> touches_;
-  std::vector<Placed> placed_;        ///< per slot, of the last evaluation
-  std::vector<Placed> obstacles_at_;  ///< in the last evaluation
+  std::vector<Placed> placed_;           ///< per slot, of the last evaluation
+  std::vector<Placed> obstacles_at_;     ///< in the last evaluation
+  std::vector<double> obstacle_radius_;  ///< of the farthest vertex from the frame's origin [m]
+  double time_ = 0;                      ///< of the last evaluation
+  bool placed_before_ = false;           ///< since the last build
   std::vector<ContactWrench> on_obstacle_;
   Clipper clipper_;
   std::vector<Vec3<double>> work_a_, work_b_;  ///< placed vertices

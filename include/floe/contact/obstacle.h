@@ -5,18 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "floe/contact/obstacle_motion.h"
 #include "floe/geometry/overlap.h"
 
 namespace floe {
 
-/// At rest or on a steady motion. Its frame is that of the world, moved to `point`.
+/// Its frame is that of the world at time 0, moved to `point`; it goes on as `motion` says. A
+/// half-space does not turn.
 struct Obstacle {
   std::string name;
-  Vec3<double> point{};     ///< origin of its frame at time 0 [m]
-  Vec3<double> velocity{};  ///< [m/s]
-  double friction = 0;      ///< mu against bodies
+  Vec3<double> point{};  ///< origin of its frame at time 0 [m]
+  ObstacleMotion motion;
+  double friction = 0;  ///< mu against bodies
   std::vector<HalfSpace> planes;
   std::vector<Vec3<double>> vertices;  ///< empty: a half-space, which has none
+
+  /// Distance of the farthest vertex from the origin of its frame [m].
+  double radius() const;
 };
 
 /// \param normal  out of the obstacle, of any length but 0

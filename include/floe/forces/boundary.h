@@ -6,17 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "floe/base/ramp.h"
 #include "floe/geometry/polyhedron.h"
 
 namespace floe {
-
-/// Linear rise from 0 to 1 over `seconds`, 1 from then on (0 s: 1 at once).
-struct Ramp {
-  double seconds = 0;
-  double value(double time) const;     ///< factor at `time`
-  double integral(double time) const;  ///< its integral from 0 to `time` [s]
-  double slope(double time) const;     ///< its rate [1/s], from the right; 0 if it rises at once
-};
 
 /// Prescribed components of the motion of a set of bodies: x y z rx ry rz.
 /// With `velocity`, displacements are its integral over the ramp; with `displacement`, they follow

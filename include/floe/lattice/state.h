@@ -46,6 +46,9 @@ template <class Space>
 struct State {
   double time = 0;
   std::vector<double> records;
+  /// Largest velocity [m/s] and angular velocity [rad/s] of an owned body in the last step of
+  /// leapfrog in space; others leave them alone.
+  double fastest = 0, fastest_spin = 0;
 
   State() = default;
   explicit State(std::size_t bodies) : records(bodies * Space::record, 0.0) {

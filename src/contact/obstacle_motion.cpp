@@ -1,0 +1,49 @@
+#include "floe/contact/obstacle_motion.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace floe {
+namespace {
+
+bool is_zero(const Vec3<double>& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+}  // namespace
+
+// Most obstacles rest or move steadily: they ask for no sine.
+
+Vec3<double> ObstacleMotion::way(double time) const {
+  const Vec3<double> steady = ramp.integral(time) * velocity;
+  if (is_zero(amplitude)) return steady;
+  const double phase = 2 * std::numbers::pi * frequency * time;
+  return steady + (ramp.value(time) * std::sin(phase)) * amplitude;
+}
+
+Vec3<double> ObstacleMotion::rate(double time) const {
+  const Vec3<double> steady = ramp.value(time) * velocity;
+  if (is_zero(amplitude)) return steady;
+  const double circular = 2 * std::numbers::pi * frequency, phase = circular * time;
+  return steady +
+         (ramp.value(time) * circular * std::cos(phase) + ramp.slope(time) * std::sin(phase)) *
+             amplitude;
+}
+
+Quat<double> ObstacleMotion::turn(double time) const {
+  if (is_zero(angular_velocity)) return {1, 0, 0, 0};
+  return exp_rotation(ramp.integral(time) * angular_velocity);
+}
+
+Vec3<double> ObstacleMotion::spin(double time) const { return ramp.value(time) * angular_velocity; }
+
+bool ObstacleMotion::at_rest() const {
+  return is_zero(velocity) && is_zero(angular_velocity) && is_zero(amplitude);
+}
+
+double ObstacleMotion::largest_speed(double radius) const {
+  // While the amplitude rises, sin(2 pi f t)/t <= 2 pi f: at most as much again.
+  return length(velocity) + 4 * std::numbers::pi * frequency * length(amplitude) +
+         (is_zero(angular_velocity) ? 0.0 : radius * length(angular_velocity));
+}
+
+}  // namespace floe

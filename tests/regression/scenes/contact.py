@@ -1,0 +1,60 @@
+"""Bodies that touch: friction, impacts, rubble."""
+import h5py
+import numpy as np
+
+from scenes.shared import last_row
+
+
+def check_stopping(test, run):
+    output = run()
+    row = last_row(output)
+    test.assertAlmostEqual(output.field("bodies_displacement", 1.5)[0, 0] / 1.0194, 1, delta=0.01)
+    test.assertAlmostEqual(row["energy_friction"] / 368, 1, delta=0.01)
+    test.assertAlmostEqual(row["floor_force_z"] / -1805.04, 1, delta=0.01)
+    test.assertEqual(output.summary["contacts"], 1)
+    test.assertGreater(-output.summary["peak_force"]["floor"][2], 1805)
+    test.assertAlmostEqual(output.summary["mean_force"]["floor"][2] / -1805.04, 1, delta=0.05)
+
+
+def check_floes_collide(test, run):
+    output = run()
+    row = last_row(output)
+    test.assertLess(abs(row["energy_balance_error"]), 0.01 * output.history("energy_kinetic")[0])
+    test.assertGreater(output.history("contacts").max(), 3)
+    with h5py.File(output.folder / "lattice.h5") as file:
+        mass = file["bodies/mass"][:]
+    times = output.times
+    u = [output.field("bodies_displacement", time)[:, 0] for time in times]
+    west = np.isin(np.arange(len(mass)), output.sets["west"])
+    mean = mass @ (u[-1] - u[0]) / mass.sum() / (times[-1] - times[0])
+    test.assertAlmostEqual(mean / (0.5 * mass[west].sum() / mass.sum()), 1, delta=1e-6)
+    late = times > 0.8 * times[-1]  # they have parted
+    speed = [mass[floe] @ (u[-1] - u[np.flatnonzero(late)[0]])[floe] / mass[floe].sum()
+             / (times[-1] - times[late][0]) for floe in (west, ~west)]
+    test.assertGreater(speed[1], speed[0] + 0.1)  # it was at rest and leads now
+    test.assertLess(speed[1], 0.5)
+
+
+def check_rubble_pile(test, run):
+    output = run("-time_end", "3")
+    test.assertEqual(output.summary["bodies"], 1000)
+    test.assertGreater(output.summary["contacts"], 30)
+    energy = output.summary["energy"]
+    lost = sum(energy[name] for name in ("drag", "contact_viscous", "friction", "crushing"))
+    test.assertGreater(lost, 0)
+    test.assertLess(abs(energy["balance_error"]), 0.01 * lost)
+    z = output.position[:, 2] + output.field("bodies_displacement", 3)[:, 2]
+    test.assertGreater(z.mean(), output.position[:, 2].mean() + 0.5)  # they rise,
+    test.assertLess(z.max(), 1)                                       # and none is thrown out
+
+
+def check_punch_through(test, run):
+    output = run()
+    time, load = output.history("time"), output.history("plate_force_z")
+    test.assertEqual(np.abs(load[time < 7.5]).max(), 0)
+    test.assertGreater(load[time > 14].mean(), 5 * 441)
+    test.assertGreater(output.summary["peak_force"]["plate"][2], load.max() - 1e-6 * load.max())
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 0.01 * energy["external"])
+    mean = output.summary["mean_force"]["plate"][2]  # over every step, where history.csv has samples
+    test.assertAlmostEqual(energy["external"] / (mean * 18 * 0.25), 1, delta=1e-3)

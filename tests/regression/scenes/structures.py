@@ -1,0 +1,68 @@
+"""Sheets that drift against structures."""
+import numpy as np
+
+from scenes.shared import breaks, last_row
+
+
+def check_ice_slope_strip(test, run):
+    output = run()
+    time, load, lift = (output.history(name) for name in ("time", "slope_force_x", "slope_force_z"))
+    before = time < breaks(output, "time")[0]
+    last = before & (time > 0.9 * time[before][-1])
+    test.assertAlmostEqual(load[last].mean() / 7544, 1, delta=0.1)
+    test.assertAlmostEqual(load[before][-5:].mean() / 7544, 1, delta=0.04)
+    test.assertAlmostEqual(-load[last].mean() / lift[last].mean(), 1.1 / 0.9, delta=0.01)
+    test.assertAlmostEqual(-breaks(output, "place")[0, 0], 9.26, delta=0.75)
+    test.assertLess(abs(last_row(output)["energy_balance_error"]), 0.01 * output.summary["energy"]["boundary"])
+
+
+def expect_ledger(test, output, bound=0.01):
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), bound * energy["boundary"])
+
+
+def check_ice_slope(test, run):
+    output = run("-time_end", "3")
+    test.assertEqual(output.summary["bodies"], 1027)
+    test.assertGreater(output.summary["beams_broken"], 10)
+    place = breaks(output, "place")[:, 0]
+    test.assertTrue(-18 < np.median(place) - 50 < -3, np.median(place))
+    peak = output.summary["peak_force"]["slope"]
+    test.assertTrue(151e3 < peak[0] < 400e3, peak)  # more than at a slow first break
+    test.assertLess(peak[2], -0.7 * peak[0])
+    z = output.position[:, 2] + output.field("bodies_displacement", 3)[:, 2]
+    test.assertTrue(0.2 < z.max() < 2, z.max())  # rides up
+    expect_ledger(test, output, 1e-3)
+
+
+def check_ice_cone(test, run):
+    output = run("-time_end", "2")
+    test.assertGreater(output.summary["beams_broken"], 10)
+    test.assertGreaterEqual(output.summary["fragments"], 2)
+    peak = output.summary["peak_force"]["cone"]
+    test.assertTrue(80e3 < peak[0] < 300e3, peak)
+    test.assertLess(peak[2], 0)
+    expect_ledger(test, output, 1e-3)
+
+
+def check_ice_cylinder(test, run):
+    output = run("-time_end", "2.5")
+    time, load = output.history("time"), output.history("leg_force_x")
+    for moment in (1.5, 2, 2.5):
+        d = 0.5 * (moment - 0.5) - 0.1  # ramp of 1 s, a gap of 0.1 m
+        crushing = 1.5e6 * 0.5 * 2 * np.sqrt(4 * d - d**2)
+        test.assertAlmostEqual(load[np.argmin(np.abs(time - moment))] / crushing, 1, delta=0.08, msg=moment)
+    energy = output.summary["energy"]
+    test.assertGreater(energy["crushing"], 0.7 * energy["boundary"])
+    expect_ledger(test, output, 1e-3)
+
+
+def check_ice_vibration(test, run):
+    output = run()
+    time, force = output.history("time"), output.history("leg_force_x")
+    crushing = time[(force > 1.45e6) & (time > 3.5) & (time < 4.5)]
+    test.assertAlmostEqual(crushing[0], 3.843, delta=0.03)
+    test.assertAlmostEqual(crushing[-1], 4.339, delta=0.03)
+    test.assertAlmostEqual(force.max() / 1.5e6, 1, delta=0.08)
+    test.assertEqual(force[(time > 3.45) & (time < 3.65)].max(), 0)
+    test.assertAlmostEqual(output.summary["energy"]["balance_error"], 0, delta=10)
