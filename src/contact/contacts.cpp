@@ -199,6 +199,13 @@ std::optional<std::array<std::int32_t, 2>> Contacts::enclosed() const {
   return std::nullopt;
 }
 
+std::int64_t Contacts::enclosures() const {
+  return std::count_if(touches_.begin(), touches_.end(), [&](const Touch& t) {
+    const Vec3<double>& n = t.contact.normal;
+    return pairs_[static_cast<std::size_t>(t.pair)].counted && dot(n, n) == 0;
+  });
+}
+
 void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
   const double last_dt = sums_[4];
   if (sums_[6] == 0) {

@@ -228,6 +228,7 @@ class ContactOfModel final : public Contact {
     for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
     if (moving) columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
+    columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosures()));
     const bool first = rank(part_.comm) == 0;  // of what all ranks know alike
     for (std::size_t k = 0; k < contacts_.obstacles().size(); ++k) {
       const std::string& obstacle = contacts_.obstacles()[k].name;

@@ -109,7 +109,8 @@ void add_contacts(const Scene& scene, const Sample& last, Json& json) {
                                     [&](const auto& column) { return column.first == name; });
     return found == last.forces.end() ? 0.0 : found->second;
   };
-  json["contacts"] = static_cast<std::int64_t>(value("contacts"));
+  for (const char* what : {"contacts", "contacts_enclosed"})
+    json[what] = static_cast<std::int64_t>(value(what));
   for (const char* what : {"peak_force", "mean_force"}) {
     Json all = Json::object();
     for (const Obstacle& o : scene.obstacles) {

@@ -104,5 +104,24 @@ TEST(ContactList, EqualBodiesAreWorkedOutLikeOthers) {
   EXPECT_NEAR(force[0], force[1], 1e-6 * std::abs(force[0]));
 }
 
+/// Of two bodies one inside the other no way out is to be preferred: no force, but they are
+/// counted.
+TEST(ContactList, CountsBodiesInsideOthers) {
+  Lattice lattice;
+  test::append_block(lattice, {1, 1, 1}, {0, 0, 0});
+  test::append_block(lattice, {0.2, 0.2, 0.2}, {0, 0, 0});
+  for (const double z : {0.0, 0.39, 0.41}) {
+    Contacts contacts(lattice.shapes, lattice.bodies.mass, {}, {.young = 1e7, .friction = 0}, {});
+    const std::vector<MovingPose> bodies{{{{0, 0, 0}, {1, 0, 0, 0}}, {}, {}},
+                                         {{{0, 0, z}, {1, 0, 0, 0}}, {}, {}}};
+    contacts.build(std::vector{bodies[0].pose, bodies[1].pose}, std::vector<std::uint8_t>(2, 1), 0);
+    std::vector<ContactWrench> wrenches(2);
+    contacts.place(bodies, 0);
+    contacts.evaluate(wrenches);
+    EXPECT_EQ(contacts.enclosures(), z < 0.4 ? 1 : 0) << z;
+    EXPECT_EQ(wrenches[1].force.z > 0, z > 0.4) << z;
+  }
+}
+
 }  // namespace
 }  // namespace floe

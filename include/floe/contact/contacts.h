@@ -103,6 +103,8 @@ class Contacts {
   /// A counted pair of the last evaluation, A and B, of which one lies wholly inside the other:
   /// they press on each other nowhere.
   std::optional<std::array<std::int32_t, 2>> enclosed() const;
+  /// How many such pairs are counted here.
+  std::int64_t enclosures() const;
   /// Pieces joined by beams, as of the last build, or at first.
   std::int32_t pieces() const { return pieces_; }
   ContactEnergies energies() const;

@@ -21,7 +21,8 @@ class Contact : public Force<Spatial> {
 };
 
 /// Reports energy_contact (stored), energy_contact_viscous, energy_friction, energy_crushing
-/// (lost), energy_external of moving obstacles, contacts, and per obstacle NAME_force_x..,
+/// (lost), energy_external of moving obstacles, contacts, contacts_enclosed (of a body inside
+/// another, which has no force), and per obstacle NAME_force_x..,
 /// NAME_moment_x.. (about its point), NAME_peak_force_x.. (largest so far), NAME_mean_force_x..
 /// (over the run so far). \param part  must outlive the force   \param lattice  whole; needed
 /// during construction only \throws InputError if the lattice has no shapes, one is not convex, or
