@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "floe/base/petsc.h"
 #include "forces/all_gathered.h"
 #include "forces/contact_exchange.h"
 #include "forces/contact_sharing.h"
+#include "forces/contact_watch.h"
 
 namespace floe {
 namespace {
@@ -17,124 +17,6 @@ std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int3
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
-
-double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
-
-/// Says when the list of pairs must be made anew: before a vertex has moved by the list's slack.
-/// Steps say how fast the fastest body was, which bounds all ways; only when that bound has reached
-/// the slack are the ways themselves looked at. A scene in which little moves pays next to nothing.
-class Watch {
- public:
-  explicit Watch(double radius = 0) : radius_(radius) {}
-  void start(const State<Spatial>& state, std::int32_t owned) {
-    at_build_.assign(state.records.begin(),
-                     state.records.begin() + static_cast<std::ptrdiff_t>(owned) * Spatial::record);
-    time_ = state.time;
-    way_ = 0;
-    asks_in_ = 0;
-    started_ = true;
-  }
-  bool started() const { return started_; }
-  /// A step was made.
-  void went(const State<Spatial>& state, double dt) {
-    // Spins change within a step as a body tumbles; that half as much again is far more.
-    constexpr double tumbling = 1.5;
-    speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
-    way_ += dt * speed_;
-  }
-  /// Where bodies were at the last build, and when a look is due. Loading, build() goes between.
-  void remember(Memory& memory, const Part& part) {
-    std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
-    std::iota(owned.begin(), owned.end(), 0);
-    at_build_.resize(owned.size() * Spatial::record);
-    memory.rows("at_build", owned, at_build_, Spatial::record);
-    memory.common("build_time", time_);
-    memory.common("asks_in", asks_in_);
-    std::vector<double> all = all_gathered(std::vector{way_, speed_}, MPI_DOUBLE, part.comm);
-    const std::size_t ranks = all.size();
-    memory.common("ways_of_ranks", all);
-    started_ = true;
-    if (!memory.loading()) return;
-    // On another number of ranks decisions may differ: each takes the largest.
-    const auto me = static_cast<std::size_t>(rank(part.comm));
-    for (const std::size_t k : {0UL, 1UL}) {
-      double& mine = k == 0 ? way_ : speed_;
-      mine = 0;
-      for (std::size_t r = 0; 2 * r + k < all.size(); ++r) {
-        if (all.size() != ranks || r == me) mine = std::max(mine, all[2 * r + k]);
-      }
-    }
-  }
-  State<Spatial> at_build(const Part& part) const {
-    State<Spatial> state(static_cast<std::size_t>(part.local));
-    std::copy(at_build_.begin(), at_build_.end(), state.records.begin());
-    state.time = time_;
-    return state;
-  }
-  /// The same on every rank.
-  bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt) {
-    if (--asks_in_ > 0) return false;
-    const auto [theirs, their_speed] = of_obstacles(contacts.obstacles(), state.time);
-    std::array<double, 2> all =
-        largest({std::max(way_, theirs), std::max(speed_, their_speed)}, part.comm);
-    const double slack = contacts.slack();
-    if (all[0] > slack) {
-      way_ = ways(state, part, contacts);
-      all[0] = largest({std::max(way_, theirs), 0}, part.comm)[0];
-      constexpr double enough = 0.8;  // of the slack: what is left is not worth another look
-      if (all[0] > enough * slack) return true;
-    }
-    if (size(part.comm) > 1) {        // a look costs a message
-      constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
-      const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : slack;
-      asks_in_ = static_cast<std::int64_t>(std::clamp((slack - all[0]) / per_step, 0.0, 1000.0));
-    }
-    return false;
-  }
-
- private:
-  static std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
-    if (size(comm) > 1) MPI_Allreduce(MPI_IN_PLACE, mine.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
-    return mine;
-  }
-  /// The farthest way of an obstacle's vertex since the list was made, and their largest speed.
-  std::array<double, 2> of_obstacles(const std::vector<Obstacle>& obstacles, double time) const {
-    std::array<double, 2> most{};
-    for (const Obstacle& o : obstacles) {
-      const ObstacleMotion& m = o.motion;
-      if (m.at_rest()) continue;
-      const double radius = o.radius();
-      const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
-      most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
-                                      2 * radius * length({turn.x, turn.y, turn.z}));
-      most[1] = std::max(most[1], m.largest_speed(radius));
-    }
-    return most;
-  }
-  /// The farthest way of a vertex of an owned body since the list was made.
-  double ways(const State<Spatial>& state, const Part& part, const Contacts& contacts) const {
-    double farthest = 0;
-    for (std::int32_t b = 0; b < part.owned; ++b) {
-      const auto k = static_cast<std::size_t>(b);
-      const double* was = &at_build_[k * Spatial::record];
-      const double* is = state.record(k);
-      const Vec3<double> way{is[0] - was[0], is[1] - was[1], is[2] - was[2]};
-      const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
-                                        Quat<double>{was[3], -was[4], -was[5], -was[6]});
-      farthest = std::max(farthest, length(way) + 2 * contacts.radius(part.global[k]) *
-                                                      length({turn.x, turn.y, turn.z}));
-    }
-    return farthest;
-  }
-
-  double radius_;  ///< of the largest body [m]
-  std::vector<double> at_build_;
-  double time_ = 0;
-  double way_ = 0;    ///< bound of the way of any vertex of this rank since the list was made [m]
-  double speed_ = 0;  ///< bound of their speeds in the last step [m/s]
-  std::int64_t asks_in_ = 0;
-  bool started_ = false;
-};
 
 class ContactOfModel final : public Contact {
  public:
@@ -145,7 +27,7 @@ class ContactOfModel final : public Contact {
                   std::move(obstacles)),
         exchange_(part),
         sharing_(part.comm),
-        watch_(largest_radius(contacts_, part.global_bodies)),
+        watch_(contacts_, part.global_bodies),
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
@@ -187,7 +69,7 @@ class ContactOfModel final : public Contact {
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
     add(rest, none);
-    watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
+    watch_ = ContactWatch(contacts_, part_.global_bodies);
     std::vector<std::int32_t> mine;
     if (const auto pair = contacts_.enclosed()) mine.assign(pair->begin(), pair->end());
     const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
@@ -244,11 +126,6 @@ class ContactOfModel final : public Contact {
   void remember(Memory& memory) override;
 
  private:
-  static double largest_radius(const Contacts& contacts, std::int32_t bodies) {
-    double largest = 0;
-    for (std::int32_t b = 0; b < bodies; ++b) largest = std::max(largest, contacts.radius(b));
-    return largest;
-  }
   static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
     columns.add(name + "_x", v.x);
     columns.add(name + "_y", v.y);
@@ -294,7 +171,7 @@ class ContactOfModel final : public Contact {
   mutable Contacts contacts_;
   mutable ContactExchange exchange_;
   mutable ContactSharing sharing_;
-  mutable Watch watch_;
+  mutable ContactWatch watch_;
   mutable std::vector<MovingPose> bodies_;
   mutable std::vector<ContactWrench> mine_;
   std::vector<std::uint8_t> here_;
@@ -334,7 +211,7 @@ void ContactOfModel::remember(Memory& memory) {
   bool changed = contacts_.changed();
   memory.common("changed", changed);
   memory.common("possible", possible_);
-  Watch watch = watch_;
+  ContactWatch watch = watch_;
   if (!possible_) watch.remember(memory, part_);  // what is listed decides when it becomes so
   memory.common("pairs", rows);
   memory.common("released", pairs);
@@ -352,7 +229,7 @@ void ContactOfModel::remember(Memory& memory) {
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
-  watch_ = Watch(largest_radius(contacts_, part_.global_bodies));
+  watch_ = ContactWatch(contacts_, part_.global_bodies);
   if (possible_ || changed) return;
   build(watch.at_build(part_));  // the list that the run had
   watch_ = watch;
