@@ -82,7 +82,7 @@ Contacts::Meeting Contacts::meeting(const Pair& pair, const Placed& a, const Pla
   work_a_.clear();
   for (const auto& r : vertices(pair.a)) work_a_.push_back(moved(turn, apart, r));
   const Solid& solid = solids_[static_cast<std::size_t>(pair.a)];
-  Overlap o = clipper_.overlap(shapes_, solid.shape, work_a_, planes(pair.b));
+  Overlap o = clipper_.overlap(shapes_, pair.a, work_a_, planes(pair.b));
   if (o.volume <= rounding_volume * solid.radius * solid.radius * solid.radius) return {};
   const HalfSpace& first = planes(pair.b)[0];
   const double depth = first.offset - dot(first.normal, o.centroid);
@@ -190,20 +190,14 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
   }
 }
 
-std::optional<std::array<std::int32_t, 2>> Contacts::enclosed() const {
+std::vector<std::array<std::int32_t, 2>> Contacts::enclosed() const {
+  std::vector<std::array<std::int32_t, 2>> found;
   for (const Touch& t : touches_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
     const Vec3<double>& n = t.contact.normal;
-    if (pair.counted && dot(n, n) == 0) return std::array{pair.a, pair.b};
+    if (pair.counted && dot(n, n) == 0) found.push_back({pair.a, pair.b});
   }
-  return std::nullopt;
-}
-
-std::int64_t Contacts::enclosures() const {
-  return std::count_if(touches_.begin(), touches_.end(), [&](const Touch& t) {
-    const Vec3<double>& n = t.contact.normal;
-    return pairs_[static_cast<std::size_t>(t.pair)].counted && dot(n, n) == 0;
-  });
+  return found;
 }
 
 void Contacts::commit(std::span<const MovingPose> bodies, double dt) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "contact/broad_phase.h"
@@ -35,21 +34,6 @@ std::array<double, 2> face_areas(const Shapes& shapes, std::int32_t body) {
   return areas;
 }
 
-/// All that makes the shape of a body: equal if and only if the bodies are, number by number.
-std::vector<double> description(const Shapes& shapes, std::int32_t body) {
-  const auto b = static_cast<std::size_t>(body);
-  std::vector<double> numbers;
-  const auto at = [](std::int32_t k) { return static_cast<std::size_t>(k); };
-  for (auto v = at(shapes.vertex_of[b]); v < at(shapes.vertex_of[b + 1]); ++v)
-    numbers.insert(numbers.end(), shapes.vertices[v].begin(), shapes.vertices[v].end());
-  for (auto f = at(shapes.face_of[b]); f < at(shapes.face_of[b + 1]); ++f) {
-    numbers.push_back(shapes.corner_of[f + 1] - shapes.corner_of[f]);
-    for (auto c = at(shapes.corner_of[f]); c < at(shapes.corner_of[f + 1]); ++c)
-      numbers.push_back(shapes.corners[c] - shapes.vertex_of[b]);
-  }
-  return numbers;
-}
-
 }  // namespace
 
 Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
@@ -61,17 +45,9 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       obstacles_(std::move(obstacles)),
       obstacles_at_(obstacles_.size()),
       on_obstacle_(obstacles_.size()) {
-  // Bodies of one shape share it: a heap of equal blocks then finds it in the cache.
-  std::map<std::vector<double>, std::int32_t> known;
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
-    const std::int32_t shape = known.try_emplace(description(shapes_, b), b).first->second;
-    if (shape == b) {
-      add_solid(b);
-    } else {
-      solids_.push_back(solids_[static_cast<std::size_t>(shape)]);
-    }
-    solids_.back().mass = masses[body];
+    add_solid(b, masses[body]);
     const auto [all, widest] = face_areas(shapes_, b);
     surface_.push_back(all);
     widest_.push_back(widest);
@@ -86,8 +62,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   find_pieces();
 }
 
-/// A body of a shape of its own; the mass is not set.
-void Contacts::add_solid(std::int32_t body) {
+void Contacts::add_solid(std::int32_t body, double mass) {
   const auto b = static_cast<std::size_t>(body);
   const auto first_vertex = static_cast<std::int32_t>(vertices_.size());
   const auto first_plane = static_cast<std::int32_t>(planes_.size());
@@ -99,9 +74,9 @@ void Contacts::add_solid(std::int32_t body) {
     radius = std::max(radius, length(vertices_.back()));
   }
   append_half_spaces(shapes_, body, planes_);
-  solids_.push_back({body, first_vertex, static_cast<std::int32_t>(vertices_.size()) - first_vertex,
+  solids_.push_back({first_vertex, static_cast<std::int32_t>(vertices_.size()) - first_vertex,
                      first_plane, static_cast<std::int32_t>(planes_.size()) - first_plane,
-                     std::cbrt(volume_properties(shapes_, body).volume), 0, radius});
+                     std::cbrt(volume_properties(shapes_, body).volume), mass, radius});
 }
 
 std::span<const Vec3<double>> Contacts::vertices(std::int32_t body) const {

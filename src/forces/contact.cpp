@@ -71,7 +71,7 @@ class ContactOfModel final : public Contact {
     add(rest, none);
     watch_ = ContactWatch(contacts_, part_.global_bodies);
     std::vector<std::int32_t> mine;
-    if (const auto pair = contacts_.enclosed()) mine.assign(pair->begin(), pair->end());
+    for (const auto& pair : contacts_.enclosed()) mine.insert(mine.end(), pair.begin(), pair.end());
     const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
     if (all.empty()) return;
     std::array<std::int32_t, 2> first{all[0], all[1]};  // whatever the ranks
@@ -110,7 +110,7 @@ class ContactOfModel final : public Contact {
     for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
     if (moving) columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
-    columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosures()));
+    columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosed().size()));
     const bool first = rank(part_.comm) == 0;  // of what all ranks know alike
     for (std::size_t k = 0; k < contacts_.obstacles().size(); ++k) {
       const std::string& obstacle = contacts_.obstacles()[k].name;

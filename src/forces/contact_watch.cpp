@@ -42,7 +42,7 @@ void ContactWatch::went(const State<Spatial>& state, double dt) {
 bool ContactWatch::is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts,
                           double dt) {
   if (--asks_in_ > 0) return false;
-  const auto [theirs, their_speed] = of_obstacles(contacts.obstacles(), state.time);
+  const auto [theirs, their_speed] = of_obstacles(contacts, state.time);
   std::array<double, 2> all =
       largest({std::max(way_, theirs), std::max(speed_, their_speed)}, part.comm);
   const double slack = contacts.slack();
@@ -61,13 +61,12 @@ bool ContactWatch::is_due(const State<Spatial>& state, const Part& part, const C
 }
 
 /// The farthest way of an obstacle's vertex since the list was made, and their largest speed.
-std::array<double, 2> ContactWatch::of_obstacles(const std::vector<Obstacle>& obstacles,
-                                                 double time) const {
+std::array<double, 2> ContactWatch::of_obstacles(const Contacts& contacts, double time) const {
   std::array<double, 2> most{};
-  for (const Obstacle& o : obstacles) {
-    const ObstacleMotion& m = o.motion;
+  for (std::size_t k = 0; k < contacts.obstacles().size(); ++k) {
+    const ObstacleMotion& m = contacts.obstacles()[k].motion;
     if (m.at_rest()) continue;
-    const double radius = o.radius();
+    const double radius = contacts.obstacle_radius(k);
     const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
     most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
                                     2 * radius * length({turn.x, turn.y, turn.z}));

@@ -34,7 +34,7 @@ class ContactWatch {
   State<Spatial> at_build(const Part& part) const;
 
  private:
-  std::array<double, 2> of_obstacles(const std::vector<Obstacle>& obstacles, double time) const;
+  std::array<double, 2> of_obstacles(const Contacts& contacts, double time) const;
   double ways(const State<Spatial>& state, const Part& part, const Contacts& contacts) const;
 
   double radius_ = 0;  ///< of the farthest vertex of a body from its centroid [m]

@@ -81,29 +81,6 @@ TEST(ContactList, NeverHidesATouch) {
   EXPECT_GT(born, 20);
 }
 
-/// Bodies of one shape share it; masses and places stay their own.
-TEST(ContactList, EqualBodiesAreWorkedOutLikeOthers) {
-  Lattice equal, other;
-  for (Lattice* lattice : {&equal, &other}) {
-    test::append_block(*lattice, {1, 1, 0.5}, {0, 0, 0}, {1, 0, 0, 0}, {}, {}, 500);
-    test::append_block(*lattice, {1, 1, lattice == &equal ? 0.5 : 0.50000001}, {0.95, 0, 0.1});
-  }
-  std::array<double, 2> force{};
-  for (const Lattice* lattice : {&equal, &other}) {
-    Contacts contacts(lattice->shapes, lattice->bodies.mass, {},
-                      {.young = 1e7, .friction = 0, .damping_ratio = 0.1}, {});
-    const std::vector<MovingPose> bodies{{{{0, 0, 0}, {1, 0, 0, 0}}, {}, {}},
-                                         {{{0.95, 0, 0.1}, {1, 0, 0, 0}}, {-1, 0, 0}, {}}};
-    contacts.build(std::vector{bodies[0].pose, bodies[1].pose}, std::vector<std::uint8_t>(2, 1), 0);
-    std::vector<ContactWrench> wrenches(2);
-    contacts.place(bodies, 0);
-    contacts.evaluate(wrenches);
-    force[lattice == &equal ? 0 : 1] = wrenches[0].force.x;
-  }
-  EXPECT_LT(force[0], -1e4);
-  EXPECT_NEAR(force[0], force[1], 1e-6 * std::abs(force[0]));
-}
-
 /// Of two bodies one inside the other no way out is to be preferred: no force, but they are
 /// counted.
 TEST(ContactList, CountsBodiesInsideOthers) {
@@ -118,7 +95,7 @@ TEST(ContactList, CountsBodiesInsideOthers) {
     std::vector<ContactWrench> wrenches(2);
     contacts.place(bodies, 0);
     contacts.evaluate(wrenches);
-    EXPECT_EQ(contacts.enclosures(), z < 0.4 ? 1 : 0) << z;
+    EXPECT_EQ(contacts.enclosed().size(), z < 0.4 ? 1U : 0U) << z;
     EXPECT_EQ(wrenches[1].force.z > 0, z > 0.4) << z;
   }
 }

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -93,6 +92,8 @@ class Contacts {
   void release(std::array<std::int32_t, 2> pair);
 
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  /// Distance of obstacle k's farthest vertex from the origin of its frame [m].
+  double obstacle_radius(std::size_t k) const { return obstacle_radius_[k]; }
   /// Force and moment about its frame's origin on obstacle k, in the last evaluation, of bodies
   /// that are here.
   const ContactWrench& on_obstacle(std::size_t k) const { return on_obstacle_[k]; }
@@ -100,11 +101,9 @@ class Contacts {
   std::int64_t touching() const { return touching_; }
   std::size_t listed() const { return pairs_.size(); }
   bool obstacle_listed() const;
-  /// A counted pair of the last evaluation, A and B, of which one lies wholly inside the other:
+  /// Counted pairs of the last evaluation, A and B, of which one lies wholly inside the other:
   /// they press on each other nowhere.
-  std::optional<std::array<std::int32_t, 2>> enclosed() const;
-  /// How many such pairs are counted here.
-  std::int64_t enclosures() const;
+  std::vector<std::array<std::int32_t, 2>> enclosed() const;
   /// Pieces joined by beams, as of the last build, or at first.
   std::int32_t pieces() const { return pieces_; }
   ContactEnergies energies() const;
@@ -130,7 +129,6 @@ class Contacts {
  private:
   /// What a step asks of a body that does not change, side by side.
   struct Solid {
-    std::int32_t shape;  ///< the first body of this very shape
     std::int32_t first_vertex, vertices;
     std::int32_t first_plane, planes;
     double size;    ///< cube root of the volume [m]
@@ -168,7 +166,7 @@ class Contacts {
     std::array<double, 4> power{};
   };
 
-  void add_solid(std::int32_t body);
+  void add_solid(std::int32_t body, double mass);
   bool on_surface(std::int32_t body) const { return outer_[static_cast<std::size_t>(body)] != 0; }
   bool may_touch(std::int32_t a, std::int32_t b) const;
   void find_pieces();
