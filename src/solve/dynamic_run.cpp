@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solve/numbers.h"
-#include "solve/text.h"
+#include "base/format.h"
 
 namespace floe {
 

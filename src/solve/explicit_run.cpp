@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "solve/text.h"
+#include "base/format.h"
 
 namespace floe {
 namespace {
