@@ -12,8 +12,12 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 SCENES = REPOSITORY / "input"
 LOADER = Path("/lib64/ld-linux-x86-64.so.2")
-TABLE = re.findall(r"^  (\w+) +(\S.*)$", (subprocess.run([str(FLOE), "help"], capture_output=True, text=True, check=True)
-                                         .stdout.split("Tools")[1]), re.MULTILINE)
+
+
+def tools():
+    """Names and lines of the tools, as floe help lists them."""
+    text = subprocess.run([str(FLOE), "help"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^  (\w+) +(\S.*)$", text.split("Tools")[1], re.MULTILINE)
 
 
 class CommandLine(unittest.TestCase):
@@ -64,8 +68,9 @@ class CommandLine(unittest.TestCase):
         self.assertIn("the nearest one is 'plot_load'", self.refused("help", "plotload"))
 
     def test_every_tool_answers(self):
-        self.assertGreater(len(TABLE), 5)
-        for tool, line in TABLE:
+        table = tools()
+        self.assertGreater(len(table), 5)
+        for tool, _ in table:
             with self.subTest(tool=tool):
                 self.assertTrue(os.access(REPOSITORY / "tools" / tool, os.X_OK))
                 self.assertIn(tool, self.run_it(tool, "--help")[0])
@@ -110,7 +115,7 @@ class CommandLine(unittest.TestCase):
         self.assertTrue(page.startswith(".TH FLOE 1 "))
         for option in ("sheet_length", "boundary_NAME_fix"):
             self.assertIn(f"\n.B \\-{option}\n", page)
-        for tool, line in TABLE:
+        for tool, line in tools():
             self.assertIn(f"\n.B {tool}\n{line}\n", page)
         if shutil.which("groff"):
             run = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z"], input=page, capture_output=True, text=True)
