@@ -69,7 +69,13 @@ class ContactOfModel final : public Contact {
   StepLimit step_limit(const State<Spatial>& state) const override {
     return travel_limit(contacts_, part_, state);
   }
-  std::vector<Remark> take_remarks() override { return remarks_.take(contacts_); }
+  std::vector<Remark> take_remarks() override {
+    std::vector<Remark> remarks = remarks_.take(contacts_);
+    if (!overlap_told_ && !overlap_at_start_.empty() && rank(part_.comm) == 0)
+      remarks.push_back({0, overlap_at_start_});
+    overlap_told_ = true;
+    return remarks;
+  }
 
   /// At rest; the run makes its own list. Collective.
   void check_start() {
@@ -179,6 +185,7 @@ class ContactOfModel final : public Contact {
   mutable bool near_ = false;  ///< pairs are listed, on some rank
   double dt_ = 0, time_ = 0;
   std::string overlap_at_start_;
+  bool overlap_told_ = false;
   ContactRemarks remarks_;
 };
 
@@ -223,6 +230,7 @@ void ContactOfModel::remember(Memory& memory) {
     }
   }
   if (!memory.loading()) return;
+  overlap_told_ = true;  // when the run began
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});

@@ -48,9 +48,9 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
   for (std::size_t k = 0; k < all.size(); k += 4) {
     const std::array row{all[k], all[k + 1], all[k + 2], all[k + 3]};
     // Of equal ones the first pair, whatever the ranks.
-    if (row[0] > worst[0] || (row[0] == worst[0] && std::lexicographical_compare(
-                                                        row.begin() + 2, row.end(),
-                                                        worst.begin() + 2, worst.end())))
+    if (row[0] > worst[0] ||
+        (row[0] == worst[0] &&
+         std::lexicographical_compare(row.begin() + 2, row.end(), worst.begin() + 2, worst.end())))
       worst = row;
   }
   const auto& [share, depth, a, b] = worst;
@@ -110,12 +110,12 @@ std::vector<Force<Spatial>::Remark> ContactRemarks::take(const Contacts& contact
     if (told || !event.happened) return;
     told = true;
     remarks.push_back({event.time, "contact: from " + text(event.time) + " s on body " +
-                                       std::to_string(event.a) + what +
-                                       name_of(contacts, event.b) + ": " + why});
+                                       std::to_string(event.a) + what + name_of(contacts, event.b) +
+                                       ": " + why});
   };
   tell(contacts.first_enclosed(), told_enclosed_, " and ",
-       "one lies wholly inside the other, and they press on each other nowhere (history.csv: "
-       "contacts_enclosed counts such pairs)");
+       "one lies inside the other or reaches through it, and they press on each other nowhere "
+       "(history.csv: contacts_enclosed counts such pairs)");
   tell(contacts.first_pressed_through(), told_pressed_through_, " is pressed into ",
        "by more than a quarter of the thinner one's width, so that it may pass through "
        "('contact: young' is too small for this speed or load)");

@@ -110,7 +110,8 @@ class Contacts {
   struct Penetration {
     std::int32_t a = 0, b = 0;
     double depth = 0;  ///< common part of both extents along the contact's normal [m]
-    double share = 0;  ///< of the smaller size: a body's cube root of its volume, an obstacle's width
+    double share =
+        0;  ///< of the smaller size: a body's cube root of its volume, an obstacle's width
   };
   /// Of the counted pairs of the last evaluation that press on each other, by pair.
   std::vector<Penetration> penetrations() const;

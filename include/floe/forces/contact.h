@@ -30,8 +30,8 @@ class Contact : public Force<Spatial> {
 /// NAME_moment_x.. (about its point), NAME_peak_force_x.. (largest so far), NAME_mean_force_x..
 /// (over the run so far). \param part  must outlive the force   \param lattice  whole; needed
 /// during construction only \throws InputError if the lattice has no shapes, one is not convex, or
-/// a body lies wholly inside another or an obstacle, or overlaps it by more than a tenth of the smaller
-/// size (unless initial_overlap is stress_free). Collective.
+/// a body lies wholly inside another or an obstacle, or overlaps it by more than a tenth of the
+/// smaller size (unless initial_overlap is stress_free). Collective.
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles);
