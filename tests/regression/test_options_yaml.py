@@ -1,13 +1,12 @@
 #!/usr/bin/python3
 """options.yaml in the output folder repeats the run: same options, same results."""
-import os
-import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+import runs  # noqa: E402
 
 SCENE = """
 forces: [beam, gravity, buoyancy]
@@ -26,7 +25,7 @@ class OptionsYaml(unittest.TestCase):
             (root / "story.yaml").write_text(SCENE)
 
             def run(*words):
-                subprocess.run([str(FLOE), *words], cwd=root, check=True, capture_output=True, timeout=120)
+                runs.run(*words, cwd=root, check=True)
                 out = root / "out/story"
                 return {name: (out / name).read_text() for name in ("options.yaml", "history.csv")}
 
