@@ -290,7 +290,6 @@ class SceneFiles(BadInput):
     pass
 
 
-SceneFiles.case("no scene", [], "usage", lambda folder: None)
 SceneFiles.case("an option in place of the scene", ["-check"], "usage", lambda folder: None)
 SceneFiles.case("missing file", ["missing.yaml"], "missing.yaml", lambda folder: None)
 SceneFiles.case("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())
