@@ -16,6 +16,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import Output  # noqa: E402
+from launch import ENVIRONMENT  # noqa: E402
 from scenes import beams, contact, fracture, moving, static, structures  # noqa: E402
 
 EXPECTED = {
@@ -87,7 +88,8 @@ class SceneTest(unittest.TestCase):
 
         def run(*options, ranks=1, status=0):
             command = " ".join([*(["mpiexec", "-n", str(ranks)] if ranks > 1 else []), first[2:], *options])
-            done = subprocess.run(["bash", "-c", command], cwd=self.folder, capture_output=True, text=True)
+            done = subprocess.run(["bash", "-c", command], cwd=self.folder, capture_output=True, text=True,
+                                  env=ENVIRONMENT)
             self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
             return Output(self.folder / "out" / scene.stem)
 
