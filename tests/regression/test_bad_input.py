@@ -13,10 +13,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-import runs  # noqa: E402
+import launch
 
-sys.path.insert(0, str(runs.REPOSITORY / "tools"))
+sys.path.insert(0, str(launch.REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 
 SHEET = "sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}\n"
@@ -249,7 +248,7 @@ class BadInput(unittest.TestCase):
     def refused(self, words, part, ranks, folder):
         """Runs floe with `words` in `folder`; checks how it ends and that nothing has been written."""
         before = sorted(folder.rglob("*"))
-        run = runs.run(*words, ranks=ranks, cwd=folder)
+        run = launch.run(*words, ranks=ranks, cwd=folder)
         lines = run.stderr.splitlines()
         self.assertEqual(len(lines), 1, f"one line expected: {run.stderr!r} {run.stdout!r}")
         self.assertIn(part, lines[0])

@@ -5,13 +5,11 @@ Each runs in a temporary folder of its own, as a user would run it, at 1 and at 
 """
 import json
 import re
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-import runs  # noqa: E402
+import launch
 
 PULL = """integrator: explicit
 forces: [beam]
@@ -30,7 +28,7 @@ class Run:
     def __init__(self, scene, *words, ranks=1):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "s.yaml").write_text(scene)
-            done = runs.run("s.yaml", *words, ranks=ranks, cwd=folder)
+            done = launch.run("s.yaml", *words, ranks=ranks, cwd=folder)
             self.code, self.error = done.returncode, done.stderr
             summary = Path(folder, "out/s/summary.json")
             self.summary = json.loads(summary.read_text()) if summary.exists() else None

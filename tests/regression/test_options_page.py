@@ -1,20 +1,17 @@
 #!/usr/bin/python3
 """docs/options.md is what `floe -help_markdown` writes, and -help prints every option."""
-import sys
 import unittest
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-import runs  # noqa: E402
+import launch
 
 
 def output(*words):
-    return runs.run(*words, check=True).stdout
+    return launch.run(*words, check=True).stdout
 
 
 class OptionsPage(unittest.TestCase):
     def test_page_is_current(self):
-        self.assertEqual((runs.REPOSITORY / "docs/options.md").read_text(), output("-help_markdown"),
+        self.assertEqual((launch.REPOSITORY / "docs/options.md").read_text(), output("-help_markdown"),
                          "run: build/release/floe -help_markdown > docs/options.md")
 
     def test_help_lists_the_same_options(self):

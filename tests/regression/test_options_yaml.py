@@ -1,12 +1,10 @@
 #!/usr/bin/python3
 """options.yaml in the output folder repeats the run: same options, same results."""
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-import runs  # noqa: E402
+import launch
 
 SCENE = """
 forces: [beam, gravity, buoyancy]
@@ -25,7 +23,7 @@ class OptionsYaml(unittest.TestCase):
             (root / "story.yaml").write_text(SCENE)
 
             def run(*words):
-                runs.run(*words, cwd=root, check=True)
+                launch.run(*words, cwd=root, check=True)
                 out = root / "out/story"
                 return {name: (out / name).read_text() for name in ("options.yaml", "history.csv")}
 

@@ -6,7 +6,6 @@ Small scenes run in a temporary folder. Numbers are compared with each other, ne
 import csv
 import json
 import re
-import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -14,8 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-import runs  # noqa: E402
+import launch
 
 HELD_AND_PULLED = """boundary:
   names: [left, right]
@@ -68,7 +66,7 @@ class OutputTest(unittest.TestCase):
         return self.start_file(path, *options, ranks=ranks)
 
     def start_file(self, path, *options, ranks=1):
-        return runs.run(path, *options, ranks=ranks, cwd=self.folder)
+        return launch.run(path, *options, ranks=ranks, cwd=self.folder)
 
     def run_scene(self, scene, *options, **how):
         """Runs a scene text that must work; its output folder."""

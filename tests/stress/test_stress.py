@@ -11,14 +11,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-import runs  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
+import launch  # noqa: E402
 
-sys.path.insert(0, str(runs.REPOSITORY / "tools"))
+sys.path.insert(0, str(launch.REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 from floe_output import Output  # noqa: E402
 
-FULL = runs.FULL
+FULL = launch.FULL
 
 SHEET = """integrator: quasistatic
 forces: [beam]
@@ -57,7 +57,7 @@ class Run:
                     for name, values in (motion or {}).items():
                         file[f"bodies/{name}"] = values
             Path(folder, "s.yaml").write_text(scene)
-            done = runs.run("s.yaml", *words, cwd=folder)
+            done = launch.run("s.yaml", *words, cwd=folder)
             self.code, self.text = done.returncode, done.stderr
             self.errors = [line for line in done.stderr.splitlines()
                            if line.startswith("floe:") and not line.startswith("floe: warning")]
