@@ -23,7 +23,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/input DESTINATION ${share} COMPONENT pro
 
 # The page is what the program says, like docs/options.md.
 add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/floe.1.gz
-                   COMMAND floe -help_man >floe.1 && gzip -9nf floe.1
+                   COMMAND floe -help_man > floe.1 COMMAND gzip -9nf floe.1
                    WORKING_DIRECTORY ${PROJECT_BINARY_DIR} DEPENDS floe VERBATIM)
 add_custom_target(manual ALL DEPENDS ${PROJECT_BINARY_DIR}/floe.1.gz)
 install(FILES ${PROJECT_BINARY_DIR}/floe.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
