@@ -254,18 +254,20 @@ class BadInput(unittest.TestCase):
         self.cases = []
 
     def on_ranks(self, name, words, part, prepare):
-        """Starts the case on 1 and 2 ranks; finish() looks at what came out."""
-        def one(ranks):
-            with tempfile.TemporaryDirectory() as folder:
-                prepare(Path(folder))
-                self.refused(words, part, ranks, Path(folder))
+        """Prepares the case for 1 and 2 ranks; finish() runs all that are prepared. No file is written while other threads start
+        processes: one that is forked while an HDF5 file is open holds its lock for a while."""
         for ranks in (1, 2):
-            self.cases.append((name, ranks, self.pool.submit(one, ranks)))
+            temporary = tempfile.TemporaryDirectory()
+            self.addCleanup(temporary.cleanup)
+            prepare(Path(temporary.name))
+            self.cases.append((name, words, part, ranks, Path(temporary.name)))
 
     def finish(self):
-        for name, ranks, case in self.cases:
+        runs = [(name, ranks, self.pool.submit(self.refused, words, part, ranks, folder))
+                for name, words, part, ranks, folder in self.cases]
+        for name, ranks, run in runs:
             with self.subTest(case=name, ranks=ranks):
-                case.result()
+                run.result()
 
     def test_command_line(self):
         for name, (scene, words, part) in COMMAND_LINE.items():
