@@ -2,6 +2,7 @@
 // every rank its failures.
 #include <gtest/gtest.h>
 
+#include "floe/base/audit.h"
 #include "floe/base/petsc.h"
 
 int main(int argc, char** argv) {
@@ -10,6 +11,7 @@ int main(int argc, char** argv) {
   int failed = 0;
   {
     floe::Session session(argc, argv, "");
+    floe::set_auditing(true);
     if (floe::rank() != 0) {
       auto& listeners = testing::UnitTest::GetInstance()->listeners();
       delete listeners.Release(listeners.default_result_printer());
