@@ -20,11 +20,9 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
+from launch import ENVIRONMENT, on_ranks, own_words  # noqa: E402
 
 SECONDS = 60  # one run takes well below 1 s; the machine may be busy
-ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 SHEET = "sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}\n"
 HELD = "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
@@ -242,12 +240,9 @@ class BadInput(unittest.TestCase):
     def refused(self, words, part, ranks, folder):
         """Runs floe with `words` in `folder`; checks how it ends and that nothing has been written."""
         before = sorted(folder.rglob("*"))
-        command = [str(FLOE), *words]
-        if ranks > 1:
-            command = ["mpiexec", "-q", "-n", str(ranks), *command]
-        run = subprocess.run(command, cwd=folder, env={**os.environ, **ENVIRONMENT}, capture_output=True,
-                             text=True, timeout=SECONDS)
-        lines = run.stderr.splitlines()
+        run = subprocess.run(on_ranks(ranks, [FLOE, *words]), cwd=folder, env=ENVIRONMENT, capture_output=True, text=True,
+                             timeout=SECONDS)
+        lines = own_words(run.stderr).splitlines()
         self.assertEqual(len(lines), 1, f"one line expected: {run.stderr!r} {run.stdout!r}")
         self.assertIn(part, lines[0])
         self.assertEqual(run.returncode, 2, lines[0])
@@ -291,7 +286,6 @@ class BadInput(unittest.TestCase):
         self.finish()
 
     def test_scene_files(self):
-        self.on_ranks("no scene", [], "usage", lambda folder: None)
         self.on_ranks("an option in place of the scene", ["-check"], "usage", lambda folder: None)
         self.on_ranks("missing file", ["missing.yaml"], "missing.yaml", lambda folder: None)
         self.on_ranks("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())

@@ -15,11 +15,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from launch import ENVIRONMENT, on_ranks, own_words
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 HELD_AND_PULLED = """boundary:
   names: [left, right]
@@ -72,9 +71,10 @@ class OutputTest(unittest.TestCase):
         return self.start_file(path, *options, ranks=ranks)
 
     def start_file(self, path, *options, ranks=1):
-        mpi = ["mpiexec", "-q", "-n", str(ranks)] if ranks > 1 else []
-        return subprocess.run([*mpi, str(FLOE), str(path), *options], cwd=self.folder, capture_output=True, text=True,
-                              timeout=120, env={**os.environ, **ENVIRONMENT})
+        run = subprocess.run(on_ranks(ranks, [FLOE, path, *options]), cwd=self.folder, capture_output=True, text=True,
+                             timeout=120, env=ENVIRONMENT)
+        run.stderr = own_words(run.stderr)
+        return run
 
     def run_scene(self, scene, *options, **how):
         """Runs a scene text that must work; its output folder."""

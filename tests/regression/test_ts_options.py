@@ -7,6 +7,7 @@ import json
 import subprocess
 import unittest
 
+from launch import own_words
 from test_restart import INTERRUPTED, REPOSITORY, RestartTest, contents, stop_file
 
 PULL = """integrator: explicit
@@ -33,7 +34,7 @@ class TsTest(RestartTest):
         process = self.begin(*options, dir="out/pull", ranks=ranks, scene="pull.yaml")
         out, err = process.communicate(timeout=120)
         self.assertEqual(process.returncode, code, out + err)
-        return out, err
+        return out, own_words(err)
 
     def summary(self):
         return json.loads((self.folder / "out/pull/summary.json").read_text())
