@@ -4,19 +4,12 @@
 Each runs in a temporary folder of its own, as a user would run it, at 1 and at 2 ranks.
 """
 import json
-import os
 import re
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-from launch import ENVIRONMENT, on_ranks, own_words
-
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-
-SECONDS = 120
+import launch
 
 PULL = """integrator: explicit
 forces: [beam]
@@ -35,9 +28,8 @@ class Run:
     def __init__(self, scene, *words, ranks=1):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "s.yaml").write_text(scene)
-            done = subprocess.run(on_ranks(ranks, [FLOE, "s.yaml", *words]), cwd=folder, capture_output=True, text=True,
-                                  timeout=SECONDS, env=ENVIRONMENT)
-            self.code, self.error = done.returncode, own_words(done.stderr)
+            done = launch.run("s.yaml", *words, ranks=ranks, cwd=folder)
+            self.code, self.error = done.returncode, done.stderr
             summary = Path(folder, "out/s/summary.json")
             self.summary = json.loads(summary.read_text()) if summary.exists() else None
             self.has_folder = Path(folder, "out").exists()

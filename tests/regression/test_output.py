@@ -5,9 +5,7 @@ Small scenes run in a temporary folder. Numbers are compared with each other, ne
 """
 import csv
 import json
-import os
 import re
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -15,10 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, on_ranks, own_words
-
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+import launch
 
 HELD_AND_PULLED = """boundary:
   names: [left, right]
@@ -71,10 +66,7 @@ class OutputTest(unittest.TestCase):
         return self.start_file(path, *options, ranks=ranks)
 
     def start_file(self, path, *options, ranks=1):
-        run = subprocess.run(on_ranks(ranks, [FLOE, path, *options]), cwd=self.folder, capture_output=True, text=True,
-                             timeout=120, env=ENVIRONMENT)
-        run.stderr = own_words(run.stderr)
-        return run
+        return launch.run(path, *options, ranks=ranks, cwd=self.folder)
 
     def run_scene(self, scene, *options, **how):
         """Runs a scene text that must work; its output folder."""
