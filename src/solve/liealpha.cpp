@@ -301,6 +301,12 @@ LieAlphaMemory liealpha_memory(TS ts) {
   return {me.a0, me.own0, me.last_step, ts->adapt->timestepjustdecreased};
 }
 
+std::vector<Vec> liealpha_vectors(TS ts) {
+  std::vector<Vec> all;
+  for (Vec* v : of(ts).vectors()) all.push_back(*v);
+  return all;
+}
+
 void resume_liealpha(TS ts, const LieAlphaMemory& memory) {
   LieAlpha& me = of(ts);
   me.last_step = memory.last_step;
