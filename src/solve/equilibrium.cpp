@@ -212,7 +212,7 @@ PetscErrorCode Equilibrium<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm)) {
-    *reason = SNES_DIVERGED_FNORM_NAN;
+    *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
     return 0;
   }
   if (norm > me.scale_of_forces().tolerance(rtol, atol)) return 0;

@@ -320,7 +320,7 @@ PetscErrorCode ImplicitRun<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm)) {
-    *reason = SNES_DIVERGED_FNORM_NAN;
+    *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
     return 0;
   }
   // What Newton starts from is not good enough by being near: small forces would never act.
