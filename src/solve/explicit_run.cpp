@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/format.h"
+#include "floe/base/ranks.h"
 
 namespace floe {
 namespace {
@@ -63,8 +64,7 @@ double ExplicitRun<Space>::fastest_rate() {
     if (const auto rate = force->fastest_rate(this->state())) rates.push_back(*rate);
   }
   if (rates.empty()) return 0;
-  MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPI_DOUBLE, MPI_MAX,
-                this->model().part().comm);
+  largest_over_ranks(rates, this->model().part().comm);
   return std::accumulate(rates.begin(), rates.end(), 0.0);
 }
 
