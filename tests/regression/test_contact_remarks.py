@@ -39,7 +39,7 @@ class Run:
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "s.yaml").write_text(scene)
             if "cube.h5" in scene:
-                fl.blocks([[1, 1, 1]], [[0, 0, 0]]).write(str(Path(folder, "cube.h5")))
+                fl.blocks([[1, 1, 1], [1, 1, 1]], [[0, 0, 0], [100, 0, 50]]).write(str(Path(folder, "cube.h5")))
             command = [str(FLOE), "s.yaml", *words]
             if ranks > 1:
                 command = ["mpiexec", "-n", str(ranks), *command]

@@ -164,7 +164,7 @@ TEST(ContactStart, BodyPressedThroughAPlateIsSaid) {
     Lattice lattice;
     test::append_block(lattice, {1, 1, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0, 0, -5});
     Asked asked(scene, lattice);
-    test::start(asked.dynamics, young < 1e9 ? 0.05 : 0.5);
+    test::start(asked.dynamics, young < 1e9 ? 0.005 : 0.5);
     std::vector<Force<Spatial>::Remark> remarks;
     while (asked.dynamics.state().time < 0.05) {
       (void)asked.dynamics.step();
