@@ -1,5 +1,6 @@
 #include "support/record.h"
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -9,8 +10,9 @@ void record(const Checked& c, bool pass) {
   const char* folder = std::getenv("FLOE_RECORD");
   if (folder == nullptr || *folder == '\0') return;
   const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-  const std::string file =
-      std::string(folder) + "/" + test.test_suite_name() + "." + test.name() + ".jsonl";
+  std::string name = std::string(test.test_suite_name()) + "." + test.name() + ".jsonl";
+  std::ranges::replace(name, '/', '_');  // of parametrised tests
+  const std::string file = std::string(folder) + "/" + name;
   nlohmann::ordered_json line;
   const auto or_null = [](const std::optional<double>& x) {
     return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json(nullptr);
