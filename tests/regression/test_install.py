@@ -107,9 +107,9 @@ class Installed(unittest.TestCase):
         for name, order in (("forward", lines), ("backward", reversed(lines))):
             (project / f"{name}.cpp").write_text("".join(order))
         (project / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.25)\nproject(all LANGUAGES CXX)\nfind_package(floe REQUIRED)\n"
-            "add_library(all OBJECT forward.cpp backward.cpp)\ntarget_link_libraries(all PRIVATE floe::floe)\n"
-            "target_compile_options(all PRIVATE -march=x86-64 -Wall -Wextra -Wpedantic -Wshadow -Werror)\n")
+            "cmake_minimum_required(VERSION 3.25)\nproject(headers LANGUAGES CXX)\nfind_package(floe REQUIRED)\n"
+            "add_library(headers OBJECT forward.cpp backward.cpp)\ntarget_link_libraries(headers PRIVATE floe::floe)\n"
+            "target_compile_options(headers PRIVATE -march=x86-64 -Wall -Wextra -Wpedantic -Wshadow -Werror)\n")
         run(CMAKE, "-S", project, "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=self.folder)
         run(CMAKE, "--build", "build", cwd=self.folder)
 
