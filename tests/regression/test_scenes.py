@@ -16,6 +16,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import Output  # noqa: E402
+from launch import ENVIRONMENT  # noqa: E402
 from scenes import beams, contact, fracture, moving, static, structures  # noqa: E402
 
 EXPECTED = {
@@ -77,7 +78,7 @@ class SceneTest(unittest.TestCase):
         (self.folder / "bin").mkdir()
         (self.folder / "bin/floe").symlink_to(FLOE)
         (self.folder / "input").symlink_to(REPOSITORY / "input")
-        self.environment = dict(os.environ, PATH=f"{self.folder}/bin:{os.environ['PATH']}")
+        self.environment = dict(ENVIRONMENT, PATH=f"{self.folder}/bin:{os.environ['PATH']}")
 
     def runner(self, scene):
         """A function that runs the scene's own command, with more options if given: its output."""
