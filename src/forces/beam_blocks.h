@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "floe/lattice/state.h"
 #include "forces/beam_kernel.h"
 
@@ -110,18 +110,18 @@ inline void scatter(const std::array<std::int32_t, lanes>& i,
                     const std::array<std::int32_t, lanes>& j, const BeamGradient<Lanes>& g,
                     double* wrenches) {
   const Lanes zero(0.0);
-  std::array<detail::Four, lanes> fi, mi, fj, mj;
-  scatter_four<Lanes>({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
-  scatter_four<Lanes>({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
-  scatter_four<Lanes>({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
-  scatter_four<Lanes>({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
+  std::array<Row, lanes> fi, mi, fj, mj;
+  scatter_four({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
+  scatter_four({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
+  scatter_four({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
+  scatter_four({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     double* wi = wrenches + static_cast<std::size_t>(i[lane]) * Spatial::wrench;
-    add_four(wi, fi[lane]);
-    add_four(wi + 4, mi[lane]);
+    add_row(wi, fi[lane]);
+    add_row(wi + 4, mi[lane]);
     double* wj = wrenches + static_cast<std::size_t>(j[lane]) * Spatial::wrench;
-    add_four(wj, fj[lane]);
-    add_four(wj + 4, mj[lane]);
+    add_row(wj, fj[lane]);
+    add_row(wj + 4, mj[lane]);
   }
 }
 

@@ -24,7 +24,7 @@
 #include <cmath>
 
 #include "floe/base/rotation.h"
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "floe/forces/beam.h"
 
 namespace floe {

@@ -24,7 +24,7 @@
 #include <array>
 #include <cmath>
 
-#include "floe/base/sine_cosine.h"
+#include "base/sine_cosine.h"
 #include "floe/forces/beam.h"
 #include "floe/lattice/state.h"
 #include "forces/beam_kernel.h"

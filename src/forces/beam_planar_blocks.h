@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "forces/beam_planar.h"
 
 namespace floe {
@@ -87,12 +87,12 @@ struct PlanarLanes : PlanarBeam<kinematics> {
     }
     const PlanarGradient<Lanes> g = Kernel::gradient(beam, s, stress);
     const Lanes zero(0.0);
-    std::array<detail::Four, lanes> on_i, on_j;
-    scatter_four<Lanes>({g.force.x, g.force.y, -g.moment_i, zero}, on_i);
-    scatter_four<Lanes>({-g.force.x, -g.force.y, -g.moment_j, zero}, on_j);
+    std::array<Row, lanes> on_i, on_j;
+    scatter_four({g.force.x, g.force.y, -g.moment_i, zero}, on_i);
+    scatter_four({-g.force.x, -g.force.y, -g.moment_j, zero}, on_j);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      add_four(wrenches + static_cast<std::size_t>(block.i[lane]) * Planar::wrench, on_i[lane]);
-      add_four(wrenches + static_cast<std::size_t>(block.j[lane]) * Planar::wrench, on_j[lane]);
+      add_row(wrenches + static_cast<std::size_t>(block.i[lane]) * Planar::wrench, on_i[lane]);
+      add_row(wrenches + static_cast<std::size_t>(block.j[lane]) * Planar::wrench, on_j[lane]);
     }
     return lost;
   }

@@ -36,12 +36,12 @@ class Buoyancy final : public Force<Spatial> {
       const BlockMotion m = block_motion<false>(immersion_, state, block);
       const Immersion::Lane below = immersion_.of_block(state, block, m.u.z, m.q);
       const Lanes turn_y = -weight_ * below.moment.x;
-      std::array<detail::Four, lanes> rows;
-      scatter_four<Lanes>({zero, zero, weight_ * below.volume, weight_ * below.moment.y}, rows);
+      std::array<Row, lanes> rows;
+      scatter_four({zero, zero, weight_ * below.volume, weight_ * below.moment.y}, rows);
       for (std::size_t b = block * lanes; b < std::min<std::size_t>((block + 1) * lanes, owned_);
            ++b) {
         double* w = wrenches.of(b);
-        add_four(w, rows[b % lanes]);
+        add_row(w, rows[b % lanes]);
         w[4] += turn_y[b % lanes];
       }
     }

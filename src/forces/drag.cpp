@@ -210,11 +210,11 @@ class Drag final : public Force<Space> {
       const Lanes drag = -(factor * m.area);
       const Vec3<Lanes> force = drag * v;
       const Lanes power = dot(force, m.v);
-      std::array<detail::Four, lanes> rows;
-      scatter_four<Lanes>({force.x, force.y, force.z, Lanes(0.0)}, rows);
+      std::array<Row, lanes> rows;
+      scatter_four({force.x, force.y, force.z, Lanes(0.0)}, rows);
       for (std::size_t b = block * lanes; b < std::min((block + 1) * lanes, forces_.size()); ++b) {
-        add_four(wrenches.of(b), rows[b % lanes]);
-        __builtin_memcpy(forces_[b].data(), &rows[b % lanes], sizeof rows[0]);
+        add_row(wrenches.of(b), rows[b % lanes]);
+        store_row(forces_[b].data(), rows[b % lanes]);
         power_ += power[b % lanes];
       }
     }

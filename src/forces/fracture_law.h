@@ -13,7 +13,7 @@
 #include <array>
 #include <cmath>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "forces/beam_kernel.h"
 
 namespace floe {

@@ -14,7 +14,7 @@
 #include <limits>
 #include <vector>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "floe/lattice/partition.h"
 #include "floe/lattice/state.h"
 

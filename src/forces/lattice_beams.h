@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "floe/forces/beam.h"
 
 namespace floe {

@@ -14,7 +14,7 @@
 #include <cmath>
 
 #include "floe/base/rotation.h"
-#include "floe/base/simd.h"
+#include "base/simd.h"
 
 namespace floe {
 

@@ -127,11 +127,11 @@ template <class Count>
                       {d[1], d[2], d[3]}};
   leap<Lanes>(blocks_[block].get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
 
-  std::array<detail::Four, lanes> rows;
+  std::array<Row, lanes> rows;
   const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
-    scatter_four<Lanes>(values, rows);
+    scatter_four(values, rows);
     for (std::size_t lane = 0; lane < count; ++lane)
-      __builtin_memcpy(state.record(block * lanes + lane) + offset, &rows[lane], sizeof rows[lane]);
+      store_row(state.record(block * lanes + lane) + offset, rows[lane]);
   };
   put(0, {m.u.x, m.u.y, m.u.z, m.q.w});
   put(4, {m.q.x, m.q.y, m.q.z, m.v.x});

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 #include "floe/solve/model.h"
 #include "solve/body_update.h"
 

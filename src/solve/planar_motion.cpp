@@ -2,18 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "base/simd.h"
+
 namespace floe {
-namespace {
-
-using detail::Four;
-using detail::load_four;
-
-void store_four(double* p, Four v) { std::memcpy(p, &v, sizeof v); }
-
-}  // namespace
 
 PlanarMotion::PlanarMotion(const Model<Planar>& model) : model_(model), part_(model.part()) {
   for (std::int32_t body = 0; body < part_.owned; ++body) {
@@ -46,20 +39,19 @@ void PlanarMotion::stagger(State<Planar>& state, const Wrenches<Planar>& wrenche
   }
 }
 
-/// All bodies as if nothing held them. A record is two fours, places and their rates.
+/// All bodies as if nothing held them. A record is two rows, places and their rates.
 double PlanarMotion::step_free(State<Planar>& state, const Wrenches<Planar>& wrenches,
                                double dt) const {
-  Four largest{}, sum{};
+  Row largest{}, sum{};
   for (std::size_t b = 0; b < inverse_.size(); ++b) {
     double* record = state.record(b);
-    const Four v = load_four(record + Planar::velocity) +
-                   dt * (load_four(inverse_[b].values.data()) * load_four(wrenches.of(b)));
-    store_four(record, load_four(record) + dt * v);
-    store_four(record + Planar::velocity, v);
-    const Four squares = v * v;
-    const Four speed2 = squares + __builtin_shufflevector(squares, squares, 1, 0, 3, 2);
-    largest = speed2 > largest ? speed2 : largest;
-    sum += speed2;  // a maximum would lose what is not a number
+    const Row v = load_row(record + Planar::velocity) +
+                  dt * (load_row(inverse_[b].values.data()) * load_row(wrenches.of(b)));
+    store_row(record, load_row(record) + dt * v);
+    store_row(record + Planar::velocity, v);
+    const Row speed2 = pair_sums(v * v);
+    largest = larger(speed2, largest);
+    sum = sum + speed2;  // a maximum would lose what is not a number
   }
   return std::isfinite(sum[0]) ? largest[0] : std::numeric_limits<double>::quiet_NaN();
 }

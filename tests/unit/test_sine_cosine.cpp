@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "floe/base/sine_cosine.h"
+#include "base/sine_cosine.h"
 #include "support/random.h"
 
 namespace floe {

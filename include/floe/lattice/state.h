@@ -24,7 +24,7 @@ struct Spatial {
   static constexpr int displacement = 0, rotation = 3, velocity = 7, angular_velocity = 10,
                        angular_momentum = 13;
   static constexpr int velocities = 6;  ///< numbers from `velocity` on that are rates
-  static void at_rest(double* record) { record[rotation] = 1; }
+  static void at_rest(double* of_body) { of_body[rotation] = 1; }
 };
 
 /// Three unknowns per body, for scenes where nothing moves out of plane. A record of 8 doubles, one

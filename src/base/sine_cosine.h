@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "floe/base/simd.h"
+#include "base/simd.h"
 
 namespace floe {
 

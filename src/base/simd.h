@@ -1,0 +1,195 @@
+/// \file
+/// Lanes of doubles: as many as a register of the processor holds that the code is compiled for,
+/// and the transposes between records of bodies and lanes. No type here is wider than that
+/// register: a wider one would travel through memory, and be passed in different ways by different
+/// levels.
+///
+/// Nothing of this is in a public header: programs that are compiled for another level must see the
+/// same types.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <experimental/simd>
+
+namespace floe {
+
+#if defined(__AVX512F__)
+inline constexpr std::size_t lanes = 8;
+#elif defined(__AVX__)
+inline constexpr std::size_t lanes = 4;
+#else  // SSE2, NEON
+inline constexpr std::size_t lanes = 2;
+#endif
+
+/// One double per lane.
+using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, lanes>>;
+static_assert(sizeof(Lanes) == lanes * sizeof(double), "a register holds all lanes");
+
+inline Lanes load(const double* aligned) { return {aligned, std::experimental::vector_aligned}; }
+
+/// 1 or -1 with the sign of x.
+inline Lanes sign_of(const Lanes& x) {
+  Lanes one(1.0);
+  where(x < 0.0, one) = -1.0;
+  return one;
+}
+template <class T>
+double sign_of(const T& x) {
+  return x < 0.0 ? -1.0 : 1.0;
+}
+
+/// Asks for all cache lines of something that is read soon.
+template <class T>
+void prefetch(const T& what) {
+  constexpr std::size_t line = 64;
+  for (std::size_t k = 0; k < sizeof(T); k += line)
+    __builtin_prefetch(reinterpret_cast<const char*>(&what) + k);
+}
+
+namespace detail {
+
+/// From memory of any alignment.
+template <class V>
+V load_vector(const double* p) {
+  V v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+
+using Two [[gnu::vector_size(16)]] = double;
+
+/// Entries 0 and 1 of a and of b side by side.
+inline Two evens(Two a, Two b) { return __builtin_shufflevector(a, b, 0, 2); }
+inline Two odds(Two a, Two b) { return __builtin_shufflevector(a, b, 1, 3); }
+
+#if defined(__AVX__)
+
+using Four [[gnu::vector_size(32)]] = double;
+
+inline Four evens(Four a, Four b) { return __builtin_shufflevector(a, b, 0, 4, 2, 6); }
+inline Four odds(Four a, Four b) { return __builtin_shufflevector(a, b, 1, 5, 3, 7); }
+
+#endif
+#if defined(__AVX512F__)
+
+using Eight [[gnu::vector_size(64)]] = double;
+
+/// Entries 0, 2, 4, 6 of a and b in turn; entries 1, 3, 5, 7.
+inline Eight evens(Eight a, Eight b) {
+  return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+inline Eight odds(Eight a, Eight b) {
+  return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+
+#endif
+
+}  // namespace detail
+
+/// Four doubles of one record.
+#if defined(__AVX__)
+using Row = detail::Four;
+
+inline Row load_row(const double* p) { return detail::load_vector<Row>(p); }
+inline void store_row(double* p, const Row& row) { __builtin_memcpy(p, &row, sizeof row); }
+/// The sum of entries 0 and 1 in both their places, of 2 and 3 in theirs.
+inline Row pair_sums(const Row& r) { return r + __builtin_shufflevector(r, r, 1, 0, 3, 2); }
+inline Row larger(const Row& a, const Row& b) { return a > b ? a : b; }
+#else
+struct Row {
+  detail::Two low, high;
+  double operator[](std::size_t k) const { return k < 2 ? low[k] : high[k - 2]; }
+};
+
+inline Row load_row(const double* p) {
+  return {detail::load_vector<detail::Two>(p), detail::load_vector<detail::Two>(p + 2)};
+}
+inline void store_row(double* p, const Row& row) { __builtin_memcpy(p, &row, sizeof row); }
+inline Row operator+(const Row& a, const Row& b) { return {a.low + b.low, a.high + b.high}; }
+inline Row operator*(const Row& a, const Row& b) { return {a.low * b.low, a.high * b.high}; }
+inline Row operator*(double s, const Row& a) { return {s * a.low, s * a.high}; }
+inline Row pair_sums(const Row& r) {
+  return {r.low + __builtin_shufflevector(r.low, r.low, 1, 0),
+          r.high + __builtin_shufflevector(r.high, r.high, 1, 0)};
+}
+inline Row larger(const Row& a, const Row& b) {
+  return {a.low > b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
+}
+#endif
+
+/// Adds four doubles to memory.
+inline void add_row(double* p, const Row& row) { store_row(p, load_row(p) + row); }
+
+/// Four consecutive doubles of each of `lanes` records, one record per lane.
+/// \param at  where lane k's four doubles stand
+template <class At>
+std::array<Lanes, 4> gather_four(At at) {
+  using namespace detail;
+#if defined(__AVX512F__)
+  // Pairs of records side by side, chosen so that lanes come out in order.
+  const auto pair = [&](std::size_t low, std::size_t high) {
+    return __builtin_shufflevector(load_row(at(low)), load_row(at(high)), 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  const Eight a = pair(0, 2), b = pair(1, 3), c = pair(4, 6), d = pair(5, 7);
+  const Eight ab_even = evens(a, b), ab_odd = odds(a, b), cd_even = evens(c, d),
+              cd_odd = odds(c, d);
+  const auto low = [](Eight x, Eight y) {
+    return std::bit_cast<Lanes>(__builtin_shufflevector(x, y, 0, 1, 4, 5, 8, 9, 12, 13));
+  };
+  const auto high = [](Eight x, Eight y) {
+    return std::bit_cast<Lanes>(__builtin_shufflevector(x, y, 2, 3, 6, 7, 10, 11, 14, 15));
+  };
+  return {low(ab_even, cd_even), low(ab_odd, cd_odd), high(ab_even, cd_even), high(ab_odd, cd_odd)};
+#elif defined(__AVX__)
+  // Halves of records 0 and 2, of 1 and 3, side by side: loads put them there, and one shuffle per
+  // result is left.
+  const auto pair = [&](std::size_t low, std::size_t high, std::size_t half) {
+    return __builtin_shufflevector(load_vector<Two>(at(low) + half),
+                                   load_vector<Two>(at(high) + half), 0, 1, 2, 3);
+  };
+  const Four a = pair(0, 2, 0), b = pair(1, 3, 0), c = pair(0, 2, 2), d = pair(1, 3, 2);
+  return {std::bit_cast<Lanes>(evens(a, b)), std::bit_cast<Lanes>(odds(a, b)),
+          std::bit_cast<Lanes>(evens(c, d)), std::bit_cast<Lanes>(odds(c, d))};
+#else
+  const Row a = load_row(at(0)), b = load_row(at(1));
+  return {std::bit_cast<Lanes>(evens(a.low, b.low)), std::bit_cast<Lanes>(odds(a.low, b.low)),
+          std::bit_cast<Lanes>(evens(a.high, b.high)), std::bit_cast<Lanes>(odds(a.high, b.high))};
+#endif
+}
+
+/// The way back: four doubles per lane, row by row. \param rows  lanes x 4, filled
+inline void scatter_four(const std::array<Lanes, 4>& in, std::array<Row, lanes>& rows) {
+  using namespace detail;
+#if defined(__AVX512F__)
+  const auto eight = [&](std::size_t k) { return std::bit_cast<Eight>(in[k]); };
+  const Eight even01 = evens(eight(0), eight(1)), odd01 = odds(eight(0), eight(1)),
+              even23 = evens(eight(2), eight(3)), odd23 = odds(eight(2), eight(3));
+  const auto put = [&](std::size_t first, Eight x, Eight y) {  // lanes first, + 2, + 4, + 6
+    const Eight low = __builtin_shufflevector(x, y, 0, 1, 8, 9, 2, 3, 10, 11),
+                high = __builtin_shufflevector(x, y, 4, 5, 12, 13, 6, 7, 14, 15);
+    rows[first] = __builtin_shufflevector(low, low, 0, 1, 2, 3);
+    rows[first + 2] = __builtin_shufflevector(low, low, 4, 5, 6, 7);
+    rows[first + 4] = __builtin_shufflevector(high, high, 0, 1, 2, 3);
+    rows[first + 6] = __builtin_shufflevector(high, high, 4, 5, 6, 7);
+  };
+  put(0, even01, even23);
+  put(1, odd01, odd23);
+#elif defined(__AVX__)
+  const auto four = [&](std::size_t k) { return std::bit_cast<Four>(in[k]); };
+  const Four even01 = evens(four(0), four(1)), odd01 = odds(four(0), four(1)),
+             even23 = evens(four(2), four(3)), odd23 = odds(four(2), four(3));
+  rows[0] = __builtin_shufflevector(even01, even23, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5);
+  rows[2] = __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
+  rows[3] = __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7);
+#else
+  const auto two = [&](std::size_t k) { return std::bit_cast<Two>(in[k]); };
+  rows[0] = {evens(two(0), two(1)), evens(two(2), two(3))};
+  rows[1] = {odds(two(0), two(1)), odds(two(2), two(3))};
+#endif
+}
+
+}  // namespace floe
