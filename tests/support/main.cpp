@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   floe::Mpi mpi(argc, argv);
   int failed = 0;
   {
-    floe::Session session(argc, argv, "");
+    floe::Session session(argv[0]);
     if (floe::rank() != 0) {
       auto& listeners = testing::UnitTest::GetInstance()->listeners();
       delete listeners.Release(listeners.default_result_printer());
