@@ -247,12 +247,17 @@ class SceneParser {
   std::size_t expanded_ = 0;  ///< bytes that aliases have stood for
 };
 
-std::string read_file(const std::string& path) {
+using NearTo = std::function<std::string(const std::string&)>;
+
+std::string read_file(const std::string& path, const NearTo& near_to) {
   const auto refuse = [&](const std::string& why) {
     throw InputError("scene " + shown(path) + ": " + why);
   };
   struct stat status {};
-  if (stat(path.c_str(), &status) != 0) refuse(std::strerror(errno));
+  if (stat(path.c_str(), &status) != 0) {
+    const std::string why = std::strerror(errno);
+    refuse(why + (near_to ? near_to(path) : ""));
+  }
   if (!S_ISREG(status.st_mode))
     refuse(S_ISDIR(status.st_mode) ? "is a directory, not a file" : "is not a regular file");
   if (static_cast<std::size_t>(status.st_size) > largest_scene)
@@ -282,11 +287,11 @@ GivenOptions parse_scene(const std::string& path, const std::string& text, Sourc
   return SceneParser(path, text, source).parse();
 }
 
-GivenOptions read_scene_text(const std::string& path, MPI_Comm comm) {
+GivenOptions read_scene_text(const std::string& path, MPI_Comm comm, const NearTo& near_to) {
   std::string text, verdict;
   if (rank(comm) == 0) {
     try {
-      text = read_file(path);
+      text = read_file(path, near_to);
     } catch (const InputError& error) {
       verdict = error.what();
     }

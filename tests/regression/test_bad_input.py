@@ -291,7 +291,6 @@ class BadInput(unittest.TestCase):
         self.finish()
 
     def test_scene_files(self):
-        self.on_ranks("no scene", [], "usage", lambda folder: None)
         self.on_ranks("an option in place of the scene", ["-check"], "usage", lambda folder: None)
         self.on_ranks("missing file", ["missing.yaml"], "missing.yaml", lambda folder: None)
         self.on_ranks("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())

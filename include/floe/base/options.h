@@ -188,9 +188,10 @@ void reject_unused_options(const std::set<std::string>& exempt = {});
 /// end.
 void warn_unused_options();
 
-/// A table as text for a terminal, and as Markdown.
+/// A table as text for a terminal, as Markdown, and as part of a man page (groff_man(7)).
 std::string help_text(std::span<const OptionSpec> table);
 std::string help_markdown(std::span<const OptionSpec> table);
+std::string help_man(std::span<const OptionSpec> table);
 
 /// Help of one topic: a section ("sheet"), a family of keys ("obstacle_leg") or a key in full
 /// ("sheet_length", "sheet: length"); empty if there is no such thing.

@@ -3,6 +3,7 @@
 /// line. What is no scene ends with one line that names file and line.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "floe/base/given.h"
@@ -20,6 +21,8 @@ GivenOptions parse_scene(const std::string& path, const std::string& text,
 
 /// The same of a file, which rank 0 reads for all ranks. Collective.
 /// \throws InputError also if it is not a regular file, cannot be read or is too large
-GivenOptions read_scene_text(const std::string& path, MPI_Comm comm = MPI_COMM_WORLD);
+/// \param near_to  words to be added to the message if there is no such file, as a similar name
+GivenOptions read_scene_text(const std::string& path, MPI_Comm comm = MPI_COMM_WORLD,
+                             const std::function<std::string(const std::string&)>& near_to = {});
 
 }  // namespace floe
