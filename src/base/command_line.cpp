@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t longest_option = 120;
 
 /// PETSc wants true or false for these, or aborts.
-constexpr std::array<std::string_view, 4> flags_of_petsc{"options_monitor", "options_monitor_cancel",
-                                                         "skip_petscrc", "petsc_ci"};
+constexpr std::array<std::string_view, 4> flags_of_petsc{
+    "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci"};
 
 void check_option(std::string_view word, std::string_view value) {
   const std::string shown_word = shown(word);
@@ -39,8 +39,7 @@ Help wants_help(int argc, const char* const* argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
     const bool has_topic = k + 1 < argc && !is_option_word(argv[k + 1]);
-    if (word == "-help" || word == "--help" || word == "-h")
-      return {Help::text, has_topic ? argv[k + 1] : ""};
+    if (word == "-help") return {Help::text, has_topic ? argv[k + 1] : ""};
     if (word == "-help_markdown") return {Help::markdown, ""};
   }
   return {};

@@ -91,9 +91,8 @@ std::string petsc_name(std::string_view name) {
 }
 
 bool reads_from_elsewhere(std::string_view name) {
-  constexpr std::array<std::string_view, 5> words{"options_file", "options_file_yaml",
-                                                  "options_string_yaml", "prefix_push",
-                                                  "prefix_pop"};
+  constexpr std::array<std::string_view, 5> words{
+      "options_file", "options_file_yaml", "options_string_yaml", "prefix_push", "prefix_pop"};
   return std::find(words.begin(), words.end(), name) != words.end();
 }
 

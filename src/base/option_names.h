@@ -13,7 +13,8 @@ namespace floe {
 /// PETSc cuts longer names (PETSC_MAX_OPTION_NAME) in silence.
 inline constexpr std::size_t longest_petsc_option = 60;
 
-/// Whether a word of a command line is an option: a dash and a letter (-0.5, -inf and - are values).
+/// Whether a word of a command line is an option: a dash and a letter (-0.5, -inf and - are
+/// values).
 bool is_option_word(std::string_view word);
 
 /// PETSc does not tell upper from lower case: the name in lower case if it is then one of PETSc's.

@@ -108,8 +108,8 @@ Bounds bounds_of(std::string_view allowed) {
     const std::string_view term = rest.substr(0, comma);
     const auto blank = term.find(' ');
     const std::string_view sign = term.substr(0, blank);
-    const auto value = blank == std::string_view::npos ? std::nullopt
-                                                       : to_number(term.substr(blank + 1));
+    const auto value =
+        blank == std::string_view::npos ? std::nullopt : to_number(term.substr(blank + 1));
     if (!value || (sign != ">" && sign != ">=" && sign != "<" && sign != "<="))
       throw std::logic_error("table of options: range '" + std::string(allowed) + "'");
     (sign[0] == '>' ? bounds.least : bounds.most) = *value;

@@ -51,15 +51,6 @@ std::string in_brackets(const std::string& place) {
   return place.empty() ? "" : " (" + place + ")";
 }
 
-/// "a", "a and b", "a, b and 7 more".
-std::string some_of(const std::vector<std::string>& items) {
-  constexpr std::size_t most = 6;
-  std::string text;
-  for (std::size_t k = 0; k < std::min(most, items.size()); ++k) text += (k ? ", " : "") + items[k];
-  if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
-  return text;
-}
-
 std::string shortest(double value) {
   std::array<char, 32> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
@@ -80,9 +71,7 @@ Options::Options(std::span<const OptionSpec> table, const UserOptions& user, boo
     : table_(table), collect_idle_(collect_idle) {
   index_table();
   sort_given(user.merged());
-  collect_idle_ = collect_idle_ || std::any_of(given_.begin(), given_.end(), [](const auto& entry) {
-                    return entry.second.source == Source::command_line;
-                  });
+  collect_idle_ = collect_idle_ || has_command_line();
   read_names();
   for (const auto& [name, given] : given_) check_name_of(name, given);
   check_sections_of_names();
@@ -164,7 +153,8 @@ void Options::read_names() {
     const std::string value = reading.value.value_or("");
     const auto list = to_list(value);
     std::set<std::string> small;  // two names that differ in case only would be mistaken
-    for (const std::string& name : list.value_or(std::vector<std::string>{})) small.insert(lower(name));
+    for (const std::string& name : list.value_or(std::vector<std::string>{}))
+      small.insert(lower(name));
     const bool distinct = list && small.size() == list->size();
     if (!distinct || !std::all_of(list->begin(), list->end(), is_name))
       refuse_value(line, reading.label, value, reading.place);
@@ -223,6 +213,11 @@ bool Options::on_command_line(std::string_view key, std::string_view name) const
   return found != nullptr && found->source == Source::command_line;
 }
 
+bool Options::has_command_line() const {
+  return std::any_of(given_.begin(), given_.end(),
+                     [](const auto& entry) { return entry.second.source == Source::command_line; });
+}
+
 bool Options::given_section(std::string_view section) const {
   for (const OptionSpec* line : by_section_.at(section)) {
     if (has_name(line->key) ? !names(section).empty() : given(line->key)) return true;
@@ -236,7 +231,8 @@ bool Options::section_on_command_line(std::string_view section) const {
   }
   if (!named_.contains(section)) return false;
   const std::string front = std::string(section) + "_";
-  for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front); ++at) {
+  for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front);
+       ++at) {
     if (at->second.source == Source::command_line) return true;
   }
   return false;
@@ -254,6 +250,14 @@ void Options::refuse_one(std::string_view key, std::string_view name, std::strin
     keep_idle(option_name(key, name), *found, option_label(key, name), why);
 }
 
+void Options::refuse_part(std::string_view key, std::string_view name, const std::string& label,
+                          const std::string& why) {
+  const Given* found = find(key, name);
+  const bool of_scene = found != nullptr && found->source != Source::command_line;
+  if (!of_scene || !collect_idle_) throw InputError(label + ": " + why);
+  idle_.push_back({label, why});
+}
+
 void Options::refuse(std::string_view key, std::string_view why) {
   if (by_key_.contains(key)) return refuse_one(key, {}, why);
   for (const OptionSpec* line : by_section_.at(key)) {
@@ -262,7 +266,8 @@ void Options::refuse(std::string_view key, std::string_view why) {
   if (!named_.contains(key)) return;
   // Of a section with names only these are told: "obstacle: names".
   const std::string front = std::string(key) + "_";
-  for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front); ++at) {
+  for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front);
+       ++at) {
     const auto [line, name] = match(at->first);
     if (name.empty()) continue;
     if (at->second.source == Source::command_line)
@@ -278,7 +283,8 @@ std::string_view Options::one_of(std::string_view a, std::string_view b, std::st
   if (one->source == other->source) throw InputError(both);
   const bool first_wins = one->source == Source::command_line;
   const std::string_view winner = first_wins ? a : b, loser = first_wins ? b : a;
-  refuse_one(loser, name, "'" + option_label(winner, name) + "' of the command line takes its place");
+  refuse_one(loser, name,
+             "'" + option_label(winner, name) + "' of the command line takes its place");
   return winner;
 }
 
@@ -378,7 +384,8 @@ void Options::read_numbers(std::string_view key, std::string_view name, std::spa
   const Reading reading = read(key, name);
   const std::string text = reading.value.value_or("");
   const auto list = to_list(text);
-  if (!list || list->size() != values.size()) refuse_value(reading.spec, reading.label, text, reading.place);
+  if (!list || list->size() != values.size())
+    refuse_value(reading.spec, reading.label, text, reading.place);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const auto value = to_number((*list)[k]);
     if (!value || !in_range(*value, reading.spec.allowed))
@@ -410,11 +417,16 @@ void Options::refuse_unread() {
   }
 }
 
+std::string Options::petsc(std::string_view name) const {
+  const auto found = petsc_.find(name);
+  return found == petsc_.end() ? "" : found->second.value;
+}
+
 void Options::leave_out(std::string_view family, bool of_scene) {
   std::erase_if(petsc_, [&](const auto& entry) {
     const auto& [name, given] = entry;
-    const bool drop = given.source == Source::environment ||
-                      (given.source == Source::scene && of_scene);
+    const bool drop =
+        given.source == Source::environment || (given.source == Source::scene && of_scene);
     if (!drop || !name.starts_with(family)) return false;
     check(PetscOptionsClearValue(nullptr, ("-" + name).c_str()));
     if (given.source == Source::environment) {
@@ -450,6 +462,14 @@ std::string Options::environment_remark() const {
   if (taken.empty() && left.empty()) return {};
   return "options of the environment: " + (taken.empty() ? "none taken" : some_of(taken)) +
          (left.empty() ? "" : "; not taken: " + some_of(left));
+}
+
+std::string some_of(const std::vector<std::string>& items) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, items.size()); ++k) text += (k ? ", " : "") + items[k];
+  if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
+  return text;
 }
 
 void throw_verdict(std::string verdict, MPI_Comm comm) {

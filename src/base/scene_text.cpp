@@ -51,11 +51,12 @@ class Event {
   }
   bool is_plain() const { return event_.data.scalar.style == YAML_PLAIN_SCALAR_STYLE; }
   std::string anchor() const {
-    const yaml_char_t* name = type() == YAML_SCALAR_EVENT           ? event_.data.scalar.anchor
-                              : type() == YAML_SEQUENCE_START_EVENT ? event_.data.sequence_start.anchor
-                              : type() == YAML_MAPPING_START_EVENT  ? event_.data.mapping_start.anchor
-                              : type() == YAML_ALIAS_EVENT          ? event_.data.alias.anchor
-                                                                    : nullptr;
+    const yaml_char_t* name =
+        type() == YAML_SCALAR_EVENT           ? event_.data.scalar.anchor
+        : type() == YAML_SEQUENCE_START_EVENT ? event_.data.sequence_start.anchor
+        : type() == YAML_MAPPING_START_EVENT  ? event_.data.mapping_start.anchor
+        : type() == YAML_ALIAS_EVENT          ? event_.data.alias.anchor
+                                              : nullptr;
     return name ? reinterpret_cast<const char*>(name) : "";
   }
   /// A tag of the scene's own; those of YAML itself (!!str) say nothing new.
@@ -138,8 +139,8 @@ class SceneParser {
   [[noreturn]] void refuse_syntax() const {
     const std::string problem = parser_.problem ? parser_.problem : "not YAML";
     if (parser_.error == YAML_READER_ERROR) {
-      const auto end = text_.begin() + static_cast<std::ptrdiff_t>(
-                                           std::min(parser_.problem_offset, text_.size()));
+      const auto end = text_.begin() +
+                       static_cast<std::ptrdiff_t>(std::min(parser_.problem_offset, text_.size()));
       const auto line = 1 + std::count(text_.begin(), end, '\n');
       refuse(static_cast<std::size_t>(line), "not a text in UTF-8: " + problem);
     }
@@ -158,7 +159,8 @@ class SceneParser {
     const std::string word = event.text();
     const auto fits = [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); };
     if (word.empty() || !std::all_of(word.begin(), word.end(), fits))
-      refuse(event.line(), shown(word) + " is not a key: keys are words of letters, digits and '_'");
+      refuse(event.line(),
+             shown(word) + " is not a key: keys are words of letters, digits and '_'");
     std::string joined = prefix + word;
     if (!std::isalpha(static_cast<unsigned char>(joined[0])))
       refuse(event.line(), shown(word) + " is not a key: keys begin with a letter");

@@ -26,7 +26,7 @@ constexpr auto usage =
     "       mpiexec -n 4 floe SCENE.yaml ...   the same on four processors\n"
     "       floe TOOL [arguments]              draws results, makes lattices: see floe help\n"
     "       floe help [TOPIC]                  the tools; more about a tool or about options\n"
-    "       floe -help                         all options of scenes: default, unit, range\n"
+    "       floe -help [SECTION or KEY]        options of scenes: default, unit, range\n"
     "       floe --version                     version of floe and of its libraries\n";
 
 /// Of the launcher's variables the first that is there.
@@ -86,7 +86,10 @@ std::string help() {
     line.resize(20, ' ');
     text += line + std::string(tool.line) + "\n";
   }
-  return text + "\nTopics: options (all options of scenes), version.\n";
+  return text +
+         "\nTopics: options (all options of scenes), a section or key of scenes (floe help "
+         "sheet),\n"
+         "version.\n";
 }
 
 int help(std::string_view topic) {
@@ -98,6 +101,8 @@ int help(std::string_view topic) {
     std::array<char*, 3> words{name.data(), option.data(), nullptr};
     return run_subcommand(words.data());
   }
+  if (const std::string keys = options_topic(std::string(topic)); !keys.empty())
+    return say(keys, done);
   std::vector<std::string_view> known{"options", "version"};
   for (const Subcommand& tool : subcommands()) known.push_back(tool.name);
   const std::string near = nearest_word(topic, known);
@@ -137,6 +142,16 @@ std::optional<int> answer(int argc, char** argv) {
   const auto asks = [](std::string_view word) { return is_one_of(word, {"-h", "--help"}); };
   if (std::any_of(argv + 2, argv + argc, asks)) return say(introduction(), done);
   return {};
+}
+
+int print_options(const Help& help) {
+  if (help.kind == Help::markdown) return say(options_markdown(), done);
+  if (help.topic.empty()) return say(options_help(), done);
+  const std::string keys = options_topic(help.topic);
+  if (!keys.empty()) return say(keys, done);
+  return say(
+      "floe: -help: there is no section or key '" + help.topic + "' (floe -help lists them all)\n",
+      bad_input, stderr);
 }
 
 std::string near_scene(const std::string& scene) {

@@ -15,7 +15,7 @@ struct Help {
   std::string topic;  ///< "floe -help sheet": one section or key only; empty: all
 };
 
-/// Looks for -help (or --help, -h) and -help_markdown anywhere on the command line; needs no scene.
+/// Looks for -help and -help_markdown anywhere on the command line; needs no scene.
 /// The word after it, if it is no option, is the topic.
 Help wants_help(int argc, const char* const* argv);
 

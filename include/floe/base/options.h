@@ -44,8 +44,8 @@ struct OptionSpec {
   /// option.
   std::string_view fallback;
   std::string_view unit;  ///< empty: a pure number, or no number
-  /// Numbers: a lower and an upper bound, as in ">= 0, <= 1e7" or "> -1, < 0.5"; words: "one | two |
-  /// three".
+  /// Numbers: a lower and an upper bound, as in ">= 0, <= 1e7" or "> -1, < 0.5"; words: "one | two
+  /// | three".
   std::string_view allowed;
   std::string_view doc;
   int count = 1;  ///< of Kind::numbers
@@ -78,11 +78,16 @@ class Options {
   /// Whether it has been given on the command line, or anything of the section has.
   bool on_command_line(std::string_view key, std::string_view name = {}) const;
   bool section_on_command_line(std::string_view section) const;
+  /// Whether the command line gives any option of floe's.
+  bool has_command_line() const;
   /// `key` (an option or a whole section) has no effect: if it has been given, throws "KEY: WHY" or
   /// keeps it in idle().
   void refuse(std::string_view key, std::string_view why);
   /// The same for one option, which has been given.
   void refuse_one(std::string_view key, std::string_view name, std::string_view why);
+  /// The same for a part of the value of an option, which is `label` in the message.
+  void refuse_part(std::string_view key, std::string_view name, const std::string& label,
+                   const std::string& why);
   /// Of two keys that exclude each other, the one that has been given, or nothing if neither has.
   /// If both have, the one of the command line where the other is the scene's (which is then idle),
   /// else throws `both`.
@@ -117,6 +122,8 @@ class Options {
   /// Every option as read so far, and PETSc's as given, as YAML that repeats the run.
   std::string yaml() const;
 
+  /// Value of an option of PETSc's; empty if it has none or is not given.
+  std::string petsc(std::string_view name) const;
   /// Takes PETSc's options that begin with `family` out, here and in PETSc's table, if they are of
   /// the environment (or of the scene, with `of_scene`): nothing in this run could ask for them.
   void leave_out(std::string_view family, bool of_scene);
@@ -168,12 +175,15 @@ class Options {
   GivenOptions given_;    ///< ours
   GivenOptions petsc_;    ///< PETSc's
   GivenOptions ignored_;  ///< of the environment, neither
-  std::map<std::string, std::vector<std::string>, std::less<>> names_;       ///< by section
+  std::map<std::string, std::vector<std::string>, std::less<>> names_;  ///< by section
   std::map<std::string, std::set<std::string, std::less<>>, std::less<>> known_names_;
   std::map<std::string, std::string, std::less<>> read_;  ///< values as read, by option
   std::set<std::string, std::less<>> idle_options_;
   std::vector<IdleKey> idle_;
 };
+
+/// "a, b and 7 more": at most six of the items.
+std::string some_of(const std::vector<std::string>& items);
 
 /// Throws InputError with rank 0's verdict on all ranks, unless it is empty: for what one rank
 /// looks at and all must agree on. Collective; works before PetscInitialize too.
