@@ -28,7 +28,7 @@ bool is_environment_option(std::string_view name);
 /// Options by which PETSc would read further options before anybody can look at them.
 bool reads_from_elsewhere(std::string_view name);
 
-/// Whether PETSc (3.18) or one of the packages under it could ask for an option of this name.
+/// Whether PETSc or one of the packages under it could ask for an option of this name.
 bool is_petsc_option(std::string_view name);
 
 /// The known name nearest to `name` (joined with "_"): a key of the table as in YAML, or, if that

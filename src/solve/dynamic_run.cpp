@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "floe/base/ranks.h"
 #include "solve/numbers.h"
 #include "solve/text.h"
 
@@ -71,8 +72,7 @@ void DynamicRun<Space>::replan(TS ts, double wanted) {
 /// All that a run goes on from. Collective.
 template <class Space>
 void DynamicRun<Space>::remember(Memory& memory) {
-  const double mine = largest_;
-  MPI_Allreduce(&mine, &largest_, 1, MPI_DOUBLE, MPI_MAX, model_.part().comm);
+  largest_ = largest_over_ranks(largest_, model_.part().comm);
   memory.enter("run");
   std::string type = type_;
   memory.common("type", type);
@@ -183,7 +183,16 @@ bool DynamicRun<Space>::moved(double time, double speed2) {
   ++done_;
   state_.time = time_ = time;
   largest_ = std::isfinite(speed2) ? std::max(largest_, speed2) : speed2;
+  audit("a step");
   return done_ % check_every != 0 || within_limits();
+}
+
+template <class Space>
+void DynamicRun<Space>::audit(const char* where) const {
+  if (!auditing()) return;
+  floe::audit(model_.part().comm, where, objects(),
+              std::array{time_, dt_, next_sample_, static_cast<double>(done_),
+                         static_cast<double>(steps_)});
 }
 
 template <class Space>
@@ -214,9 +223,7 @@ bool DynamicRun<Space>::finish() {
 /// Collective: all ranks agree.
 template <class Space>
 bool DynamicRun<Space>::within_limits() {
-  double mine = std::isfinite(largest_) ? largest_ : std::numeric_limits<double>::infinity(),
-         all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, model_.part().comm);
+  const double all = largest_over_ranks(largest_, model_.part().comm);
   if (std::sqrt(all) <= options_.velocity_limit) return true;
   why_ = (std::isfinite(all) ? "a velocity of " + text(std::sqrt(all)) + " m/s"
                              : std::string("a velocity that is not finite")) +

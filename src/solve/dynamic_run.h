@@ -10,7 +10,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "floe/base/audit.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/solve/integrator.h"
@@ -81,6 +83,10 @@ class DynamicRun {
   virtual Columns own_columns() const { return {}; }
   /// What the integrator itself takes along over a restart, beside records, time and dt.
   virtual void remember_own(Memory& memory) = 0;
+  /// Its PETSc objects, for audits.
+  virtual std::vector<PetscObject> objects() const { return {}; }
+  /// Compares the run's objects and its times over ranks, in audits. Collective then.
+  void audit(const char* where) const;
   /// What it does between the run's beginning and the first step; false: the run ends here.
   virtual bool first() { return true; }
 

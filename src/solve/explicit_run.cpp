@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "floe/base/ranks.h"
 #include "solve/text.h"
 
 namespace floe {
@@ -59,8 +60,7 @@ double ExplicitRun<Space>::fastest_rate() {
     if (const auto rate = force->fastest_rate(this->state())) rates.push_back(*rate);
   }
   if (rates.empty()) return 0;
-  MPI_Allreduce(MPI_IN_PLACE, rates.data(), static_cast<int>(rates.size()), MPI_DOUBLE, MPI_MAX,
-                this->model().part().comm);
+  largest_over_ranks(rates, this->model().part().comm);
   return std::accumulate(rates.begin(), rates.end(), 0.0);
 }
 

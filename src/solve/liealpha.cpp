@@ -1,13 +1,10 @@
 #include "solve/liealpha.h"
 
-// A new type has no other way into a TS. The layout is that of one release.
-#include <petsc/private/tsimpl.h>
-
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-static_assert(PETSC_VERSION_MAJOR == 3 && PETSC_VERSION_MINOR == 18,
-              "check the TS type against this PETSc");
+#include "solve/ts_type.h"
 
 namespace floe {
 namespace {
@@ -231,7 +228,7 @@ PetscErrorCode destroy(TS ts) noexcept {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode set_from_options(TS ts, PetscOptionItems* PetscOptionsObject) noexcept {
+PetscErrorCode set_from_options(TS ts, TsOptionItems PetscOptionsObject) noexcept {
   LieAlpha& me = of(ts);
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "Generalised-alpha method on the rotation group");
@@ -302,6 +299,12 @@ void set_liealpha_problem(TS ts, const LieAlphaProblem* problem) { of(ts).proble
 LieAlphaMemory liealpha_memory(TS ts) {
   const LieAlpha& me = of(ts);
   return {me.a0, me.own0, me.last_step, ts->adapt->timestepjustdecreased};
+}
+
+std::vector<Vec> liealpha_vectors(TS ts) {
+  std::vector<Vec> all;
+  for (Vec* v : of(ts).vectors()) all.push_back(*v);
+  return all;
 }
 
 void resume_liealpha(TS ts, const LieAlphaMemory& memory) {

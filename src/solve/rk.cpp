@@ -70,6 +70,7 @@ class RkRun final : public ExplicitRun<Spatial> {
     memory.share("boundary_work", boundary_work_);
   }
   StableStep find_stable_step() override;
+  std::vector<PetscObject> objects() const override { return {object_of(solution_.get())}; }
   void step_changed(TS, double) override {
     if (is_adaptive()) limit_steps();
   }

@@ -88,6 +88,7 @@ class CommandLine(unittest.TestCase):
         if LOADER.exists():
             self.run_it("make_lattice", "block", "b.h5", floe=(LOADER, FLOE))
         shutil.copy(FLOE, self.folder / "alone")
+        (self.folder / "lib").symlink_to(FLOE.parent / "lib")
         error = self.run_it("plot_load", code=1, floe=("./alone",))[1]
         self.assertRegex(error, r"^floe plot_load: the tools that belong to \S*/alone are not there\n$")
 
