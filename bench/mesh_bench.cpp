@@ -72,6 +72,6 @@ BENCHMARK(sheet_from_cells)->Unit(benchmark::kMillisecond);
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   const Mpi mpi(argc, argv);
-  const Session session(argc, argv, "");
+  const Session session(argv[0]);
   benchmark::RunSpecifiedBenchmarks();
 }

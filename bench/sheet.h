@@ -57,7 +57,7 @@ struct Sheet {
 inline int run(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   const Mpi mpi(argc, argv);
-  const Session session(argc, argv, "");
+  const Session session(argv[0]);
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "floe/base/command_line.h"
+#include "floe/base/environment.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
@@ -88,7 +90,7 @@ int run(const floe::Scene& scene, Start& start) {
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
   const auto open = [&] {
-    reject_unused_options();
+    reject_unused_options(scene.unused_options);
     if (rank() == 0) folded.unfold(lattice);  // others need no geometry but places
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
                    std::move(lattice), model, loads, scene.options_yaml,
@@ -139,12 +141,12 @@ int run(const floe::Scene& scene, Start& start) {
   return result.done ? done : result.stopped ? stopped : failed;
 }
 
-int run(const std::string& path) {
+int run(const std::string& path, const floe::UserOptions& options) {
   using namespace floe;
   Start start{MPI_Wtime(), {}, {}, {}};
 
   // 1. The scene
-  Scene scene = read_scene(path);
+  Scene scene = read_scene(path, options);
   check_reports(scene);
 
   // 2. Sheet -> lattice, and what it does not need
@@ -152,6 +154,7 @@ int run(const std::string& path) {
   set_initial(scene, start.lattice);
   if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
   start.skips = skips_of(scene, start.lattice);
+  for (const std::string& remark : scene.remarks) say(remark + "\n");
   const std::string& why = start.skips.needs_space;
   say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
 
@@ -164,24 +167,18 @@ int run(const std::string& path) {
 
 int main(int argc, char** argv) {
   if (const auto code = floe::program::answer(argc, argv)) return *code;
-  switch (floe::wants_help(argc, argv)) {
-    case floe::Help::text:
-      std::fputs(floe::options_help().c_str(), stdout);
-      return done;
-    case floe::Help::markdown:
-      std::fputs(floe::options_markdown().c_str(), stdout);
-      return done;
-    case floe::Help::none:
-      break;
-  }
+  if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
+    return floe::program::print_options(help);
   floe::Mpi mpi(argc, argv);
   try {
-    const std::string path = floe::check_command_line(argc, argv);
-    floe::read_scene_text(path, MPI_COMM_WORLD, floe::program::near_scene);
-    floe::Session session(argc, argv, path);
+    const floe::CommandLine line = floe::read_command_line(argc, argv);
+    const floe::UserOptions options{
+        floe::read_environment(line.petscrc),
+        floe::read_scene_text(line.scene, MPI_COMM_WORLD, floe::program::near_scene), line.options};
+    floe::Session session(argv[0], options);
     give_memory_back();
     try {
-      return run(path);
+      return run(line.scene, options);
     } catch (const floe::InputError& error) {  // before PETSc ends, so that only rank 0 speaks
       say(std::string("floe: ") + error.what() + "\n", stderr);
       return bad_input;

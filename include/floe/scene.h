@@ -4,10 +4,12 @@
 #pragma once
 
 #include <array>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "floe/base/given.h"
 #include "floe/contact/law.h"
 #include "floe/contact/obstacle.h"
 #include "floe/forces/beam.h"
@@ -33,6 +35,8 @@ struct Region {
 struct Cut {
   std::string name;
   Point2 from{}, to{};  ///< [m]
+  /// The command line changed the sheet under it, so that it may cross no beam any more.
+  bool may_miss = false;
 };
 
 struct Initial {
@@ -84,6 +88,7 @@ struct Scene {
   std::vector<Initial> initials;
   struct {
     bool tension = false, bending = false;
+    bool may_go = false;  ///< asked for by the file, under a command line that may prevent it
   } report;
   struct {
     std::string dir;     ///< default out/NAME
@@ -97,16 +102,22 @@ struct Scene {
   } checkpoint;
   bool check_only = false;
   std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
+  std::vector<std::string> remarks;      ///< for the first lines of a run
+  std::set<std::string> unused_options;  ///< PETSc's that no error says if nothing asks for them
 };
 
-/// Reads the scene from PETSc's options database (the file and the command line are in it by then).
+/// Reads the scene from what the user gave. Collective.
+/// \param path  of the scene's file: its stem is the scene's name
 /// \throws InputError with one line that names the key, the value and what is allowed.
-Scene read_scene(const std::string& path);
+Scene read_scene(const std::string& path, const UserOptions& user);
 
 /// The text of `floe -help`, the same table as Markdown (docs/options.md), and as part of the man
 /// page.
 std::string options_help();
 std::string options_markdown();
+
+/// Help of one section or key ("sheet", "sheet_length"); empty if there is no such thing.
+std::string options_topic(const std::string& topic);
 std::string options_man();
 
 }  // namespace floe

@@ -82,6 +82,30 @@ int distance_to_key(std::string_view name, std::string_view key) {
 
 }  // namespace
 
+bool is_option_word(std::string_view word) {
+  if (word.size() < 2 || word[0] != '-') return false;
+  if (word[1] == '-') return true;
+  return std::isalpha(static_cast<unsigned char>(word[1])) && word != "-inf" && word != "-nan";
+}
+
+std::string petsc_name(std::string_view name) {
+  std::string small = lower(name);
+  return is_petsc_option(small) ? small : std::string(name);
+}
+
+bool reads_from_elsewhere(std::string_view name) {
+  constexpr std::array<std::string_view, 5> words{
+      "options_file", "options_file_yaml", "options_string_yaml", "prefix_push", "prefix_pop"};
+  return std::find(words.begin(), words.end(), name) != words.end();
+}
+
+bool is_environment_option(std::string_view name) {
+  if (!is_petsc_option(name) || reads_from_elsewhere(name) || name.size() > longest_petsc_option)
+    return false;
+  if (name == "version" || name == "skip_petscrc") return false;  // they ask for another run
+  return !name.starts_with("ts_") || name.starts_with("ts_monitor") || name == "ts_view";
+}
+
 bool is_petsc_option(std::string_view name) {
   return std::any_of(petsc_families.begin(), petsc_families.end(),
                      [&](std::string_view family) { return belongs(name, family); });
@@ -97,9 +121,7 @@ std::string nearest_petsc_option(std::string_view name) {
 }
 
 std::string nearest_option(std::string_view option, std::span<const OptionSpec> table) {
-  std::string name(option);
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lower(option);
   std::string nearest;
   int best = std::max(2, static_cast<int>(name.size()) / 3) + 1;  // farther is no help
   const auto take = [&](std::string candidate, int far) {

@@ -2,6 +2,7 @@
 // YAML.
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 
 #include "floe/base/options.h"
 #include "option_values.h"
@@ -70,8 +71,8 @@ std::string Options::yaml() const {
       std::for_each(line, end, [&](const OptionSpec& part) { put(part, name); });
     line = end - 1;
   }
-  for (const auto& [name, value] : petsc_)
-    text += name + (value.empty() ? ":" : ": " + quoted(value)) + "\n";
+  for (const auto& [name, option] : petsc_)
+    text += name + (option.value.empty() ? ":" : ": " + quoted(option.value)) + "\n";
   return text;
 }
 
@@ -85,6 +86,26 @@ std::string help_text(std::span<const OptionSpec> table) {
             fallback_text(line) + "\n";
   }
   return text;
+}
+
+std::string help_topic(std::span<const OptionSpec> table, std::string_view topic) {
+  std::string wanted(topic.substr(topic.starts_with('-') ? 1 : 0));
+  while (wanted.ends_with(':')) wanted.pop_back();
+  wanted = option_name(wanted);
+  // NAME may be filled in: "obstacle_leg_shape".
+  const auto fits = [&](const OptionSpec& line, std::string_view option) {
+    const std::string name = option_name(line.key);
+    if (name == option || name.starts_with(std::string(option) + "_")) return true;
+    if (!has_name(line.key)) return false;
+    const auto first = option.find('_');
+    if (option.substr(0, first) != section_of(line.key)) return false;
+    const auto second = option.find('_', first + 1);
+    return second == std::string_view::npos || option.substr(second + 1) == last_word(line.key);
+  };
+  std::vector<OptionSpec> lines;
+  std::copy_if(table.begin(), table.end(), std::back_inserter(lines),
+               [&](const OptionSpec& line) { return fits(line, wanted); });
+  return help_text(lines);
 }
 
 std::string help_markdown(std::span<const OptionSpec> table) {

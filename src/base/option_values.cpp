@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace floe {
@@ -83,11 +84,9 @@ std::optional<double> to_number(std::string_view text) {
 std::optional<std::int64_t> to_integer(std::string_view text) { return parse<std::int64_t>(text); }
 
 std::optional<bool> to_flag(std::string_view text) {
-  std::string word(trimmed(text));
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (word.empty() || word == "true" || word == "yes" || word == "1") return true;
-  if (word == "false" || word == "no" || word == "0") return false;
+  const std::string word = lower(trimmed(text));
+  if (word.empty() || word == "true" || word == "yes" || word == "on" || word == "1") return true;
+  if (word == "false" || word == "no" || word == "off" || word == "0") return false;
   return {};
 }
 
@@ -101,20 +100,43 @@ std::vector<std::string_view> choices_of(std::string_view allowed) {
   }
 }
 
-bool in_range(double value, std::string_view allowed) {
-  if (allowed.empty()) return true;
-  if (allowed.starts_with("> ")) return value > to_number(allowed.substr(2)).value();
-  if (allowed.starts_with(">= ")) return value >= to_number(allowed.substr(3)).value();
-  if (allowed.starts_with("in (") && allowed.ends_with(")")) {
-    const auto bounds = to_list(allowed.substr(4, allowed.size() - 5)).value();
-    return value > to_number(bounds.at(0)).value() && value < to_number(bounds.at(1)).value();
+Bounds bounds_of(std::string_view allowed) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  Bounds bounds{-none, none, false, false};
+  for (std::string_view rest = allowed; !rest.empty();) {
+    const auto comma = rest.find(", ");
+    const std::string_view term = rest.substr(0, comma);
+    const auto blank = term.find(' ');
+    const std::string_view sign = term.substr(0, blank);
+    const auto value =
+        blank == std::string_view::npos ? std::nullopt : to_number(term.substr(blank + 1));
+    if (!value || (sign != ">" && sign != ">=" && sign != "<" && sign != "<="))
+      throw std::logic_error("table of options: range '" + std::string(allowed) + "'");
+    (sign[0] == '>' ? bounds.least : bounds.most) = *value;
+    (sign[0] == '>' ? bounds.above_least : bounds.below_most) = sign.size() == 1;
+    rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 2);
   }
-  throw std::logic_error("table of options: range '" + std::string(allowed) + "'");
+  return bounds;
+}
+
+bool in_range(double value, std::string_view allowed) {
+  const Bounds bounds = bounds_of(allowed);
+  return (bounds.above_least ? value > bounds.least : value >= bounds.least) &&
+         (bounds.below_most ? value < bounds.most : value <= bounds.most);
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
 }
 
 bool is_name(std::string_view word) {
-  const auto fits = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
-  return !word.empty() && word != "names" && std::all_of(word.begin(), word.end(), fits);
+  constexpr std::size_t longest = 40;
+  const auto fits = [](unsigned char c) { return c < 128 && std::isalnum(c); };
+  return !word.empty() && word.size() <= longest && word != "names" &&
+         std::all_of(word.begin(), word.end(), fits);
 }
 
 std::string allowed_text(const OptionSpec& spec) {
@@ -124,17 +146,17 @@ std::string allowed_text(const OptionSpec& spec) {
     case Kind::flag:
       return "true or false";
     case Kind::number:
-      return "a finite number" + range + unit;
+      return "a number" + range + unit;
     case Kind::integer:
       return "an integer" + range + unit;
     case Kind::numbers:
-      return std::to_string(spec.count) + " finite numbers" + range + unit;
+      return std::to_string(spec.count) + " numbers" + range + unit;
     case Kind::choice:
       return (choices_of(spec.allowed).size() > 1 ? "one of" + range : "the word" + range);
     case Kind::choices:
       return "a list of" + range + ", none twice";
     case Kind::names:
-      return "a list of names (lower-case letters and digits, none twice)";
+      return "a list of names (letters and digits, at most 40, none twice)";
     case Kind::text:
       return "a text";
   }

@@ -31,12 +31,20 @@ std::optional<std::int64_t> to_integer(std::string_view text);
 std::optional<bool> to_flag(std::string_view text);
 /// "one | two" -> one, two.
 std::vector<std::string_view> choices_of(std::string_view allowed);
+/// The bounds that OptionSpec::allowed sets to numbers: infinite where it sets none.
+struct Bounds {
+  double least, most;
+  bool above_least, below_most;  ///< the bound itself is not allowed
+};
+Bounds bounds_of(std::string_view allowed);
 /// Whether a number is in the range `allowed` of an OptionSpec.
 bool in_range(double value, std::string_view allowed);
-/// Lower-case letters and digits, at least one, and not the word "names" itself.
+/// Letters and digits, 1 to 40, and not the word "names" itself.
 bool is_name(std::string_view word);
+/// In lower case (ASCII).
+std::string lower(std::string_view text);
 
-/// What an option must be, in words: "a finite number > 0 [m]".
+/// What an option must be, in words: "a number > 0, <= 1e7 [m]".
 std::string allowed_text(const OptionSpec& spec);
 /// A value fit for one line of an error message: blanks for control characters, cut if long.
 std::string shown(std::string_view value);

@@ -26,42 +26,6 @@ Pairs unused_options() {
   return options;
 }
 
-std::string find_value(const std::string& option) {
-  const char* value = nullptr;
-  PetscBool found = PETSC_FALSE;
-  check(PetscOptionsFindPair(nullptr, nullptr, ("-" + option).c_str(), &value, &found));
-  return value ? value : "";
-}
-
-/// Options that PetscInitialize has used already (log_view and the like). PETSc gives them only as
-/// one line of text; a word counts as an option if PETSc knows it as a used one.
-Pairs used_options() {
-  char* all = nullptr;
-  check(PetscOptionsGetAll(nullptr, &all));
-  const std::string line(all);
-  check(PetscFree(all));
-  Pairs options;
-  std::istringstream words(line);
-  for (std::string word; words >> word;) {
-    if (word.size() < 2 || word[0] != '-') continue;
-    const std::string name = word.substr(1);
-    PetscBool used = PETSC_FALSE;
-    check(PetscOptionsUsed(nullptr, name.c_str(), &used));
-    if (used) options.emplace_back(name, find_value(name));
-  }
-  return options;
-}
-
-/// Whether `option` is this line's, for some NAME if it has one.
-bool is_option_of(const OptionSpec& line, std::string_view option) {
-  if (!has_name(line.key)) return option == option_name(line.key);
-  const std::string front = std::string(section_of(line.key)) + "_";
-  const std::string back = "_" + std::string(last_word(line.key));
-  return option.size() > front.size() + back.size() && option.starts_with(front) &&
-         option.ends_with(back) &&
-         is_name(option.substr(front.size(), option.size() - front.size() - back.size()));
-}
-
 bool is_value(std::string_view fallback) { return !fallback.empty() && fallback.front() != '('; }
 
 /// What PETSc asks for only while it ends.
@@ -78,9 +42,13 @@ bool is_viewer(std::string_view name) {
 }
 
 [[noreturn]] void refuse_value(const OptionSpec& spec, const std::string& label,
-                               std::string_view value) {
+                               std::string_view value, const std::string& place) {
   throw InputError(label + ": " + (value.empty() ? "no value given," : shown(value)) + " must be " +
-                   allowed_text(spec));
+                   allowed_text(spec) + place);
+}
+
+std::string in_brackets(const std::string& place) {
+  return place.empty() ? "" : " (" + place + ")";
 }
 
 std::string shortest(double value) {
@@ -91,49 +59,91 @@ std::string shortest(double value) {
 
 }  // namespace
 
-Options::Options(std::span<const OptionSpec> table) : table_(table) {
-  Pairs database = used_options();
-  const Pairs unused = unused_options();
-  database.insert(database.end(), unused.begin(), unused.end());
-  sort_given(database);
+GivenOptions UserOptions::merged() const {
+  GivenOptions all = environment;
+  for (const GivenOptions* stronger : {&scene, &command_line}) {
+    for (const auto& [name, given] : *stronger) all[name] = given;
+  }
+  return all;
+}
+
+Options::Options(std::span<const OptionSpec> table, const UserOptions& user, bool collect_idle)
+    : table_(table), collect_idle_(collect_idle) {
+  index_table();
+  sort_given(user.merged());
+  collect_idle_ = collect_idle_ || has_command_line();
   read_names();
-  for (const auto& [name, value] : given_) check_name_of(name);
+  for (const auto& [name, given] : given_) check_name_of(name, given);
   check_sections_of_names();
 }
 
-/// Ours into given_, PETSc's into petsc_. What is neither and has no value may be an empty section.
-void Options::sort_given(const Pairs& database) {
-  for (const auto& [name, value] : database) {
-    const bool ours = std::any_of(
-        table_.begin(), table_.end(),
-        [&option = name](const OptionSpec& line) { return is_option_of(line, option); });
-    if (ours) {
-      given_[name] = value;
-    } else if (is_section(name)) {
-      if (!value.empty() && value != "~" && value != "null")
-        throw InputError(name + ": is a section of options, not one with a value (" + shown(value) +
-                         ")");
-      find_value(name);  // marks it as used
-    } else if (is_petsc_option(name)) {
-      petsc_.emplace_back(name, value);
+void Options::index_table() {
+  for (const OptionSpec& line : table_) {
+    by_key_[line.key] = &line;
+    by_section_[section_of(line.key)].push_back(&line);
+    if (has_name(line.key)) {
+      named_[section_of(line.key)].push_back(&line);
     } else {
-      const std::string near = nearest_option(name, table_);
-      throw InputError(name + ": unknown option" +
-                       (near.empty() ? "" : "; the nearest known one is '" + near + "'") +
-                       " (floe -help lists them)");
+      by_option_[option_name(line.key)] = &line;
     }
   }
 }
 
+/// The line of the table that an option is of; none if there is no such line.
+Options::Match Options::match(std::string_view option) const {
+  if (const auto plain = by_option_.find(option); plain != by_option_.end())
+    return {plain->second, {}};
+  const auto first = option.find('_');
+  const auto second = first == std::string_view::npos ? first : option.find('_', first + 1);
+  if (second == std::string_view::npos) return {};
+  const auto lines = named_.find(option.substr(0, first));
+  const std::string_view name = option.substr(first + 1, second - first - 1);
+  if (lines == named_.end() || !is_name(name)) return {};
+  const std::string_view word = option.substr(second + 1);
+  for (const OptionSpec* line : lines->second) {
+    if (last_word(line->key) == word) return {line, name};
+  }
+  return {};
+}
+
+/// Ours into given_, PETSc's into petsc_. What is neither and has no value may be an empty section.
+void Options::sort_given(const GivenOptions& all) {
+  for (const auto& [name, given] : all) {
+    if (given.source == Source::environment) {
+      (is_environment_option(name) ? petsc_ : ignored_)[name] = given;
+    } else if (match(name).line != nullptr) {
+      given_[name] = given;
+    } else if (is_section(name)) {
+      if (!given.value.empty())
+        throw InputError(name + ": is a section of options, not one with a value (" +
+                         shown(given.value) + ")" + in_brackets(given.place));
+    } else if (is_petsc_option(name)) {
+      petsc_[name] = given;
+    } else {
+      refuse_unknown(name, given);
+    }
+  }
+}
+
+void Options::refuse_unknown(const std::string& option, const Given& given) const {
+  const std::string small = lower(option);
+  std::string hint;
+  if (small != option && (match(small).line != nullptr || is_section(small))) {
+    hint = "; keys are in lower case: '" + small + "'";
+  } else if (const std::string near = nearest_option(option, table_); !near.empty()) {
+    hint = "; the nearest known one is '" + near + "'";
+  }
+  throw InputError(option + ": unknown option" + hint + " (floe -help lists them)" +
+                   in_brackets(given.place));
+}
+
 /// "sheet", "boundary", "boundary_a".
 bool Options::is_section(std::string_view option) const {
-  return std::any_of(table_.begin(), table_.end(), [&](const OptionSpec& line) {
-    const std::string_view section = section_of(line.key);
-    if (section.empty()) return false;
-    if (option == section) return true;
-    return has_name(line.key) && option.starts_with(std::string(section) + "_") &&
-           is_name(option.substr(section.size() + 1));
-  });
+  const auto cut = option.find('_');
+  const std::string_view section = option.substr(0, cut);
+  if (section.empty() || !by_section_.contains(section)) return false;
+  return cut == std::string_view::npos ||
+         (named_.contains(section) && is_name(option.substr(cut + 1)));
 }
 
 void Options::read_names() {
@@ -142,27 +152,32 @@ void Options::read_names() {
     const Reading reading = read(line.key, {});
     const std::string value = reading.value.value_or("");
     const auto list = to_list(value);
-    const bool distinct = list && std::set(list->begin(), list->end()).size() == list->size();
+    std::set<std::string> small;  // two names that differ in case only would be mistaken
+    for (const std::string& name : list.value_or(std::vector<std::string>{}))
+      small.insert(lower(name));
+    const bool distinct = list && small.size() == list->size();
     if (!distinct || !std::all_of(list->begin(), list->end(), is_name))
-      refuse_value(line, reading.label, value);
+      refuse_value(line, reading.label, value, reading.place);
     if (!list->empty()) record(reading, value);
-    names_[std::string(section_of(line.key))] = *list;
+    const std::string section(section_of(line.key));
+    known_names_[section] = {list->begin(), list->end()};
+    names_[section] = *list;
   }
 }
 
 /// An option of a named section must belong to a listed name.
-void Options::check_name_of(std::string_view option) const {
-  const auto line = std::find_if(table_.begin(), table_.end(), [&](const OptionSpec& candidate) {
-    return has_name(candidate.key) && is_option_of(candidate, option);
-  });
-  if (line == table_.end()) return;
+void Options::check_name_of(const std::string& option, const Given& given) {
+  const auto [line, name] = match(option);
+  if (name.empty()) return;
   const std::string section(section_of(line->key));
-  const std::string_view rest = option.substr(section.size() + 1);
-  const std::string name(rest.substr(0, rest.find('_')));
-  const auto& known = names(section);
-  if (std::find(known.begin(), known.end(), name) == known.end())
-    throw InputError(section + ": " + name + ": is not listed in '" + section +
-                     ": names', so it would have no effect");
+  if (known_names_.at(section).contains(name)) return;
+  const std::string label = section + ": " + std::string(name);
+  if (!idle_.empty() && idle_.back().label == label) {
+    idle_options_.insert(option);  // said already
+    return;
+  }
+  keep_idle(option, given, label,
+            "is not listed in '" + section + ": names', so it would have no effect");
 }
 
 void Options::check_sections_of_names() const {
@@ -178,30 +193,99 @@ void Options::check_sections_of_names() const {
 }
 
 const OptionSpec& Options::spec(std::string_view key) const {
-  const auto line = std::find_if(table_.begin(), table_.end(),
-                                 [&](const OptionSpec& candidate) { return candidate.key == key; });
-  if (line == table_.end())
+  const auto line = by_key_.find(key);
+  if (line == by_key_.end())
     throw std::logic_error("not in the table of options: " + std::string(key));
-  return *line;
+  return *line->second;
+}
+
+const Given* Options::find(std::string_view key, std::string_view name) const {
+  const auto found = given_.find(option_name(spec(key).key, name));
+  return found == given_.end() ? nullptr : &found->second;
 }
 
 bool Options::given(std::string_view key, std::string_view name) const {
-  return given_.contains(option_name(spec(key).key, name));
+  return find(key, name) != nullptr;
+}
+
+bool Options::on_command_line(std::string_view key, std::string_view name) const {
+  const Given* found = find(key, name);
+  return found != nullptr && found->source == Source::command_line;
+}
+
+bool Options::has_command_line() const {
+  return std::any_of(given_.begin(), given_.end(),
+                     [](const auto& entry) { return entry.second.source == Source::command_line; });
 }
 
 bool Options::given_section(std::string_view section) const {
-  return std::any_of(table_.begin(), table_.end(), [&](const OptionSpec& line) {
-    if (section_of(line.key) != section) return false;
-    return has_name(line.key) ? !names(section).empty() : given_.contains(option_name(line.key));
-  });
+  for (const OptionSpec* line : by_section_.at(section)) {
+    if (has_name(line->key) ? !names(section).empty() : given(line->key)) return true;
+  }
+  return false;
 }
 
-void Options::refuse(std::string_view key, std::string_view why) const {
-  for (const OptionSpec& line : table_) {
-    if (line.key != key && section_of(line.key) != key) continue;
-    if (!has_name(line.key) && given(line.key))
-      throw InputError(std::string(line.key) + ": " + std::string(why));
+bool Options::section_on_command_line(std::string_view section) const {
+  for (const OptionSpec* line : by_section_.at(section)) {
+    if (!has_name(line->key) && on_command_line(line->key)) return true;
   }
+  if (!named_.contains(section)) return false;
+  const std::string front = std::string(section) + "_";
+  for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front);
+       ++at) {
+    if (at->second.source == Source::command_line) return true;
+  }
+  return false;
+}
+
+void Options::keep_idle(const std::string& option, const Given& given, const std::string& label,
+                        std::string_view why) {
+  if (given.source == Source::command_line || !collect_idle_)
+    throw InputError(label + ": " + std::string(why) + in_brackets(given.place));
+  if (idle_options_.insert(option).second) idle_.push_back({label, std::string(why)});
+}
+
+void Options::refuse_one(std::string_view key, std::string_view name, std::string_view why) {
+  if (const Given* found = find(key, name))
+    keep_idle(option_name(key, name), *found, option_label(key, name), why);
+}
+
+void Options::refuse_part(std::string_view key, std::string_view name, const std::string& label,
+                          const std::string& why) {
+  const Given* found = find(key, name);
+  const bool of_scene = found != nullptr && found->source != Source::command_line;
+  if (!of_scene || !collect_idle_) throw InputError(label + ": " + why);
+  idle_.push_back({label, why});
+}
+
+void Options::refuse(std::string_view key, std::string_view why) {
+  if (by_key_.contains(key)) return refuse_one(key, {}, why);
+  for (const OptionSpec* line : by_section_.at(key)) {
+    if (!has_name(line->key)) refuse_one(line->key, {}, why);
+  }
+  if (!named_.contains(key)) return;
+  // Of a section with names only these are told: "obstacle: names".
+  const std::string front = std::string(key) + "_";
+  for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front);
+       ++at) {
+    const auto [line, name] = match(at->first);
+    if (name.empty()) continue;
+    if (at->second.source == Source::command_line)
+      keep_idle(at->first, at->second, option_label(line->key, name), why);
+    idle_options_.insert(at->first);
+  }
+}
+
+std::string_view Options::one_of(std::string_view a, std::string_view b, std::string_view name,
+                                 const std::string& both) {
+  const Given *one = find(a, name), *other = find(b, name);
+  if (one == nullptr || other == nullptr) return one ? a : other ? b : std::string_view();
+  if (one->source == other->source) throw InputError(both);
+  const bool first_wins = one->source == Source::command_line;
+  const std::string_view winner = first_wins ? a : b, loser = first_wins ? b : a;
+  refuse_one(loser, name,
+             "'" + option_label(winner, name) + "' of the command line takes its place");
+  return winner;
 }
 
 const std::vector<std::string>& Options::names(std::string_view section) const {
@@ -213,11 +297,13 @@ const std::vector<std::string>& Options::names(std::string_view section) const {
 
 Options::Reading Options::read(std::string_view key, std::string_view name) {
   const OptionSpec& line = spec(key);
-  const std::string option = option_name(key, name);
-  if (!read_.try_emplace(option).second) throw std::logic_error("option read twice: " + option);
-  Reading reading{line, option_label(key, name), {}};
-  if (const auto found = given_.find(option); found != given_.end()) {
-    reading.value = find_value(option);
+  Reading reading{line, option_name(key, name), option_label(key, name), {}, {}, false};
+  if (!read_.try_emplace(reading.option).second)
+    throw std::logic_error("option read twice: " + reading.option);
+  if (const auto found = given_.find(reading.option); found != given_.end()) {
+    reading.value = found->second.value;
+    reading.place = in_brackets(found->second.place);
+    reading.is_list = found->second.is_list;
   } else if (is_value(line.fallback)) {
     reading.value = std::string(line.fallback);
   } else if (line.fallback == "(required)") {
@@ -227,14 +313,13 @@ Options::Reading Options::read(std::string_view key, std::string_view name) {
 }
 
 void Options::record(const Reading& reading, std::string value) {
-  std::string option = reading.label;
-  read_[option_name(option)] = std::move(value);
+  read_[reading.option] = std::move(value);
 }
 
 bool Options::flag(std::string_view key, std::string_view name) {
   const Reading reading = read(key, name);
   const auto value = to_flag(reading.value.value_or("false"));
-  if (!value) refuse_value(reading.spec, reading.label, *reading.value);
+  if (!value) refuse_value(reading.spec, reading.label, *reading.value, reading.place);
   record(reading, *value ? "true" : "false");
   return *value;
 }
@@ -256,7 +341,7 @@ double Options::number(std::string_view key, std::string_view name,
   const std::string text = reading.value.value_or("");
   const auto value = to_number(text);
   if (!value || !in_range(*value, reading.spec.allowed))
-    refuse_value(reading.spec, reading.label, text);
+    refuse_value(reading.spec, reading.label, text, reading.place);
   record(reading, text);
   return *value;
 }
@@ -266,7 +351,7 @@ std::int64_t Options::integer(std::string_view key, std::string_view name) {
   const std::string text = reading.value.value_or("");
   const auto value = to_integer(text);
   if (!value || !in_range(static_cast<double>(*value), reading.spec.allowed))
-    refuse_value(reading.spec, reading.label, text);
+    refuse_value(reading.spec, reading.label, text, reading.place);
   record(reading, text);
   return *value;
 }
@@ -275,7 +360,8 @@ std::string Options::text(std::string_view key, std::string_view name,
                           const std::optional<std::string>& otherwise) {
   const Reading reading = read(key, name);
   std::string value = reading.value ? *reading.value : otherwise.value_or("");
-  if (value.empty()) refuse_value(reading.spec, reading.label, value);
+  if (value.empty() || reading.is_list)
+    refuse_value(reading.spec, reading.label, value, reading.place);
   record(reading, value);
   return value;
 }
@@ -289,7 +375,7 @@ std::vector<std::string> Options::words(std::string_view key, std::string_view n
                     std::all_of(list->begin(), list->end(), [&](const std::string& word) {
                       return std::find(known.begin(), known.end(), word) != known.end();
                     });
-  if (!fits) refuse_value(reading.spec, reading.label, text);
+  if (!fits) refuse_value(reading.spec, reading.label, text, reading.place);
   if (!list->empty()) record(reading, text);
   return *list;
 }
@@ -298,11 +384,12 @@ void Options::read_numbers(std::string_view key, std::string_view name, std::spa
   const Reading reading = read(key, name);
   const std::string text = reading.value.value_or("");
   const auto list = to_list(text);
-  if (!list || list->size() != values.size()) refuse_value(reading.spec, reading.label, text);
+  if (!list || list->size() != values.size())
+    refuse_value(reading.spec, reading.label, text, reading.place);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const auto value = to_number((*list)[k]);
     if (!value || !in_range(*value, reading.spec.allowed))
-      refuse_value(reading.spec, reading.label, text);
+      refuse_value(reading.spec, reading.label, text, reading.place);
     values[k] = *value;
   }
   record(reading, text);
@@ -312,24 +399,77 @@ int Options::read_choice(std::string_view key, std::string_view name) {
   const Reading reading = read(key, name);
   const std::string text = reading.value.value_or("");
   const auto known = choices_of(reading.spec.allowed);
-  const auto chosen = std::find(known.begin(), known.end(), text);
-  if (chosen == known.end()) refuse_value(reading.spec, reading.label, text);
-  record(reading, text);
+  auto chosen = std::find(known.begin(), known.end(), text);
+  // Where true and false are words of the choice, their other spellings are too.
+  const auto truth = to_flag(text);
+  if (chosen == known.end() && truth && !text.empty())
+    chosen = std::find(known.begin(), known.end(), *truth ? "true" : "false");
+  if (chosen == known.end()) refuse_value(reading.spec, reading.label, text, reading.place);
+  record(reading, std::string(*chosen));
   return static_cast<int>(chosen - known.begin());
 }
 
-void Options::reject_unread() const {
-  for (const OptionSpec& line : table_) {
-    const auto reject = [&](std::string_view name) {
-      if (given(line.key, name) && !read_.contains(option_name(line.key, name)))
-        throw InputError(option_label(line.key, name) + ": would have no effect in this scene");
-    };
-    if (!has_name(line.key)) {
-      reject({});
-    } else {
-      for (const std::string& name : names(section_of(line.key))) reject(name);
-    }
+void Options::refuse_unread() {
+  for (const auto& [option, given] : given_) {
+    if (read_.contains(option) || idle_options_.contains(option)) continue;
+    const auto [line, name] = match(option);
+    keep_idle(option, given, option_label(line->key, name), "would have no effect in this scene");
   }
+}
+
+std::string Options::petsc(std::string_view name) const {
+  const auto found = petsc_.find(name);
+  return found == petsc_.end() ? "" : found->second.value;
+}
+
+void Options::leave_out(std::string_view family, bool of_scene) {
+  std::erase_if(petsc_, [&](const auto& entry) {
+    const auto& [name, given] = entry;
+    const bool drop =
+        given.source == Source::environment || (given.source == Source::scene && of_scene);
+    if (!drop || !name.starts_with(family)) return false;
+    check(PetscOptionsClearValue(nullptr, ("-" + name).c_str()));
+    if (given.source == Source::environment) {
+      ignored_[name] = given;
+    } else {
+      idle_.push_back({name, "nothing in this run would ask for it"});
+    }
+    return true;
+  });
+}
+
+std::set<std::string> Options::may_stay_unused() const {
+  const bool commanded = std::any_of(petsc_.begin(), petsc_.end(), [](const auto& entry) {
+    return entry.second.source == Source::command_line;
+  });
+  std::set<std::string> names;
+  for (const auto& [name, given] : petsc_) {
+    if (given.source == Source::environment || (given.source == Source::scene && commanded))
+      names.insert(name);
+  }
+  return names;
+}
+
+std::string Options::environment_remark() const {
+  std::vector<std::string> taken, left;
+  for (const auto& [name, given] : petsc_) {
+    if (given.source != Source::environment) continue;
+    taken.push_back("-" + name + (given.value.empty() ? "" : " " + shown(given.value)) +
+                    in_brackets(given.place));
+  }
+  for (const auto& [name, given] : ignored_)
+    left.push_back("-" + shown(name) + in_brackets(given.place));
+  if (taken.empty() && left.empty()) return {};
+  return "options of the environment: " + (taken.empty() ? "none taken" : some_of(taken)) +
+         (left.empty() ? "" : "; not taken: " + some_of(left));
+}
+
+std::string some_of(const std::vector<std::string>& items) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, items.size()); ++k) text += (k ? ", " : "") + items[k];
+  if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
+  return text;
 }
 
 void throw_verdict(std::string verdict, MPI_Comm comm) {
@@ -340,10 +480,10 @@ void throw_verdict(std::string verdict, MPI_Comm comm) {
   if (!verdict.empty()) throw InputError(verdict);
 }
 
-void reject_unused_options() {
+void reject_unused_options(const std::set<std::string>& exempt) {
   std::string verdict;
   for (const auto& [name, value] : unused_options()) {
-    if (is_viewer(name) || is_asked_for_at_the_end(name)) continue;
+    if (exempt.contains(name) || is_viewer(name) || is_asked_for_at_the_end(name)) continue;
     const std::string near = nearest_petsc_option(name);
     verdict = name + ": nothing in this run has asked for this PETSc option" +
               (near.empty() ? "" : "; is it '" + near + "'?");

@@ -4,7 +4,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <optional>
 #include <string>
+
+#include "option_names.h"
 
 namespace floe {
 namespace {
@@ -100,9 +103,50 @@ Mpi::Mpi(int& argc, char**& argv) {
 
 Mpi::~Mpi() { MPI_Finalize(); }
 
-Session::Session(int& argc, char**& argv, const std::string& scene) {
-  const std::string file = scene.empty() ? std::string() : scene + ":yaml";
-  check(PetscInitialize(&argc, &argv, scene.empty() ? nullptr : file.c_str(), nullptr));
+namespace {
+
+/// A variable of the environment that is not there during this object's life.
+class Without {
+ public:
+  explicit Without(const char* name) : name_(name) {
+    if (const char* value = std::getenv(name)) value_ = value;
+    unsetenv(name);
+  }
+  ~Without() {
+    if (value_) setenv(name_, value_->c_str(), 1);
+  }
+  Without(const Without&) = delete;
+  Without& operator=(const Without&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> value_;
+};
+
+/// Puts PETSc's options into its table, before PetscInitialize, which acts on some of them.
+void put_petsc_options(const UserOptions& user) {
+  constexpr int most = 400;  // PETSc 3.18 has room for 512
+  int count = 0;
+  for (const auto& [name, given] : user.merged()) {
+    if (!is_petsc_option(name)) continue;
+    if (given.source == Source::environment && !is_environment_option(name)) continue;
+    if (++count > most)
+      throw InputError(name + ": more than " + std::to_string(most) + " options of PETSc's");
+    check(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
+                               given.value.empty() ? nullptr : given.value.c_str()));
+  }
+  check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
+}
+
+}  // namespace
+
+Session::Session(const char* program, const UserOptions& user) : program_(program) {
+  put_petsc_options(user);
+  const Without options("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
+  words_[0] = program_.data();
+  word_ = words_.data();
+  int count = 1;
+  check(PetscInitialize(&count, &word_, nullptr, nullptr));
   check(PetscPushErrorHandler(remember_error, nullptr));
 }
 

@@ -6,233 +6,304 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <string_view>
 
+#include "floe/base/options.h"
+#include "option_names.h"
 #include "option_values.h"
 
 namespace floe {
 namespace {
 
-constexpr std::size_t longest_key =
-    60;                         // PETSc cuts longer names (PETSC_MAX_OPTION_NAME) in silence
-constexpr int deepest_key = 8;  // PETSc aborts beyond 25; also ends an alias that holds itself
+constexpr int deepest_key = 8;  // those of floe have three words, those of PETSc may have more
+constexpr std::size_t longest_key = 120;
 constexpr std::size_t largest_scene = 16U << 20;
-constexpr std::size_t longest_path = 4000;  // below PETSC_MAX_PATH_LEN
 
-/// Options by which PETSc reads further options before anybody can look at them.
-constexpr std::array<std::string_view, 5> from_elsewhere{
-    "options_file", "options_file_yaml", "options_string_yaml", "prefix_push", "prefix_pop"};
-/// Options that PETSc takes from the command line only, and wants true or false for, or aborts.
-constexpr std::array<std::string_view, 5> command_line_only{
-    "help", "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci"};
-/// PETSc would begin a file of its own before we could refuse the word as unknown.
-constexpr auto begins_a_file = "history";
-constexpr auto not_history = ": unknown option; the nearest known one is 'output: history'";
+/// Options that are for the command line only.
+constexpr std::array<std::string_view, 6> command_line_only{
+    "help", "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci", "version"};
 
-template <std::size_t N>
-bool contains(const std::array<std::string_view, N>& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+bool is_command_line_only(std::string_view word) {
+  return std::find(command_line_only.begin(), command_line_only.end(), word) !=
+         command_line_only.end();
 }
 
-/// What PETSc takes for an option: a dash and a letter (-0.5, -inf and - are values).
-bool is_option(std::string_view word) {
-  if (word.size() < 2 || word[0] != '-') return false;
-  if (word[1] == '-') return true;
-  return std::isalpha(static_cast<unsigned char>(word[1])) && word != "-inf" && word != "-nan";
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
-void check_option(std::string_view word, std::string_view value) {
-  const std::string shown_word = shown(word);
-  if (word.starts_with("--")) throw InputError(shown_word + ": options have one dash: -key value");
-  if (word.find('=') != std::string_view::npos)
-    throw InputError(shown_word + ": options are written -key value, without '='");
-  if (word.size() > longest_key) throw InputError(shown_word + ": longer than any option");
-  const std::string_view name = word.substr(1);
-  if (contains(from_elsewhere, name))
-    throw InputError(shown_word + ": not supported; put the options into the scene");
-  if (name == begins_a_file) throw InputError(shown_word + not_history);
-  if (contains(command_line_only, name) && !to_flag(value))
-    throw InputError(shown_word + ": " + shown(value) + " must be true or false");
-}
-
-/// The scene as libyaml sees it, walked for what PETSc would join to options.
-class SceneText {
+/// One event of libyaml, deleted with its life.
+class Event {
  public:
-  SceneText(std::string path, const std::string& text) : path_(std::move(path)) {
+  explicit Event(yaml_parser_t& parser) : whole_(yaml_parser_parse(&parser, &event_) != 0) {}
+  ~Event() {
+    if (whole_) yaml_event_delete(&event_);
+  }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  bool whole() const { return whole_; }
+  yaml_event_type_t type() const { return event_.type; }
+  std::size_t line() const { return event_.start_mark.line + 1; }
+  std::string text() const {
+    const auto& scalar = event_.data.scalar;
+    return {reinterpret_cast<const char*>(scalar.value), scalar.length};
+  }
+  bool is_plain() const { return event_.data.scalar.style == YAML_PLAIN_SCALAR_STYLE; }
+  std::string anchor() const {
+    const yaml_char_t* name =
+        type() == YAML_SCALAR_EVENT           ? event_.data.scalar.anchor
+        : type() == YAML_SEQUENCE_START_EVENT ? event_.data.sequence_start.anchor
+        : type() == YAML_MAPPING_START_EVENT  ? event_.data.mapping_start.anchor
+        : type() == YAML_ALIAS_EVENT          ? event_.data.alias.anchor
+                                              : nullptr;
+    return name ? reinterpret_cast<const char*>(name) : "";
+  }
+  /// A tag of the scene's own; those of YAML itself (!!str) say nothing new.
+  std::string foreign_tag() const {
+    const yaml_char_t* tag = type() == YAML_SCALAR_EVENT           ? event_.data.scalar.tag
+                             : type() == YAML_SEQUENCE_START_EVENT ? event_.data.sequence_start.tag
+                             : type() == YAML_MAPPING_START_EVENT  ? event_.data.mapping_start.tag
+                                                                   : nullptr;
+    const std::string text = tag ? reinterpret_cast<const char*>(tag) : "";
+    constexpr std::string_view core = "tag:yaml.org,2002:";
+    const std::string_view kind = std::string_view(text).substr(std::min(text.size(), core.size()));
+    constexpr std::array<std::string_view, 7> kinds{"str",  "int", "float", "bool",
+                                                    "null", "seq", "map"};
+    const bool known = text.empty() || (text.starts_with(core) &&
+                                        std::find(kinds.begin(), kinds.end(), kind) != kinds.end());
+    return known ? "" : text;
+  }
+
+ private:
+  yaml_event_t event_{};
+  bool whole_;
+};
+
+/// The scene as libyaml tells it, event by event: nothing is held that is deeper than a key may be.
+class SceneParser {
+ public:
+  SceneParser(std::string path, const std::string& text, Source source)
+      : path_(std::move(path)), text_(text), source_(source) {
     yaml_parser_initialize(&parser_);
     const auto* bytes = reinterpret_cast<const unsigned char*>(text.data());
     yaml_parser_set_input_string(&parser_, bytes, text.size());
   }
-  ~SceneText() { yaml_parser_delete(&parser_); }
-  SceneText(const SceneText&) = delete;
-  SceneText& operator=(const SceneText&) = delete;
+  ~SceneParser() { yaml_parser_delete(&parser_); }
+  SceneParser(const SceneParser&) = delete;
+  SceneParser& operator=(const SceneParser&) = delete;
 
-  void check_all() {
-    const Document scene(*this);
-    const yaml_node_t* root = yaml_document_get_root_node(scene.get());
-    if (!root) return;  // nothing in it: the options that are missing will be named
-    if (root->type == YAML_SCALAR_NODE && root->data.scalar.length == 0) return;
-    if (root->type != YAML_MAPPING_NODE) refuse(*root, "a scene is a map of 'key: value' lines");
-    check_map(scene.get(), *root, "", 1);
-    const Document next(*this);
-    if (const auto* other = yaml_document_get_root_node(next.get()))
-      refuse(*other, "a scene is one YAML document, here a second one begins");
+  GivenOptions parse() {
+    expect(YAML_STREAM_START_EVENT);
+    {
+      const Event event(parser_);
+      check_whole(event);
+      if (event.type() == YAML_STREAM_END_EVENT) return {};  // what is missing will be named
+    }
+    {
+      const Event event(parser_);
+      check_whole(event);
+      const bool nothing = event.type() == YAML_SCALAR_EVENT && event.text().empty();
+      if (event.type() == YAML_MAPPING_START_EVENT) {
+        read_map("", 1);
+      } else if (!nothing) {
+        refuse(event.line(), "a scene is a map of 'key: value' lines");
+      }
+    }
+    expect(YAML_DOCUMENT_END_EVENT);
+    const Event event(parser_);
+    check_whole(event);
+    if (event.type() != YAML_STREAM_END_EVENT)
+      refuse(event.line(), "a scene is one YAML document, here a second one begins");
+    return std::move(options_);
   }
 
  private:
-  /// One document of the parser, deleted with its life.
-  class Document {
-   public:
-    explicit Document(SceneText& text) {
-      if (!yaml_parser_load(&text.parser_, &document_)) text.refuse_syntax();
-    }
-    ~Document() { yaml_document_delete(&document_); }
-    Document(const Document&) = delete;
-    Document& operator=(const Document&) = delete;
-    yaml_document_t* get() const { return &document_; }
-
-   private:
-    mutable yaml_document_t document_{};  // libyaml's getters take it without const
+  struct Value {
+    std::string text;
+    bool is_list = false;
   };
+
+  void expect(yaml_event_type_t type) {
+    const Event event(parser_);
+    check_whole(event);
+    if (event.type() != type) refuse(event.line(), "not a scene");
+  }
+
+  void check_whole(const Event& event) const {
+    if (!event.whole()) refuse_syntax();
+    if (const std::string tag = event.foreign_tag(); !tag.empty())
+      refuse(event.line(), "tags (" + shown(tag) + ") are not for scenes");
+  }
 
   [[noreturn]] void refuse_syntax() const {
     const std::string problem = parser_.problem ? parser_.problem : "not YAML";
-    if (parser_.error == YAML_READER_ERROR)
-      throw InputError(path_ + ": not a YAML text: " + problem + " (byte " +
-                       std::to_string(parser_.problem_offset) + ")");
-    throw InputError(path_ + ": line " + std::to_string(parser_.problem_mark.line + 1) + ": " +
-                     problem);
+    if (parser_.error == YAML_READER_ERROR) {
+      const auto end = text_.begin() +
+                       static_cast<std::ptrdiff_t>(std::min(parser_.problem_offset, text_.size()));
+      const auto line = 1 + std::count(text_.begin(), end, '\n');
+      refuse(static_cast<std::size_t>(line), "not a text in UTF-8: " + problem);
+    }
+    const std::size_t at = parser_.problem_mark.index;
+    const bool tab = at < text_.size() && text_[at] == '\t';
+    refuse(parser_.problem_mark.line + 1, tab ? "a tab; YAML wants blanks" : problem);
   }
 
-  [[noreturn]] void refuse(const yaml_node_t& node, const std::string& why) const {
-    throw InputError(path_ + ": line " + std::to_string(node.start_mark.line + 1) + ": " + why);
+  [[noreturn]] void refuse(std::size_t line, const std::string& why) const {
+    throw InputError(path_ + ": line " + std::to_string(line) + ": " + why);
   }
 
-  static std::string_view scalar(const yaml_node_t& node) {
-    return {reinterpret_cast<const char*>(node.data.scalar.value), node.data.scalar.length};
-  }
-
-  std::string checked_key(const yaml_node_t& node, const std::string& prefix) {
-    if (node.type != YAML_SCALAR_NODE) refuse(node, "a key is a plain word, not a list or a map");
-    const std::string_view word = scalar(node);
-    const auto fits = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+  std::string checked_key(const Event& event, const std::string& prefix) {
+    if (event.type() != YAML_SCALAR_EVENT)
+      refuse(event.line(), "a key is a plain word, not a list, a map or an alias");
+    const std::string word = event.text();
+    const auto fits = [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); };
     if (word.empty() || !std::all_of(word.begin(), word.end(), fits))
-      refuse(node, shown(word) + " is not a key: keys are words of letters, digits and '_'");
-    std::string joined = prefix + std::string(word);
+      refuse(event.line(),
+             shown(word) + " is not a key: keys are words of letters, digits and '_'");
+    std::string joined = prefix + word;
     if (!std::isalpha(static_cast<unsigned char>(joined[0])))
-      refuse(node, shown(word) + " is not a key: keys begin with a letter");
-    if (joined.size() > longest_key) refuse(node, shown(joined) + " is longer than any key");
-    if (contains(from_elsewhere, joined) || contains(command_line_only, joined))
-      refuse(node, joined + " is for the command line or not supported, not for a scene");
-    if (joined == begins_a_file) refuse(node, joined + not_history);
-    // PETSc does not tell upper from lower case.
-    const auto [first, fresh] = lines_.try_emplace(lower(joined), node.start_mark.line + 1);
+      refuse(event.line(), shown(word) + " is not a key: keys begin with a letter");
+    joined = petsc_name(joined);
+    if (joined.size() > (is_petsc_option(joined) ? longest_petsc_option : longest_key))
+      refuse(event.line(), shown(joined) + " is longer than any key");
+    if (reads_from_elsewhere(joined) || is_command_line_only(joined))
+      refuse(event.line(), joined + " is for the command line or not supported, not for a scene");
+    const auto [first, fresh] = lines_.try_emplace(joined, event.line());
     if (!fresh)
-      refuse(node, joined + " is given twice, first in line " + std::to_string(first->second));
+      refuse(event.line(),
+             joined + " is given twice, first in line " + std::to_string(first->second));
     return joined;
   }
 
-  void check_map(yaml_document_t* document, const yaml_node_t& map, const std::string& prefix,
-                 int depth) {
-    if (depth > deepest_key) refuse(map, "nested deeper than any key");
-    for (const auto* pair = map.data.mapping.pairs.start; pair < map.data.mapping.pairs.top;
-         ++pair) {
-      const yaml_node_t& key = *yaml_document_get_node(document, pair->key);
-      const yaml_node_t& value = *yaml_document_get_node(document, pair->value);
-      const std::string joined = checked_key(key, prefix);
-      if (value.type == YAML_MAPPING_NODE) check_map(document, value, joined + "_", depth + 1);
-      if (value.type == YAML_SEQUENCE_NODE) check_list(document, value, joined);
+  void read_map(const std::string& prefix, int depth) {
+    for (;;) {
+      std::string name;
+      std::size_t line = 0;
+      {
+        const Event key(parser_);
+        check_whole(key);
+        if (key.type() == YAML_MAPPING_END_EVENT) return;
+        name = checked_key(key, prefix);
+        line = key.line();
+      }
+      const Event event(parser_);
+      check_whole(event);
+      if (event.type() == YAML_MAPPING_START_EVENT) {
+        if (depth >= deepest_key) refuse(event.line(), "nested deeper than any key");
+        read_map(name + "_", depth + 1);
+      } else {
+        Value value = read_value(event, name);
+        options_[name] = {std::move(value.text), source_,
+                          path_.empty() ? "" : path_ + ", line " + std::to_string(line),
+                          value.is_list};
+      }
     }
   }
 
-  void check_list(yaml_document_t* document, const yaml_node_t& list,
-                  const std::string& key) const {
-    for (const auto* item = list.data.sequence.items.start; item < list.data.sequence.items.top;
-         ++item) {
-      const yaml_node_t& node = *yaml_document_get_node(document, *item);
-      if (node.type != YAML_SCALAR_NODE || scalar(node).empty())
-        refuse(node, key + ": a list holds plain values only");
+  /// A scalar, a list or an alias of one.
+  Value read_value(const Event& event, const std::string& key) {
+    if (event.type() == YAML_ALIAS_EVENT) return value_of_alias(event);
+    Value value;
+    if (event.type() == YAML_SCALAR_EVENT) {
+      value.text = event.text();
+      const bool null = event.is_plain() && (value.text == "~" || lower(value.text) == "null");
+      if (null) value.text.clear();
+    } else {
+      value = {read_list(key), true};
+    }
+    if (const std::string anchor = event.anchor(); !anchor.empty()) anchors_[anchor] = value;
+    return value;
+  }
+
+  Value value_of_alias(const Event& event) {
+    const auto found = anchors_.find(event.anchor());
+    if (found == anchors_.end())
+      refuse(event.line(), "the alias *" + shown(event.anchor()) + " stands for no value or list");
+    expanded_ += found->second.text.size();
+    if (expanded_ > largest_scene) refuse(event.line(), "aliases make this scene too large");
+    return found->second;
+  }
+
+  std::string read_list(const std::string& key) {
+    std::string list;
+    for (bool first = true;; first = false) {
+      const Event item(parser_);
+      check_whole(item);
+      if (item.type() == YAML_SEQUENCE_END_EVENT) return list;
+      const bool scalar = item.type() == YAML_SCALAR_EVENT || item.type() == YAML_ALIAS_EVENT;
+      const Value value = scalar ? read_value(item, key) : Value{};
+      if (!scalar || value.is_list || value.text.empty())
+        refuse(item.line(), key + ": a list holds plain values only");
+      list += (first ? "" : ",") + value.text;
     }
   }
 
   std::string path_;
+  const std::string& text_;
+  Source source_;
   yaml_parser_t parser_{};
+  GivenOptions options_;
   std::map<std::string, std::size_t> lines_;  ///< where each joined key was first given
+  std::map<std::string, Value> anchors_;
+  std::size_t expanded_ = 0;  ///< bytes that aliases have stood for
 };
 
 using NearTo = std::function<std::string(const std::string&)>;
 
 std::string read_file(const std::string& path, const NearTo& near_to) {
-  if (path.size() > longest_path || path.find("${") != std::string::npos)
-    throw InputError("scene " + shown(path) + ": PETSc cannot read a file of this name");
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("scene " + shown(path) + ": " + why);
+  };
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
     const std::string why = std::strerror(errno);
-    throw InputError("scene " + shown(path) + ": " + why + (near_to ? near_to(path) : ""));
+    refuse(why + (near_to ? near_to(path) : ""));
   }
   if (!S_ISREG(status.st_mode))
-    throw InputError(
-        "scene " + shown(path) + ": " +
-        (S_ISDIR(status.st_mode) ? "is a directory, not a file" : "is not a regular file"));
+    refuse(S_ISDIR(status.st_mode) ? "is a directory, not a file" : "is not a regular file");
   if (static_cast<std::size_t>(status.st_size) > largest_scene)
-    throw InputError("scene " + shown(path) + ": too large for a scene");
+    refuse("has " + std::to_string(status.st_size) + " bytes, too large for a scene");
   std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(std::strerror(errno));
   std::ostringstream text;
   text << file.rdbuf();
-  if (!file) throw InputError("scene " + shown(path) + ": cannot be read");
-  // PETSc takes the text as a C string.
-  if (text.str().find('\0') != std::string::npos)
-    throw InputError("scene " + shown(path) + ": not a text");
+  if (file.bad() || text.bad()) refuse("cannot be read");
   return text.str();
+}
+
+void check_text(const std::string& path, const std::string& text) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw InputError(path + ": line 1: is a text in UTF-16; save it in UTF-8");
+  if (const auto nul = text.find('\0'); nul != std::string::npos) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(nul);
+    throw InputError(path + ": line " + std::to_string(1 + std::count(text.begin(), end, '\n')) +
+                     ": not a text (a byte 0)");
+  }
 }
 
 }  // namespace
 
-Help wants_help(int argc, const char* const* argv) {
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view word = argv[k];
-    if (word == "-help") return Help::text;
-    if (word == "-help_markdown") return Help::markdown;
-  }
-  return Help::none;
+GivenOptions parse_scene(const std::string& path, const std::string& text, Source source) {
+  check_text(path, text);
+  return SceneParser(path, text, source).parse();
 }
 
-std::string check_command_line(int argc, const char* const* argv) {
-  constexpr auto usage = "usage: floe SCENE.yaml [-key value ...], or floe -help";
-  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0')
-    throw InputError(std::string("no scene is named; ") + usage);
-  for (int k = 2; k < argc; ++k) {
-    const std::string_view word = argv[k];
-    if (!is_option(word)) throw InputError(shown(word) + ": belongs to no option; " + usage);
-    const bool has_value = k + 1 < argc && !is_option(argv[k + 1]);
-    check_option(word, has_value ? argv[k + 1] : "");
-    if (has_value) ++k;
-  }
-  return argv[1];
-}
-
-void read_scene_text(const std::string& path, MPI_Comm comm, const NearTo& near_to) {
-  std::string verdict;
+GivenOptions read_scene_text(const std::string& path, MPI_Comm comm, const NearTo& near_to) {
+  std::string text, verdict;
   if (rank(comm) == 0) {
     try {
-      const std::string text = read_file(path, near_to);
-      SceneText(path, text).check_all();
+      text = read_file(path, near_to);
     } catch (const InputError& error) {
       verdict = error.what();
     }
   }
   throw_verdict(std::move(verdict), comm);
+  auto length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
+  return parse_scene(path, text);
 }
 
 }  // namespace floe

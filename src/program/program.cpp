@@ -23,7 +23,7 @@ constexpr auto usage =
     "       mpiexec -n 4 floe SCENE.yaml ...   the same on four processors\n"
     "       floe TOOL [arguments]              draws results, makes lattices: see floe help\n"
     "       floe help [TOPIC]                  the tools; more about a tool, scenes or options\n"
-    "       floe -help                         all options of scenes: default, unit, range\n"
+    "       floe -help [SECTION or KEY]        options of scenes: default, unit, range\n"
     "       floe --version                     version of floe and of its libraries\n";
 
 /// Of the launcher's variables the first that is there.
@@ -56,7 +56,9 @@ std::string help() {
     line.resize(20, ' ');
     text += line + std::string(tool.line) + "\n";
   }
-  return text + "\nTopics: scenes (those that come with floe), options (all of them), version.\n";
+  return text +
+         "\nTopics: scenes (those that come with floe), options (all of them), a section or key of\n"
+         "scenes (floe help sheet), version.\n";
 }
 
 int help(std::string_view topic) {
@@ -69,6 +71,8 @@ int help(std::string_view topic) {
     std::array<char*, 3> words{name.data(), option.data(), nullptr};
     return run_subcommand(words.data());
   }
+  if (const std::string keys = options_topic(std::string(topic)); !keys.empty())
+    return say(keys, done);
   std::vector<std::string_view> known{"options", "scenes", "version"};
   for (const Subcommand& tool : subcommands()) known.push_back(tool.name);
   const std::string near = nearest_word(topic, known);
@@ -108,6 +112,16 @@ std::optional<int> answer(int argc, char** argv) {
   const auto asks = [](std::string_view word) { return is_one_of(word, {"-h", "--help"}); };
   if (std::any_of(argv + 2, argv + argc, asks)) return say(introduction(), done);
   return {};
+}
+
+int print_options(const Help& help) {
+  if (help.kind == Help::markdown) return say(options_markdown(), done);
+  if (help.topic.empty()) return say(options_help(), done);
+  const std::string keys = options_topic(help.topic);
+  if (!keys.empty()) return say(keys, done);
+  return say(
+      "floe: -help: there is no section or key '" + help.topic + "' (floe -help lists them all)\n",
+      bad_input, stderr);
 }
 
 }  // namespace floe::program

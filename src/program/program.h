@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "floe/base/command_line.h"
+
 namespace floe::program {
 
 /// What a shell sees. bad_input is floe::InputError; stopped: on request, a checkpoint has been
@@ -14,6 +16,9 @@ enum Exit { done = 0, failed = 1, bad_input = 2, stopped = 3 };
 /// Answers what needs no run, before MPI begins. \return the exit code; nothing if a scene is to be
 /// run, which a first word is that is a file or has '/' or '.' in it, and every word not known
 std::optional<int> answer(int argc, char** argv);
+
+/// Prints the options of scenes, all or those of a topic. \return the exit code
+int print_options(const Help& help);
 
 /// Words that help whoever named a scene that is not there: a similar name, or nothing.
 std::string near_scene(const std::string& scene);

@@ -85,7 +85,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   for (const Cut& c : scene.cuts) {
     const std::int32_t before = lattice.beams.size();
     cut(lattice, c.from, c.to);
-    if (lattice.beams.size() == before)
+    if (lattice.beams.size() == before && !c.may_miss)
       throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
   }
   if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order

@@ -3,19 +3,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstdio>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
 #include "keys.h"
+#include "reading.h"
 
 namespace floe {
-namespace {
-
-constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
-constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top", "all"};
 
 std::string text_of(double value) {
   std::array<char, 32> text{};
@@ -23,322 +22,7 @@ std::string text_of(double value) {
   return text.data();
 }
 
-void read_forces(Options& options, Scene& scene) {
-  const auto forces = options.words("forces");
-  if (forces.empty()) throw InputError("forces: is empty; nothing would act");
-  const auto named = [&](std::string_view force) {
-    return std::find(forces.begin(), forces.end(), force) != forces.end();
-  };
-  scene.forces = {named("beam"),     named("fracture"), named("gravity"),
-                  named("buoyancy"), named("drag"),     named("contact")};
-  if (scene.forces.fracture && !scene.forces.beam)
-    throw InputError("forces: fracture needs beam: it is beams that break");
-  if (scene.forces.buoyancy && !scene.forces.gravity)
-    throw InputError("forces: buoyancy needs gravity");
-  if (scene.forces.drag && scene.integrator == Integrator::quasistatic)
-    throw InputError(
-        "forces: drag would have no effect: 'integrator' is quasistatic, nothing moves");
-  if (scene.forces.contact && scene.integrator == Integrator::quasistatic)
-    throw InputError(
-        "forces: contact needs 'integrator: explicit': contacts have a memory and no tangent");
-  const auto without = [](std::string_view force) {
-    return "would have no effect: '" + std::string(force) + "' is not in 'forces'";
-  };
-  if (!scene.forces.beam) options.refuse("beam", without("beam"));
-  if (!scene.forces.fracture) options.refuse("fracture", without("fracture"));
-  if (!scene.forces.gravity) options.refuse("gravity", without("gravity"));
-  for (const auto* section : {"contact", "obstacle"})
-    if (!scene.forces.contact) options.refuse(section, without("contact"));
-  if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("water", without("buoyancy"));
-  if (!scene.forces.drag) {
-    for (const auto* key : {"water: drag_linear", "water: drag_coefficient", "water: current"})
-      options.refuse(key, without("drag"));
-  }
-}
-
-void read_fracture(Options& options, Scene& scene) {
-  FractureOptions& fracture = scene.fracture;
-  fracture.tensile_strength = options.number("fracture: tensile_strength");
-  fracture.shear_strength =
-      options.number("fracture: shear_strength", {}, fracture.tensile_strength);
-  enum class Calibration { none, strength };
-  if (scene.has_sheet)
-    fracture.calibrate =
-        options.choice<Calibration>("fracture: calibrate") == Calibration::strength;
-  fracture.energy = options.number("fracture: energy");
-  fracture.energy_shear = options.number("fracture: energy_shear", {}, fracture.energy);
-  fracture.dynamic = scene.integrator != Integrator::quasistatic;
-  if (options.given("fracture: weibull_modulus")) {
-    fracture.weibull_modulus = options.number("fracture: weibull_modulus");
-    if (options.given("fracture: weibull_area"))
-      fracture.weibull_area = options.number("fracture: weibull_area");
-    fracture.seed = static_cast<std::uint64_t>(options.integer("fracture: seed"));
-  } else {
-    for (const auto* key : {"fracture: weibull_area", "fracture: seed"})
-      options.refuse(key, "would have no effect without 'fracture: weibull_modulus'");
-  }
-}
-
-void read_water(Options& options, Scene& scene) {
-  const bool moves = scene.integrator != Integrator::quasistatic;
-  if (moves) {
-    scene.added_mass = options.number("water: added_mass");
-  } else {
-    options.refuse("water: added_mass", "would have no effect: 'integrator' is quasistatic");
-  }
-  if (scene.forces.drag) {
-    scene.drag.linear = options.number("water: drag_linear");
-    scene.drag.coefficient = options.number("water: drag_coefficient");
-    scene.drag.current = options.numbers<3>("water: current");
-    if (scene.drag.linear == 0 && scene.drag.coefficient == 0)
-      throw InputError("forces: drag needs 'water: drag_linear' or 'water: drag_coefficient' > 0");
-  }
-  if (scene.forces.buoyancy || scene.drag.coefficient > 0 || scene.added_mass > 0) {
-    scene.water_density = options.number("water: density");
-  } else {
-    options.refuse("water: density", "would have no effect on linear drag");
-  }
-  scene.drag.density = scene.water_density;
-}
-
-Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
-
-Obstacle read_shape(Options& options, const std::string& name) {
-  enum class Shape { halfspace, box, cone, cylinder, file };
-  const auto of = [&](const char* key) {
-    return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
-  };
-  const auto shape = options.choice<Shape>("obstacle: NAME: shape", name);
-  if (shape == Shape::halfspace) {
-    const Vec3<double> point = of("point"), normal = of("normal");
-    const double length2 = dot(normal, normal);
-    if (!(length2 > 0 && std::isfinite(length2)))
-      throw InputError("obstacle: " + name + ": normal: " + text_of(normal.x) + " " +
-                       text_of(normal.y) + " " + text_of(normal.z) + " is no direction");
-    return half_space(point, normal);
-  }
-  if (shape == Shape::box) {
-    const Vec3<double> centre = of("centre"), size = of("size"), rotation = of("rotation");
-    if (!(size.x > 0 && size.y > 0 && size.z > 0))
-      throw InputError("obstacle: " + name + ": size: must be three numbers > 0 [m]");
-    return box(centre, size, rotation);
-  }
-  if (shape == Shape::file) {
-    const std::string file = options.text("obstacle: NAME: file", name);
-    return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
-  }
-  const Vec3<double> base = of("base");
-  const double radius = options.number("obstacle: NAME: radius", name),
-               height = options.number("obstacle: NAME: height", name);
-  const double top =
-      shape == Shape::cone ? options.number("obstacle: NAME: top_radius", name) : radius;
-  const std::int64_t facets = options.integer("obstacle: NAME: facets", name);
-  if (facets < 3 || facets > 1000)
-    throw InputError("obstacle: " + name + ": facets: " + std::to_string(facets) +
-                     " must be between 3 and 1000");
-  return cone(base, radius, top, height, static_cast<int>(facets));
-}
-
-ObstacleMotion read_motion(Options& options, const std::string& name, bool half_space) {
-  const auto given = [&](const char* key) {
-    return options.given("obstacle: NAME: " + std::string(key), name);
-  };
-  ObstacleMotion motion;
-  motion.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
-  if (half_space && given("angular_velocity"))
-    throw InputError("obstacle: " + name +
-                     ": angular_velocity: a halfspace cannot turn; box, cone, cylinder and file "
-                     "can");
-  if (!half_space)
-    motion.angular_velocity = vector(options.numbers<3>("obstacle: NAME: angular_velocity", name));
-  if (given("amplitude") != given("frequency"))
-    throw InputError("obstacle: " + name +
-                     (given("amplitude") ? ": amplitude [m] needs frequency [Hz]"
-                                         : ": frequency [Hz] needs amplitude [m]"));
-  if (given("amplitude")) {
-    motion.amplitude = vector(options.numbers<3>("obstacle: NAME: amplitude", name));
-    motion.frequency = options.number("obstacle: NAME: frequency", name);
-  }
-  // Left unread, and so refused, where nothing moves.
-  if (given("velocity") || given("angular_velocity") || given("amplitude"))
-    motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
-  return motion;
-}
-
-void read_contact(Options& options, Scene& scene) {
-  ContactOptions& contact = scene.contact;
-  contact.law = options.choice<ContactLaw>("contact: law");
-  if (!scene.has_sheet && !options.given("contact: young"))
-    throw InputError("contact: young: is required with lattice_file [Pa]");
-  contact.young = options.number("contact: young", {}, scene.ice.young);
-  contact.friction = options.number("contact: friction");
-  if (options.given("contact: plastic_limit"))
-    contact.plastic_limit = options.number("contact: plastic_limit");
-  contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
-  const double restitution = options.number("contact: restitution");
-  if (restitution > 1)
-    throw InputError("contact: restitution: " + text_of(restitution) + " must be <= 1");
-  contact.damping_ratio = damping_ratio_of(restitution);
-  for (const std::string& name : options.names("obstacle")) {
-    Obstacle obstacle = read_shape(options, name);
-    obstacle.name = name;
-    obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
-    obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
-    scene.obstacles.push_back(std::move(obstacle));
-  }
-}
-
-void read_sheet(Options& options, Scene& scene) {
-  SheetPlan& plan = scene.sheet;
-  plan.length = options.number("sheet: length");
-  plan.width = options.number("sheet: width", {}, plan.length);
-  plan.element_size = options.number("sheet: element_size");
-  plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
-  plan.relaxation = options.choice<Relaxation>("sheet: relaxation");
-  const std::int64_t iterations = options.integer("sheet: iterations");
-  plan.iterations = static_cast<int>(std::min<std::int64_t>(iterations, 1'000'000'000));
-  plan.tolerance = options.number("sheet: tolerance");
-  if (options.given("sheet: mesh_file")) scene.mesh_file = options.text("sheet: mesh_file");
-  scene.thickness = options.number("sheet: thickness");
-
-  const double shorter = std::min(plan.length, plan.width);
-  if (plan.element_size > shorter)
-    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
-                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
-                     text_of(shorter) + " [m]");
-  constexpr double most_bodies = 1e8;  // indices of beams and facets are 32-bit
-  const double bodies = (plan.length / plan.element_size) * (plan.width / plan.element_size);
-  if (bodies > most_bodies)
-    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +
-                     text_of(bodies) + " bodies, at most " + text_of(most_bodies) +
-                     " are possible");
-}
-
-void read_ice(Options& options, Scene& scene) {
-  scene.ice.young = options.number("ice: young");
-  scene.ice.poisson = options.number("ice: poisson");
-  scene.ice.density = options.number("ice: density");
-  if (!scene.forces.beam) return;
-  scene.shear_factor = options.number("beam: shear_factor");
-  scene.calibrate = options.choice<Calibrate>("beam: calibrate");
-  if (scene.calibrate != Calibrate::isotropic) {
-    scene.torsion = options.choice<Torsion>("beam: torsion");
-    return;
-  }
-  if (scene.ice.poisson > largest_isotropic_poisson)
-    throw InputError("ice: poisson: " + text_of(scene.ice.poisson) +
-                     " must be <= 1/3 for beam: calibrate: isotropic, or stiffnesses are negative");
-  for (const auto* key : {"beam: shear", "beam: torsion"})
-    options.refuse(key, "would have no effect: 'beam: calibrate' is isotropic");
-}
-
-void read_lattice_source(Options& options, Scene& scene) {
-  scene.has_sheet = options.given_section("sheet");
-  const bool has_file = options.given("lattice_file");
-  if (scene.has_sheet && has_file)
-    throw InputError(
-        "lattice_file: a scene has either 'sheet' or 'lattice_file', this one has both");
-  if (!scene.has_sheet && !has_file)
-    throw InputError("sheet: a scene needs either 'sheet' or 'lattice_file', this one has neither");
-  if (scene.has_sheet) {
-    read_sheet(options, scene);
-    read_ice(options, scene);
-  } else {
-    scene.lattice_file = options.text("lattice_file");
-    constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
-    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
-      options.refuse(key, said_by_file);
-    options.refuse("fracture: calibrate",
-                   "needs 'sheet': a lattice file says nothing of a sheet's section");
-  }
-}
-
-void read_regions_and_cuts(Options& options, Scene& scene) {
-  for (const std::string& name : options.names("region")) {
-    const Region region{name, options.numbers<6>("region: NAME: box", name)};
-    const auto& box = region.box;
-    if (box[0] > box[1] || box[2] > box[3] || box[4] > box[5])
-      throw InputError("region: " + name +
-                       ": box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, "
-                       "y0 <= y1, z0 <= z1 [m]");
-    const auto last = scene.has_sheet ? sheet_sets.begin() : sheet_sets.end() - 1;
-    if (std::find(last, sheet_sets.end(), name) != sheet_sets.end())
-      throw InputError("region: names: '" + name + "' is the name of a set that there is already");
-    scene.regions.push_back(region);
-  }
-  for (const std::string& name : options.names("cut")) {
-    const Cut cut{name, options.numbers<2>("cut: NAME: from", name),
-                  options.numbers<2>("cut: NAME: to", name)};
-    if (cut.from == cut.to) throw InputError("cut: " + name + ": from and to are the same point");
-    scene.cuts.push_back(cut);
-  }
-}
-
-/// Values of components that are not fixed would be ignored in silence.
-void check_fixed(const Boundary& boundary, const std::string& key, const Point3& values,
-                 std::size_t first) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (values[k] != 0 && !boundary.fixed[first + k])
-      throw InputError("boundary: " + boundary.name + ": " + key + ": " + text_of(values[k]) +
-                       " has no effect: '" + std::string(components[first + k]) +
-                       "' is not in 'boundary: " + boundary.name + ": fix'");
-  }
-}
-
-Boundary read_boundary(Options& options, const std::string& name) {
-  Boundary boundary;
-  boundary.name = name;
-  boundary.set = options.text("boundary: NAME: set", name);
-  for (const std::string& word : options.words("boundary: NAME: fix", name)) {
-    const auto at = std::find(components.begin(), components.end(), word) - components.begin();
-    boundary.fixed[static_cast<std::size_t>(at)] = true;
-  }
-  if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))
-    throw InputError("boundary: " + name + ": fix: is empty; nothing would be prescribed");
-  if (options.given("boundary: NAME: displacement", name)) {
-    if (options.given("boundary: NAME: velocity", name))
-      throw InputError("boundary: " + name + ": give either velocity or displacement, not both");
-    boundary.displacement = options.numbers<3>("boundary: NAME: displacement", name);
-    check_fixed(boundary, "displacement", *boundary.displacement, 0);
-  } else {
-    boundary.velocity = Point3{};
-    if (options.given("boundary: NAME: velocity", name))
-      boundary.velocity = options.numbers<3>("boundary: NAME: velocity", name);
-    check_fixed(boundary, "velocity", *boundary.velocity, 0);
-  }
-  boundary.angular_velocity = options.numbers<3>("boundary: NAME: angular_velocity", name);
-  check_fixed(boundary, "angular_velocity", boundary.angular_velocity, 3);
-  boundary.ramp.seconds = options.number("boundary: NAME: ramp", name);
-  return boundary;
-}
-
-/// Bodies with mass cannot be displaced at once.
-void require_motion(const Scene& scene, const Boundary& boundary) {
-  if (scene.integrator == Integrator::quasistatic || boundary.ramp.seconds > 0 ||
-      !boundary.displacement || *boundary.displacement == Point3{})
-    return;
-  throw InputError("boundary: " + boundary.name +
-                   ": displacement needs ramp > 0 in a run with time: at once would be a jump");
-}
-
-Load read_load(Options& options, const std::string& name) {
-  Load load;
-  load.name = name;
-  const bool on_set = options.given("load: NAME: set", name);
-  const bool at_point = options.given("load: NAME: point", name);
-  if (on_set == at_point)
-    throw InputError("load: " + name + ": give either set or point, " +
-                     (on_set ? "not both" : "neither is there"));
-  if (on_set) load.set = options.text("load: NAME: set", name);
-  if (at_point) load.point = options.numbers<2>("load: NAME: point", name);
-  load.force = options.numbers<3>("load: NAME: force", name);
-  load.moment = options.numbers<3>("load: NAME: moment", name);
-  load.ramp.seconds = options.number("load: NAME: ramp", name);
-  constexpr Point3 nothing{};
-  if (load.force == nothing && load.moment == nothing)
-    throw InputError("load: " + name + ": force and moment are both zero; it would have no effect");
-  return load;
-}
+namespace {
 
 void read_time(Options& options, Scene& scene) {
   scene.time.end = options.number("time: end");
@@ -377,8 +61,8 @@ void read_dynamics(Options& options, Scene& scene) {
   if (scene.forces.beam) {
     scene.beam.damping_ratio = options.number("beam: damping_ratio");
     scene.beam.damping_modes = options.choice<DampingModes>("beam: damping_modes");
-    if (scene.beam.damping_ratio == 0 && options.given("beam: damping_modes"))
-      throw InputError("beam: damping_modes: would have no effect: 'beam: damping_ratio' is 0");
+    if (scene.beam.damping_ratio == 0)
+      options.refuse("beam: damping_modes", "would have no effect: 'beam: damping_ratio' is 0");
   }
   for (const std::string& name : options.names("initial")) {
     const Initial initial{name, options.text("initial: NAME: set", name),
@@ -389,6 +73,7 @@ void read_dynamics(Options& options, Scene& scene) {
 }
 
 void read_report(Options& options, Scene& scene) {
+  scene.report.may_go = options.has_command_line() && !options.on_command_line("report");
   for (const std::string& word : options.words("report")) {
     if (word == "tension") scene.report.tension = true;
     if (word == "bending") scene.report.bending = true;
@@ -424,14 +109,21 @@ void check_floats(const Scene& scene) {
                      text_of(scene.water_density) + " [kg/m^3], or the sheet sinks");
 }
 
-}  // namespace
+/// Solver options that nothing in this run could ask for.
+void leave_out_solvers(Options& options, const Scene& scene) {
+  const bool chosen = options.on_command_line("integrator");
+  if (scene.integrator == Integrator::quasistatic) options.leave_out("ts_", chosen);
+  if (scene.integrator != Integrator::leapfrog) return;
+  for (const auto* family : {"snes_", "ksp_", "pc_", "mat_"}) options.leave_out(family, chosen);
+}
 
-Scene read_scene(const std::string& path) {
-  Options options(scene_keys());
+/// The scene as the options say it. What has no effect is refused, or left in options.idle().
+Scene read_all(Options& options, const std::string& path) {
   Scene scene;
   scene.path = path;
   scene.name = std::filesystem::path(path).stem().string();
   scene.integrator = options.choice<Integrator>("integrator");
+  leave_out_solvers(options, scene);
   scene.planar = options.choice<Planarity>("model: planar");
   read_forces(options, scene);
   read_lattice_source(options, scene);
@@ -446,12 +138,8 @@ Scene read_scene(const std::string& path) {
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   if (scene.forces.contact) read_contact(options, scene);
   check_floats(scene);
-  for (const std::string& name : options.names("boundary")) {
-    scene.boundaries.push_back(read_boundary(options, name));
-    require_motion(scene, scene.boundaries.back());
-  }
-  for (const std::string& name : options.names("load"))
-    scene.loads.push_back(read_load(options, name));
+  read_boundaries(options, scene);
+  read_loads(options, scene);
   read_time(options, scene);
   read_dynamics(options, scene);
   read_report(options, scene);
@@ -460,9 +148,53 @@ Scene read_scene(const std::string& path) {
   scene.options_yaml = options.yaml();  // without the restart: it repeats the whole run
   if (options.given("checkpoint: restart"))
     scene.checkpoint.restart = options.text("checkpoint: restart");
-  options.reject_unread();
+  options.refuse_unread();
   return scene;
 }
+
+/// Labels of the keys that have no effect in the scene's file as it is, without a command line, as
+/// far as it can be read so.
+std::set<std::string> idle_without_command_line(const std::string& path, const UserOptions& user) {
+  std::set<std::string> labels;
+  try {
+    Options options(scene_keys(), {{}, user.scene, {}}, true);
+    try {
+      (void)read_all(options, path);
+    } catch (const InputError&) {  // what the command line mends
+    }
+    for (const IdleKey& key : options.idle()) labels.insert(key.label);
+  } catch (const InputError&) {
+  }
+  return labels;
+}
+
+/// Keys of the file that have no effect: an error, unless the command line is the cause.
+void judge_idle_keys(const Options& options, const std::string& path, const UserOptions& user,
+                     Scene& scene) {
+  if (options.idle().empty()) return;
+  const std::set<std::string> already = idle_without_command_line(path, user);
+  std::vector<std::string> labels;
+  for (const IdleKey& key : options.idle()) {
+    if (already.contains(key.label)) throw InputError(key.label + ": " + key.why);
+    labels.push_back(key.label);
+  }
+  scene.remarks.push_back("left without effect by the command line: " + some_of(labels) +
+                          (labels.size() == 1 ? " (" + options.idle().front().why + ")" : ""));
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path, const UserOptions& user) {
+  Options options(scene_keys(), user);
+  Scene scene = read_all(options, path);
+  judge_idle_keys(options, path, user, scene);
+  scene.unused_options = options.may_stay_unused();
+  if (std::string remark = options.environment_remark(); !remark.empty())
+    scene.remarks.insert(scene.remarks.begin(), remark);
+  return scene;
+}
+
+std::string options_topic(const std::string& topic) { return help_topic(scene_keys(), topic); }
 
 std::string options_help() {
   return "floe: a floating ice sheet as rigid bodies joined by beams\n\n"

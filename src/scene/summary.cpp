@@ -149,29 +149,44 @@ void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::
 
 }  // namespace
 
-void check_reports(const Scene& scene) {
-  if (scene.report.tension) {
-    const bool pulled =
-        boundary_on(scene, "left") != nullptr && boundary_on(scene, "right") != nullptr;
-    if (!scene.has_sheet || !pulled)
-      throw InputError(
-          "report: tension needs a sheet and boundaries that fix x of its sets 'left' and 'right'");
-    const double end = scene.time.end;
-    if (boundary_on(scene, "left")->value(end)[0] == boundary_on(scene, "right")->value(end)[0])
-      throw InputError("report: tension needs boundaries that move 'right' against 'left' in x");
-  }
-  if (scene.report.bending) {
-    const Load* load = point_load(scene);
-    if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)
-      throw InputError(
-          "report: bending needs a floating sheet (buoyancy) and a vertical load at a point");
-    if (scene.loads.size() > 1)
-      throw InputError("report: bending compares one load with theory; load: names: has " +
-                       std::to_string(scene.loads.size()));
-    if (load->ramp.value(0) != 0)
-      throw InputError("load: " + load->name +
-                       ": ramp: 0 must be > 0 for report: bending: deflections count from time 0");
-  }
+namespace {
+
+/// Why this scene is no such test, or nothing.
+std::string tension_problem(const Scene& scene) {
+  const Boundary *left = boundary_on(scene, "left"), *right = boundary_on(scene, "right");
+  if (!scene.has_sheet || left == nullptr || right == nullptr)
+    return "report: tension needs a sheet and boundaries that fix x of its sets 'left' and 'right'";
+  const double end = scene.time.end;
+  if (left->value(end)[0] == right->value(end)[0])
+    return "report: tension needs boundaries that move 'right' against 'left' in x";
+  return {};
+}
+
+std::string bending_problem(const Scene& scene) {
+  const Load* load = point_load(scene);
+  if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)
+    return "report: bending needs a floating sheet (buoyancy) and a vertical load at a point";
+  if (scene.loads.size() > 1)
+    return "report: bending compares one load with theory; load: names: has " +
+           std::to_string(scene.loads.size());
+  if (load->ramp.value(0) != 0)
+    return "load: " + load->name +
+           ": ramp: 0 must be > 0 for report: bending: deflections count from time 0";
+  return {};
+}
+
+}  // namespace
+
+void check_reports(Scene& scene) {
+  const auto check = [&](bool& wanted, std::string (*problem_of)(const Scene&)) {
+    const std::string problem = wanted ? problem_of(scene) : "";
+    if (problem.empty()) return;
+    if (!scene.report.may_go) throw InputError(problem);
+    wanted = false;
+    scene.remarks.push_back(problem + "; left out, since the command line is the cause");
+  };
+  check(scene.report.tension, tension_problem);
+  check(scene.report.bending, bending_problem);
 }
 
 template <class Space>

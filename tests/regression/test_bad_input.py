@@ -159,9 +159,13 @@ SCENES = {
     "region upside down": (GOOD + "region: {names: [r], r: {box: 1 0 0 1 0 1}}\n", "region: r: box"),
     "cut beside the sheet": (GOOD + "cut: {names: [c], c: {from: [9, -9], to: [9, 9]}}\n", "cut: c"),
     "contact in statics": (TOUCHING, "forces: contact", ["-integrator", "quasistatic"]),
-    "contact in implicit steps": (TOUCHING + "contact: {young: 1e9}\ntime: {end: 1}\n", "integrator: implicit cannot step force 'contact'",
+    "contact in implicit steps": (TOUCHING + "contact: {young: 1e9}\ntime: {end: 1}\n", "forces: contact: integrator: implicit cannot step it",
                                   ["-integrator", "implicit"]),
-    "contact in Runge-Kutta steps": (TOUCHING + "contact: {young: 1e9}\ntime: {end: 1}\n", "ts_type: 'rk' cannot step force 'contact'",
+    "fracture in implicit steps": (BREAKABLE + "time: {end: 1}\n", "take integrator: explicit or quasistatic, or leave fracture out",
+                                   ["-integrator", "implicit"]),
+    "fracture in Runge-Kutta steps": ("integrator: explicit\n" + BREAKABLE + "time: {end: 1}\n", "take leapfrog (without -ts_type)",
+                                      ["-ts_type", "rk"]),
+    "contact in Runge-Kutta steps": (TOUCHING + "contact: {young: 1e9}\ntime: {end: 1}\n", "forces: contact: ts_type: rk cannot step it",
                                      ["-ts_type", "rk"]),
     "contact that does not act": (GOOD + "contact: {friction: 0.1}\n", "contact: friction"),
     "obstacle that does not act": (GOOD + FLOOR, "obstacle"),
@@ -177,8 +181,8 @@ SCENES = {
     "half-space the wrong way round":
         (obstacle("shape: halfspace, point: [0, 0, -5], normal: [0, 0, -1]"), "obstacle: o: body 0 lies wholly inside"),
     "contacts of no stable step": (TOUCHING + FLOOR.replace("shape: halfspace", "point: [0, 0, -0.5], shape: halfspace")
-                                   + "contact: {young: 1e40}\n", "time: dt"),
-    "a step of no use": (MOVING, "steps to time: end", ["-time_dt", "1e-30"]),
+                                   + "contact: {young: 1e15}\ntime: {end: 1e12}\n", "time: dt"),
+    "a step of no use": (MOVING, "steps to time: end", ["-time_dt", "1e-15"]),
     "radius of a box": (obstacle("shape: box, radius: 1"), "obstacle: o: radius"),
     "half-space that turns":
         (obstacle("shape: halfspace, angular_velocity: [0, 0, 1]"), "obstacle: o: angular_velocity"),

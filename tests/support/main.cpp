@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
   floe::Mpi mpi(argc, argv);
   int failed = 0;
   {
-    floe::Session session(argc, argv, "");
+    floe::Session session(argv[0]);
     floe::set_auditing(true);
     const OwnFolder folder;
     if (floe::rank() != 0) {

@@ -1,12 +1,15 @@
 // Options: the table's reader, the scene's keys, the command line and the text of a scene.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "base/option_names.h"
 #include "base/option_values.h"
+#include "floe/base/command_line.h"
+#include "floe/base/environment.h"
 #include "floe/base/options.h"
 #include "floe/base/scene_text.h"
 #include "floe/base/spelling.h"
@@ -35,22 +38,39 @@ constexpr auto minimal = "forces: [beam, gravity, buoyancy]\nsheet: {length: 40}
 
 class SceneOptions : public testing::Test {
  protected:
-  void SetUp() override { check(PetscOptionsClear(nullptr)); }
-  void TearDown() override { check(PetscOptionsClear(nullptr)); }
-
-  static void add(const std::string& yaml) {
-    check(PetscOptionsInsertStringYAML(nullptr, yaml.c_str()));
+  static UserOptions given(const std::string& yaml, const GivenOptions& command_line = {}) {
+    return {{}, parse_scene("story.yaml", yaml), command_line};
   }
-  static Scene scene_of(const std::string& yaml) {
-    check(PetscOptionsClear(nullptr));
-    add(yaml);
-    return read_scene("folder/story.yaml");
+  static Scene scene_of(const std::string& yaml, const GivenOptions& command_line = {}) {
+    return read_scene("folder/story.yaml", given(yaml, command_line));
   }
-  static std::string scene_error(const std::string& yaml) {
-    return error_of([&] { scene_of(yaml); });
+  static std::string scene_error(const std::string& yaml, const GivenOptions& command_line = {}) {
+    return error_of([&] { scene_of(yaml, command_line); });
   }
   /// Of the minimal scene with one more line.
   static std::string error_with(const std::string& line) { return scene_error(minimal + line); }
+  /// A command line of one option.
+  static GivenOptions words(const std::string& name, const std::string& value) {
+    return {{name, {value, Source::command_line, {}, false}}};
+  }
+  /// The only remark of a scene under a command line, "" if there is none.
+  static std::string remark_of(const std::string& yaml, const GivenOptions& command_line) {
+    const Scene scene = scene_of(yaml, command_line);
+    EXPECT_LE(scene.remarks.size(), 1U);
+    return scene.remarks.empty() ? "" : scene.remarks.front();
+  }
+};
+
+/// What is in PETSc's table for one test.
+class PetscTable {
+ public:
+  explicit PetscTable(const std::string& options) {
+    check(PetscOptionsClear(nullptr));
+    check(PetscOptionsInsertString(nullptr, options.c_str()));
+  }
+  ~PetscTable() { (void)PetscOptionsClear(nullptr); }
+  PetscTable(const PetscTable&) = delete;
+  PetscTable& operator=(const PetscTable&) = delete;
 };
 
 TEST(OptionValues, AreConvertedStrictly) {
@@ -63,8 +83,9 @@ TEST(OptionValues, AreConvertedStrictly) {
   EXPECT_EQ(to_integer("9223372036854775807"), 9223372036854775807);
   for (const auto* bad : {"", "1.5", "1e3", "9223372036854775808", "x"})
     EXPECT_FALSE(to_integer(bad)) << bad;
-  for (const auto* yes : {"", "true", "Yes", "1"}) EXPECT_EQ(to_flag(yes), true) << yes;
-  for (const auto* no : {"false", "NO", "0"}) EXPECT_EQ(to_flag(no), false) << no;
+  for (const auto* yes : {"", "true", "Yes", "1", "True", "TRUE", "on", "ON"})
+    EXPECT_EQ(to_flag(yes), true) << yes;
+  for (const auto* no : {"false", "NO", "0", "False", "off"}) EXPECT_EQ(to_flag(no), false) << no;
   EXPECT_FALSE(to_flag("maybe"));
 }
 
@@ -79,11 +100,14 @@ TEST(OptionValues, ListsAreSeparatedByCommasOrBlanks) {
 TEST(OptionValues, RangesAreOpenOrClosedAsWritten) {
   EXPECT_FALSE(in_range(0, "> 0"));
   EXPECT_TRUE(in_range(0, ">= 0"));
-  EXPECT_TRUE(in_range(0.49, "in (-1, 0.5)"));
-  EXPECT_FALSE(in_range(0.5, "in (-1, 0.5)"));
-  EXPECT_FALSE(in_range(-1, "in (-1, 0.5)"));
+  EXPECT_TRUE(in_range(0.49, "> -1, < 0.5"));
+  EXPECT_FALSE(in_range(0.5, "> -1, < 0.5"));
+  EXPECT_FALSE(in_range(-1, "> -1, < 0.5"));
+  EXPECT_TRUE(in_range(1e7, ">= 0, <= 1e7"));
+  EXPECT_FALSE(in_range(1.1e7, ">= 0, <= 1e7"));
   EXPECT_TRUE(in_range(-7, ""));
-  EXPECT_THROW(in_range(0, "about 3"), std::logic_error);
+  for (const auto* bad : {"about 3", ">", "> x", "= 3", "> 0,< 1"})
+    EXPECT_THROW(in_range(0, bad), std::logic_error) << bad;
 }
 
 TEST(OptionNames, NearestIsASpellingOrTheRightWordInTheWrongSection) {
@@ -113,9 +137,31 @@ TEST(SceneKeys, TableIsConsistent) {
     EXPECT_FALSE(is_petsc_option(option_name(line.key))) << line.key;
     EXPECT_FALSE(line.doc.empty()) << line.key;
     EXPECT_EQ(line.kind == Kind::numbers, line.count > 1) << line.key;
-    if (line.kind != Kind::number) continue;
-    EXPECT_NO_THROW(in_range(1, line.allowed)) << line.key;
+    if (line.kind != Kind::number && line.kind != Kind::integer && line.kind != Kind::numbers)
+      continue;
+    const Bounds bounds = bounds_of(line.allowed);
+    EXPECT_TRUE(std::isfinite(bounds.least) && std::isfinite(bounds.most)) << line.key;
+    EXPECT_LT(bounds.least, bounds.most) << line.key;
+    const auto fallback = to_number(line.fallback);
+    EXPECT_TRUE(!fallback || in_range(*fallback, line.allowed)) << line.key;
   }
+}
+
+TEST(SceneKeys, HelpOfATopicIsASectionOrAKey) {
+  const auto lines = [](const char* topic) {
+    const std::string text = options_topic(topic);
+    return std::count(text.begin(), text.end(), '\n') / 2;
+  };
+  EXPECT_EQ(lines("sheet_length"), 1);
+  EXPECT_EQ(lines("sheet: length"), 1);
+  EXPECT_EQ(lines("-gravity"), 1);
+  EXPECT_EQ(lines("boundary_left_fix"), 1);
+  EXPECT_EQ(lines("sheet"), lines("sheet:"));
+  EXPECT_EQ(lines("cut"), 3);
+  EXPECT_EQ(lines("cut_mine"), 2);
+  EXPECT_EQ(options_topic("shet"), "");
+  EXPECT_EQ(options_topic(""), "");
+  EXPECT_TRUE(contains(options_topic("sheet_thickness"), "a number >= 1e-6, <= 1e5 [m]"));
 }
 
 TEST_F(SceneOptions, DefaultsOfTheTableAreThoseOfTheStructs) {
@@ -210,15 +256,15 @@ TEST_F(SceneOptions, EveryKeyArrivesInItsPlace) {
 TEST_F(SceneOptions, OptionsAsUsedRepeatTheRun) {
   const Scene first = scene_of(
       std::string(minimal) +
-      "boundary: {names: [a], a: {set: left, fix: [x], displacement: [1, 0, 0]}}\n"
-      "region: {names: [r], r: {box: [0, 1, 0, 1, 0, 1]}}\noutput: {dir: 'some \"where\"'}\n"
-      "snes_rtol: 1e-9\nksp_view:\nlog_view: ':log.txt'\n");
+          "boundary: {names: [a], a: {set: left, fix: [x], displacement: [1, 0, 0]}}\n"
+          "region: {names: [r], r: {box: [0, 1, 0, 1, 0, 1]}}\noutput: {dir: 'some \"where\"'}\n"
+          "snes_rtol: 1e-9\nksp_view:\nlog_view: ':log.txt'\n",
+      words("sheet_seed", "3"));
+  EXPECT_TRUE(contains(first.options_yaml, "  seed: 3\n"));
   EXPECT_TRUE(contains(first.options_yaml, "snes_rtol: 1e-9\n"));
   EXPECT_TRUE(contains(first.options_yaml, "ksp_view:\n"));
   EXPECT_TRUE(contains(first.options_yaml, "log_view: \":log.txt\"\n"));
-  check(PetscOptionsClear(nullptr));
-  add(first.options_yaml);
-  const Scene again = read_scene("elsewhere/options.yaml");
+  const Scene again = read_scene("elsewhere/options.yaml", given(first.options_yaml));
   EXPECT_EQ(again.options_yaml, first.options_yaml);
   EXPECT_EQ(again.output.dir, "some \"where\"");
 }
@@ -226,20 +272,23 @@ TEST_F(SceneOptions, OptionsAsUsedRepeatTheRun) {
 TEST_F(SceneOptions, AnUnknownOptionNamesTheNearest) {
   EXPECT_EQ(error_with("shet: {length: 3}\n"),
             "shet_length: unknown option; the nearest known one is 'sheet: length' (floe -help "
-            "lists them)");
+            "lists them) (story.yaml, line 3)");
   EXPECT_TRUE(contains(error_with("kps_type: cg\n"), "ksp_type"));
 }
 
 TEST_F(SceneOptions, ErrorsNameKeyValueAndWhatIsAllowed) {
   EXPECT_EQ(error_with("sheet_thickness: -3\n"),
-            "sheet: thickness: -3 must be a finite number > 0 [m]");
-  EXPECT_EQ(error_with("ice: {young: nan}\n"), "ice: young: nan must be a finite number > 0 [Pa]");
-  EXPECT_EQ(error_with("ice: {young: }\n"),
-            "ice: young: no value given, must be a finite number > 0 [Pa]");
+            "sheet: thickness: -3 must be a number >= 1e-6, <= 1e5 [m] (story.yaml, line 3)");
+  EXPECT_EQ(error_with("ice:\n  young: nan\n"),
+            "ice: young: nan must be a number >= 1, <= 1e15 [Pa] (story.yaml, line 4)");
+  for (const auto* nothing : {"", "~", "null"})
+    EXPECT_EQ(
+        error_with("ice: {young: " + std::string(nothing) + "}\n"),
+        "ice: young: no value given, must be a number >= 1, <= 1e15 [Pa] (story.yaml, line 3)");
   EXPECT_EQ(error_with("beam: {shear: strong}\n"),
-            "beam: shear: strong must be one of one_point | exact | none");
+            "beam: shear: strong must be one of one_point | exact | none (story.yaml, line 3)");
   EXPECT_EQ(error_with("load: {names: [p], p: {set: left, force: [1, 2, 3, 4]}}\n"),
-            "load: p: force: 1,2,3,4 must be 3 finite numbers [N]");
+            "load: p: force: 1,2,3,4 must be 3 numbers >= -1e18, <= 1e18 [N] (story.yaml, line 3)");
   EXPECT_EQ(
       error_with("boundary: {names: [a], a: {set: left}}\n"),
       "boundary: a: fix: is missing; it must be a list of x | y | z | rx | ry | rz, none twice");
@@ -289,7 +338,8 @@ TEST_F(SceneOptions, SectionsOfNamesMustMatchTheirList) {
   EXPECT_TRUE(contains(error_with("region: {names: [r]}\n"), "no such section"));
   EXPECT_TRUE(contains(error_with("region: {names: [r], r: }\n"), "no such section"));
   EXPECT_TRUE(contains(error_with("region: {r: {box: [0, 1, 0, 1, 0, 1]}}\n"), "not listed"));
-  for (const auto* names : {"[a, a]", "[A]", "[a_b]", "[names]", "['']"})
+  EXPECT_EQ(error_with("region: {names: [Aa1], Aa1: {box: 0 1 0 1 0 1}}\n"), "");
+  for (const auto* names : {"[a, a]", "[a, A]", "[a_b]", "[names]", "['']", "[ä]"})
     EXPECT_NE(error_with("region: {names: " + std::string(names) + ", a: {box: 0 1 0 1 0 1}}\n"),
               "")
         << names;
@@ -333,22 +383,145 @@ TEST_F(SceneOptions, OutputFolderMustBePossible) {
 }
 
 TEST_F(SceneOptions, UnusedPetscOptionsAreRejectedUnlessTheyMayBeLate) {
-  scene_of(std::string(minimal) + "ksp_view:\nviewer_x: 1\n");
-  EXPECT_EQ(error_of(reject_unused_options), "");
-  scene_of(std::string(minimal) + "ksp_tpye: cg\n");
-  EXPECT_TRUE(contains(error_of(reject_unused_options), "is it 'ksp_type'?"));
+  const auto error = [](const std::set<std::string>& exempt = {}) {
+    return error_of([&] { reject_unused_options(exempt); });
+  };
+  {
+    const PetscTable table("-ksp_view -viewer_x 1");
+    EXPECT_EQ(error(), "");
+  }
+  const PetscTable table("-ksp_tpye cg");
+  EXPECT_TRUE(contains(error(), "is it 'ksp_type'?"));
+  EXPECT_EQ(error({"ksp_tpye"}), "");
+}
+
+TEST_F(SceneOptions, TenThousandSectionsAreRead) {
+  std::string names, sections;
+  for (int k = 0; k < 10'000; ++k) {
+    const std::string name = "c" + std::to_string(k), y = std::to_string(0.001 * k);
+    names += (k ? ", " : "") + name;
+    sections += "  " + name + ": {from: [0, " + y + "], to: [1, " + y + "]}\n";
+  }
+  const std::string cuts = "cut:\n  names: [" + names + "]\n" + sections;
+  const Scene scene = scene_of(minimal + cuts, words("cut_c9999_to", "2 3"));
+  ASSERT_EQ(scene.cuts.size(), 10'000U);
+  EXPECT_EQ(scene.cuts[9998].to, (Point2{1, 9.998}));
+  EXPECT_EQ(scene.cuts[9999].to, (Point2{2, 3}));
+  // All of them idle: the file is read a second time.
+  EXPECT_TRUE(contains(remark_of(minimal + cuts, words("cut_names", "c1")), "and 9993 more"));
+}
+
+TEST_F(SceneOptions, WhatTheCommandLineMakesIdleIsARemark) {
+  const std::string moving = "integrator: explicit\n" + std::string(minimal);
+  const std::string damped = moving + "beam: {damping_ratio: 0.1, damping_modes: axial}\n";
+  EXPECT_EQ(remark_of(damped, {}), "");
+  EXPECT_EQ(remark_of(damped, words("beam_damping_ratio", "0")),
+            "left without effect by the command line: beam: damping_modes (would have no effect: "
+            "'beam: damping_ratio' is 0)");
+  // What the file itself makes idle, and what the command line gives in vain, stays an error.
+  const std::string undamped = moving + "beam: {damping_modes: axial}\n";
+  EXPECT_TRUE(contains(scene_error(undamped), "beam: damping_modes: would have no effect"));
+  EXPECT_TRUE(
+      contains(scene_error(undamped, words("sheet_seed", "2")), "beam: damping_modes: would"));
+  EXPECT_TRUE(contains(scene_error(moving, words("beam_damping_modes", "axial")), "damping_modes"));
+
+  EXPECT_TRUE(
+      contains(remark_of(damped + "time: {safety: 0.5}\nlimit: {velocity: 3}\n"
+                                  "initial: {names: [i], i: {set: all, velocity: [1, 0, 0]}}\n",
+                         words("integrator", "quasistatic")),
+               "initial: names, limit: velocity, time: safety, beam: damping_ratio, beam: "
+               "damping_modes"));
+  EXPECT_TRUE(contains(remark_of(std::string(minimal) + "gravity: 9\nwater: {density: 1025}\n",
+                                 words("forces", "beam")),
+                       "gravity, water: density"));
+  EXPECT_TRUE(contains(remark_of(minimal, words("lattice_file", "a.h5")), "sheet: length"));
+  EXPECT_TRUE(
+      contains(scene_error("forces: [beam]\nlattice_file: a.h5\n", words("sheet_length", "3")),
+               "this one has both"));
+}
+
+TEST_F(SceneOptions, OfTwoKeysThatExcludeEachOtherTheCommandLinesCounts) {
+  const std::string pushed =
+      std::string(minimal) +
+      "boundary: {names: [a], a: {set: left, fix: x y, velocity: [1, 2, 0]}}\n"
+      "load: {names: [p], p: {set: left, force: [1, 0, 0]}}\n";
+  GivenOptions other = words("boundary_a_displacement", "3 0 0");
+  other["load_p_point"] = {"1 1", Source::command_line, {}, false};
+  const Scene scene = scene_of(pushed, other);
+  EXPECT_EQ(scene.boundaries[0].displacement, (Point3{3, 0, 0}));
+  EXPECT_FALSE(scene.boundaries[0].velocity);
+  EXPECT_EQ(scene.loads[0].point, (Point2{1, 1}));
+  EXPECT_EQ(scene.loads[0].set, "");
+  ASSERT_EQ(scene.remarks.size(), 1U);
+  EXPECT_TRUE(contains(scene.remarks[0], "boundary: a: velocity, load: p: set"));
+  // Components that the command line frees
+  const Scene freed = scene_of(pushed, words("boundary_a_fix", "x"));
+  EXPECT_EQ(freed.boundaries[0].velocity, (Point3{1, 0, 0}));
+  EXPECT_TRUE(contains(freed.remarks.at(0), "2 has no effect: 'y' is not in"));
+  // A section that is not named any more
+  EXPECT_TRUE(contains(remark_of(pushed, words("load_names", "")), "load: p"));
+  EXPECT_TRUE(contains(remark_of("integrator: explicit\nforces: [gravity, buoyancy, drag]\n"
+                                 "sheet: {length: 40}\nwater: {drag_linear: 1}\n",
+                                 words("integrator", "quasistatic")),
+                       "forces: drag"));
+}
+
+TEST_F(SceneOptions, OptionsOfTheEnvironmentAreThoseOfPetscOnly) {
+  UserOptions user = given(minimal);
+  user.environment = parse_petsc_options(
+      "-snes_rtol 1e-3 -ksp_monitor -sheet_length 3 -ts_type bdf -foo 'a b' stray -options_file x",
+      "PETSC_OPTIONS");
+  user.scene["ksp_monitor"] = {":file", Source::scene, {}, false};
+  const Scene scene = read_scene("story.yaml", user);
+  EXPECT_EQ(scene.sheet.length, 40);
+  EXPECT_TRUE(contains(scene.options_yaml, "snes_rtol: 1e-3\n"));
+  EXPECT_TRUE(contains(scene.options_yaml, "ksp_monitor: \":file\"\n")) << "the scene's wins";
+  EXPECT_FALSE(contains(scene.options_yaml, "foo"));
+  EXPECT_EQ(scene.unused_options, (std::set<std::string>{"snes_rtol"}));
+  ASSERT_EQ(scene.remarks.size(), 1U);
+  EXPECT_EQ(scene.remarks[0],
+            "options of the environment: -snes_rtol 1e-3 (PETSC_OPTIONS); not taken: -foo "
+            "(PETSC_OPTIONS), -options_file (PETSC_OPTIONS), -ts_type (PETSC_OPTIONS)");
+}
+
+TEST_F(SceneOptions, SolverOptionsThatNothingCouldAskForAreLeftOut) {
+  const std::string moving = "integrator: explicit\n" + std::string(minimal);
+  UserOptions user = given(moving);
+  user.environment = parse_petscrc("# mine\n-ksp_type cg # why\n\n-log_view\n", ".petscrc");
+  const Scene scene = read_scene("story.yaml", user);
+  EXPECT_EQ(scene.remarks.at(0),
+            "options of the environment: -log_view (.petscrc, line 4); not taken: -ksp_type "
+            "(.petscrc, line 2)");
+  const Scene still =
+      scene_of(std::string(minimal) + "snes_rtol: 1e-9\n", words("integrator", "explicit"));
+  EXPECT_TRUE(contains(still.remarks.at(0), "snes_rtol (nothing in this run would ask for it)"));
+  EXPECT_FALSE(contains(still.options_yaml, "snes_rtol"));
+}
+
+TEST(Environment, TextsAreSplitAsPetscDoes) {
+  const GivenOptions options = parse_petsc_options(" -a  -b -1  -c \"x y\"  -d 'z' -e", "here");
+  ASSERT_EQ(options.size(), 5U);
+  EXPECT_EQ(options.at("a").value, "");
+  EXPECT_EQ(options.at("b").value, "-1");
+  EXPECT_EQ(options.at("c").value, "x y");
+  EXPECT_EQ(options.at("d").value, "z");
+  const GivenOptions file = parse_petscrc("-a 1\r\n\t-b\nalias -c -d\njunk\n#-e\n-a 2\n", "rc");
+  ASSERT_EQ(file.size(), 2U);
+  EXPECT_EQ(file.at("a").value, "2");
+  EXPECT_EQ(file.at("a").place, "rc, line 6");
+  EXPECT_EQ(file.at("a").source, Source::environment);
 }
 
 std::string command_line_error(std::vector<const char*> words) {
   words.insert(words.begin(), "floe");
-  return error_of([&] { check_command_line(static_cast<int>(words.size()), words.data()); });
+  return error_of([&] { read_command_line(static_cast<int>(words.size()), words.data()); });
 }
 
 TEST(CommandLine, WordsMustBelongToAnOption) {
   EXPECT_EQ(command_line_error({"a.yaml", "-gravity", "-9.81", "-check", "-output_dir", "x"}), "");
   EXPECT_EQ(command_line_error({"a.yaml", "-sheet_length", "-inf"}), "")
       << "refused later, as a value";
-  for (const auto* word : {"stray", "-", "-1", "", "--key", "-key=3", "-options_file", "-history"})
+  for (const auto* word : {"stray", "-", "-1", "", "--key", "-key=3", "-options_file"})
     EXPECT_NE(command_line_error({"a.yaml", word}), "") << word;
   EXPECT_NE(command_line_error({"a.yaml", "-check", "no", "stray"}), "");
   EXPECT_NE(command_line_error({"a.yaml", "-skip_petscrc", "perhaps"}), "");
@@ -356,14 +529,28 @@ TEST(CommandLine, WordsMustBelongToAnOption) {
   EXPECT_TRUE(contains(command_line_error({"-check", "a.yaml"}), "usage"));
 }
 
+TEST(CommandLine, TheLastValueCounts) {
+  const std::array words{"floe",     "a.yaml", "-gravity",      "1",     "-KSP_Type", "cg",
+                         "-gravity", "-2",     "-skip_petscrc", "-check"};
+  const CommandLine line = read_command_line(static_cast<int>(words.size()), words.data());
+  EXPECT_EQ(line.scene, "a.yaml");
+  EXPECT_FALSE(line.petscrc);
+  ASSERT_EQ(line.options.size(), 3U);
+  EXPECT_EQ(line.options.at("gravity").value, "-2");
+  EXPECT_EQ(line.options.at("ksp_type").value, "cg") << "PETSc knows no upper case";
+  EXPECT_EQ(line.options.at("check").value, "");
+}
+
 TEST(CommandLine, HelpNeedsNoScene) {
   const auto help = [](std::vector<const char*> words) {
     return wants_help(static_cast<int>(words.size()), words.data());
   };
-  EXPECT_EQ(help({"floe", "a.yaml", "-check"}), Help::none);
-  EXPECT_EQ(help({"floe", "-help"}), Help::text);
-  EXPECT_EQ(help({"floe", "a.yaml", "-check", "-help"}), Help::text);
-  EXPECT_EQ(help({"floe", "-help_markdown"}), Help::markdown);
+  EXPECT_EQ(help({"floe", "a.yaml", "-check"}).kind, Help::none);
+  EXPECT_EQ(help({"floe", "-help"}).kind, Help::text);
+  EXPECT_EQ(help({"floe", "-help"}).topic, "");
+  EXPECT_EQ(help({"floe", "-help", "sheet"}).topic, "sheet");
+  EXPECT_EQ(help({"floe", "a.yaml", "-check", "-help"}).kind, Help::text);
+  EXPECT_EQ(help({"floe", "-help_markdown"}).kind, Help::markdown);
 }
 
 TEST(Spelling, NearestWordIsNotFarAway) {
@@ -394,20 +581,84 @@ TEST(SceneText, KeysAreGivenOnce) {
       contains(text_error("a: 1\nb: 2\na: 3\n"), "line 3: a is given twice, first in line 1"));
   EXPECT_TRUE(contains(text_error("sheet: {length: 1}\nsheet_length: 1\n"), "given twice"));
   EXPECT_TRUE(contains(text_error("sheet:\n  length: 1\nsheet:\n  width: 1\n"), "given twice"));
-  EXPECT_TRUE(contains(text_error("a: 1\nA: 1\n"), "given twice"))
+  EXPECT_EQ(text_error("a: 1\nA: 1\n"), "");
+  EXPECT_TRUE(contains(text_error("ksp_type: cg\nKSP_Type: cg\n"), "given twice"))
       << "PETSc does not tell them apart";
   EXPECT_EQ(text_error("a: {b: 1}\nb: {a: 1}\n"), "");
 }
 
-TEST(SceneText, OnlyWhatPetscTakesFaithfully) {
+TEST(SceneText, OnlyMapsOfPlainValues) {
   EXPECT_EQ(text_error("---\na: 1\nb: [1, x, -3e4]\nc: {d: {e: ~}}\nf:\n"), "");
   EXPECT_EQ(text_error(""), "");
   for (const auto* bad :
        {"- 1\n", "word\n", "a: 1\n---\nb: 1\n", "a: [[1]]\n", "a: [1, '']\n", "a b: 1\n",
         "'a-b': 1\n", "? [a]\n: 1\n", "<<: {a: 1}\n", "$$x: 1\n", "1a: 1\n", "help: true\n",
-        "options_file: x\n", "history: 1\n", "&x a: *x\nb: *y\n", "a: &x {b: *x}\n"})
-    EXPECT_NE(text_error(bad), "") << bad;
-  EXPECT_NE(text_error(std::string(70, 'k') + ": 1\n"), "");
+        "options_file: x\n", "a: *y\n", "a: &x {b: *x}\n", "a: &x {b: 1}\nc: *x\n", "a: !mine 1\n",
+        "a: !!binary eA==\n"})
+    EXPECT_TRUE(contains(text_error(bad), ": line ")) << bad << text_error(bad);
+  EXPECT_NE(text_error("ksp_" + std::string(60, 'k') + ": 1\n"), "") << "PETSc would cut it";
+  EXPECT_NE(text_error(std::string(130, 'k') + ": 1\n"), "");
+}
+
+TEST(SceneText, BecomesOptions) {
+  const GivenOptions options =
+      parse_scene("s.yaml", "a: {b: {c_d: 1}}\ne: [x, -3, 'y z']\nf: ~\ng: '~'\nh: !!str 5\ni:\n");
+  ASSERT_EQ(options.size(), 6U);
+  EXPECT_EQ(options.at("a_b_c_d").value, "1");
+  EXPECT_EQ(options.at("a_b_c_d").place, "s.yaml, line 1");
+  EXPECT_EQ(options.at("e").value, "x,-3,y z");
+  EXPECT_TRUE(options.at("e").is_list);
+  EXPECT_EQ(options.at("f").value, "");
+  EXPECT_EQ(options.at("g").value, "~");
+  EXPECT_EQ(options.at("h").value, "5");
+  EXPECT_EQ(options.at("i").value, "");
+}
+
+TEST(SceneText, AliasesStandForValuesAndLists) {
+  const GivenOptions options = parse_scene("", "a: &x 3\nb: &y [1, *x]\nc: *y\nd: {e: *x}\n");
+  EXPECT_EQ(options.at("b").value, "1,3");
+  EXPECT_EQ(options.at("c").value, "1,3");
+  EXPECT_TRUE(options.at("c").is_list);
+  EXPECT_EQ(options.at("d_e").value, "3");
+}
+
+TEST(SceneText, FilesOfOtherSystems) {
+  EXPECT_EQ(parse_scene("",
+                        "\xEF\xBB\xBF"
+                        "a: 1\r\nb: [2, 3]\r\n")
+                .at("b")
+                .value,
+            "2,3");
+  EXPECT_EQ(text_error(std::string("\xFF\xFE"
+                                   "a\0:\0",
+                                   6))
+                .substr(text_error("- 1\n").find(": line")),
+            ": line 1: is a text in UTF-16; save it in UTF-8");
+  EXPECT_TRUE(contains(text_error("a: 1\nb: \xE4\n"), "line 2: not a text in UTF-8"));
+  EXPECT_TRUE(contains(text_error("a: 1\n\nb: \x01\n"), "line 3"));
+  EXPECT_TRUE(contains(text_error("a:\n\tb: 2\n"), "line 2: a tab; YAML wants blanks"));
+}
+
+/// What once took half a minute, or all memory: takes no time now, whatever the machine.
+TEST(SceneText, HostileTexts) {
+  constexpr std::size_t many = 1'000'000;
+  const auto repeated = [](const std::string& part) {
+    std::string text;
+    for (std::size_t k = 0; k < many; ++k) text += part;
+    return text;
+  };
+  for (const auto* part :
+       {"[", "{", "{a: ", "- ", "? ", "a: [", "&a ", "!!str ", "\"", "|\n", "a:\n "})
+    EXPECT_TRUE(contains(text_error("a: " + repeated(part)), ": line ")) << part;
+  EXPECT_TRUE(
+      contains(text_error("a: {b: {c: {d: {e: {f: {g: {h: {i: 1}}}}}}}}\n"), "nested deeper"));
+  std::string bomb = "a: &a " + std::string(1'000'000, 'x') + "\n";
+  for (int k = 0; k < 1000; ++k) bomb += "k" + std::to_string(k) + ": *a\n";
+  EXPECT_TRUE(contains(text_error(bomb), "aliases make this scene too large"));
+  std::string anchors;
+  for (int k = 0; k < 100'000; ++k)
+    anchors += "k" + std::to_string(k) + ": &a" + std::to_string(k) + " 1\n";
+  EXPECT_EQ(text_error(anchors), "");
 }
 
 TEST(SceneText, OnlyRegularFiles) {

@@ -4,10 +4,13 @@
 
 #include <petsc.h>
 
+#include <array>
 #include <source_location>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "floe/base/given.h"
 
 namespace floe {
 
@@ -89,14 +92,21 @@ class Mpi {
   Mpi& operator=(const Mpi&) = delete;
 };
 
-/// PETSc from construction to destruction, with the scene's options under those of the command
-/// line. \param scene  path of a scene that read_scene_text accepted, or empty.
+/// PETSc from construction to destruction, with the options of PETSc's families among `user`; it
+/// reads no other: neither petscrc files nor PETSC_OPTIONS (read_environment does).
+/// \param program  the program's name, argv[0]
 class Session {
  public:
-  Session(int& argc, char**& argv, const std::string& scene);
+  explicit Session(const char* program, const UserOptions& user = {});
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
+
+ private:
+  // PETSc keeps pointers to both.
+  std::string program_;
+  std::array<char*, 2> words_{};
+  char** word_ = nullptr;
 };
 
 /// This process's rank and the number of ranks.

@@ -1,0 +1,70 @@
+#include "floe/base/command_line.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "floe/base/petsc.h"
+#include "option_names.h"
+#include "option_values.h"
+
+namespace floe {
+namespace {
+
+constexpr std::size_t longest_option = 120;
+
+/// PETSc wants true or false for these, or aborts.
+constexpr std::array<std::string_view, 4> flags_of_petsc{
+    "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci"};
+
+void check_option(std::string_view word, std::string_view value) {
+  const std::string shown_word = shown(word);
+  if (word.starts_with("--")) throw InputError(shown_word + ": options have one dash: -key value");
+  if (word.find('=') != std::string_view::npos)
+    throw InputError(shown_word + ": options are written -key value, without '='");
+  const std::string_view name = word.substr(1);
+  if (name.size() > (is_petsc_option(name) ? longest_petsc_option : longest_option))
+    throw InputError(shown_word + ": longer than any option");
+  if (reads_from_elsewhere(name))
+    throw InputError(shown_word + ": not supported; put the options into the scene");
+  const bool flag =
+      std::find(flags_of_petsc.begin(), flags_of_petsc.end(), name) != flags_of_petsc.end();
+  if (flag && !to_flag(value))
+    throw InputError(shown_word + ": " + shown(value) + " must be true or false");
+}
+
+}  // namespace
+
+Help wants_help(int argc, const char* const* argv) {
+  for (int k = 1; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    const bool has_topic = k + 1 < argc && !is_option_word(argv[k + 1]);
+    if (word == "-help") return {Help::text, has_topic ? argv[k + 1] : ""};
+    if (word == "-help_markdown") return {Help::markdown, ""};
+  }
+  return {};
+}
+
+CommandLine read_command_line(int argc, const char* const* argv) {
+  constexpr auto usage = "usage: floe SCENE.yaml [-key value ...], or floe -help";
+  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0')
+    throw InputError(std::string("no scene is named; ") + usage);
+  CommandLine line;
+  line.scene = argv[1];
+  for (int k = 2; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    if (!is_option_word(word)) throw InputError(shown(word) + ": belongs to no option; " + usage);
+    const bool has_value = k + 1 < argc && !is_option_word(argv[k + 1]);
+    const std::string value = has_value ? argv[k + 1] : "";
+    check_option(word, value);
+    if (word == "-skip_petscrc") {
+      line.petscrc = !to_flag(value).value();
+    } else {
+      line.options[petsc_name(word.substr(1))] = {value, Source::command_line, {}};
+    }
+    if (has_value) ++k;
+  }
+  return line;
+}
+
+}  // namespace floe

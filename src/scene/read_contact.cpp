@@ -1,0 +1,90 @@
+// Contacts and obstacles.
+#include <cmath>
+
+#include "floe/base/petsc.h"
+#include "reading.h"
+
+namespace floe {
+namespace {
+
+Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
+
+Obstacle read_shape(Options& options, const std::string& name) {
+  enum class Shape { halfspace, box, cone, cylinder, file };
+  const auto of = [&](const char* key) {
+    return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
+  };
+  const auto shape = options.choice<Shape>("obstacle: NAME: shape", name);
+  if (shape == Shape::halfspace) {
+    const Vec3<double> point = of("point"), normal = of("normal");
+    const double length2 = dot(normal, normal);
+    if (!(length2 > 0 && std::isfinite(length2)))
+      throw InputError("obstacle: " + name + ": normal: " + text_of(normal.x) + " " +
+                       text_of(normal.y) + " " + text_of(normal.z) + " is no direction");
+    return half_space(point, normal);
+  }
+  if (shape == Shape::box) {
+    const Vec3<double> centre = of("centre"), size = of("size"), rotation = of("rotation");
+    return box(centre, size, rotation);
+  }
+  if (shape == Shape::file) {
+    const std::string file = options.text("obstacle: NAME: file", name);
+    return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
+  }
+  const Vec3<double> base = of("base");
+  const double radius = options.number("obstacle: NAME: radius", name),
+               height = options.number("obstacle: NAME: height", name);
+  const double top =
+      shape == Shape::cone ? options.number("obstacle: NAME: top_radius", name) : radius;
+  const std::int64_t facets = options.integer("obstacle: NAME: facets", name);
+  return cone(base, radius, top, height, static_cast<int>(facets));
+}
+
+ObstacleMotion read_motion(Options& options, const std::string& name, bool half_space) {
+  const auto given = [&](const char* key) {
+    return options.given("obstacle: NAME: " + std::string(key), name);
+  };
+  ObstacleMotion motion;
+  motion.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
+  if (half_space)
+    options.refuse_one("obstacle: NAME: angular_velocity", name,
+                       "a halfspace cannot turn; box, cone, cylinder and file can");
+  if (!half_space)
+    motion.angular_velocity = vector(options.numbers<3>("obstacle: NAME: angular_velocity", name));
+  if (given("amplitude") != given("frequency"))
+    throw InputError("obstacle: " + name +
+                     (given("amplitude") ? ": amplitude [m] needs frequency [Hz]"
+                                         : ": frequency [Hz] needs amplitude [m]"));
+  if (given("amplitude")) {
+    motion.amplitude = vector(options.numbers<3>("obstacle: NAME: amplitude", name));
+    motion.frequency = options.number("obstacle: NAME: frequency", name);
+  }
+  // Left unread, and so refused, where nothing moves.
+  if (given("velocity") || (!half_space && given("angular_velocity")) || given("amplitude"))
+    motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
+  return motion;
+}
+
+}  // namespace
+
+void read_contact(Options& options, Scene& scene) {
+  ContactOptions& contact = scene.contact;
+  contact.law = options.choice<ContactLaw>("contact: law");
+  if (!scene.has_sheet && !options.given("contact: young"))
+    throw InputError("contact: young: is required with lattice_file [Pa]");
+  contact.young = options.number("contact: young", {}, scene.ice.young);
+  contact.friction = options.number("contact: friction");
+  if (options.given("contact: plastic_limit"))
+    contact.plastic_limit = options.number("contact: plastic_limit");
+  contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
+  contact.damping_ratio = damping_ratio_of(options.number("contact: restitution"));
+  for (const std::string& name : options.names("obstacle")) {
+    Obstacle obstacle = read_shape(options, name);
+    obstacle.name = name;
+    obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
+    obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
+    scene.obstacles.push_back(std::move(obstacle));
+  }
+}
+
+}  // namespace floe

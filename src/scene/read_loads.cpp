@@ -1,0 +1,95 @@
+// Prescribed motions and loads.
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "reading.h"
+
+namespace floe {
+namespace {
+
+constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
+
+/// Values of components that are not fixed would be ignored in silence.
+void check_fixed(Options& options, const Boundary& boundary, const std::string& key, Point3& values,
+                 std::size_t first) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (values[k] == 0 || boundary.fixed[first + k]) continue;
+    options.refuse_part(
+        "boundary: NAME: " + key, boundary.name, "boundary: " + boundary.name + ": " + key,
+        text_of(values[k]) + " has no effect: '" + std::string(components[first + k]) +
+            "' is not in 'boundary: " + boundary.name + ": fix'");
+    values[k] = 0;
+  }
+}
+
+Boundary read_boundary(Options& options, const std::string& name) {
+  Boundary boundary;
+  boundary.name = name;
+  boundary.set = options.text("boundary: NAME: set", name);
+  for (const std::string& word : options.words("boundary: NAME: fix", name)) {
+    const auto at = std::find(components.begin(), components.end(), word) - components.begin();
+    boundary.fixed[static_cast<std::size_t>(at)] = true;
+  }
+  if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))
+    throw InputError("boundary: " + name + ": fix: is empty; nothing would be prescribed");
+  constexpr std::string_view displacement = "boundary: NAME: displacement",
+                             velocity = "boundary: NAME: velocity";
+  const std::string_view given =
+      options.one_of(displacement, velocity, name,
+                     "boundary: " + name + ": give either velocity or displacement, not both");
+  if (given == displacement) {
+    boundary.displacement = options.numbers<3>(displacement, name);
+    check_fixed(options, boundary, "displacement", *boundary.displacement, 0);
+  } else {
+    boundary.velocity = given == velocity ? options.numbers<3>(velocity, name) : Point3{};
+    check_fixed(options, boundary, "velocity", *boundary.velocity, 0);
+  }
+  boundary.angular_velocity = options.numbers<3>("boundary: NAME: angular_velocity", name);
+  check_fixed(options, boundary, "angular_velocity", boundary.angular_velocity, 3);
+  boundary.ramp.seconds = options.number("boundary: NAME: ramp", name);
+  return boundary;
+}
+
+/// Bodies with mass cannot be displaced at once.
+void require_motion(const Scene& scene, const Boundary& boundary) {
+  if (scene.integrator == Integrator::quasistatic || boundary.ramp.seconds > 0 ||
+      !boundary.displacement || *boundary.displacement == Point3{})
+    return;
+  throw InputError("boundary: " + boundary.name +
+                   ": displacement needs ramp > 0 in a run with time: at once would be a jump");
+}
+
+Load read_load(Options& options, const std::string& name) {
+  Load load;
+  load.name = name;
+  constexpr std::string_view set = "load: NAME: set", point = "load: NAME: point";
+  const std::string either = "load: " + name + ": give either set or point, ";
+  const std::string_view given = options.one_of(set, point, name, either + "not both");
+  if (given.empty()) throw InputError(either + "neither is there");
+  if (given == set) load.set = options.text(set, name);
+  if (given == point) load.point = options.numbers<2>(point, name);
+  load.force = options.numbers<3>("load: NAME: force", name);
+  load.moment = options.numbers<3>("load: NAME: moment", name);
+  load.ramp.seconds = options.number("load: NAME: ramp", name);
+  constexpr Point3 nothing{};
+  if (load.force == nothing && load.moment == nothing)
+    throw InputError("load: " + name + ": force and moment are both zero; it would have no effect");
+  return load;
+}
+
+}  // namespace
+
+void read_boundaries(Options& options, Scene& scene) {
+  for (const std::string& name : options.names("boundary")) {
+    scene.boundaries.push_back(read_boundary(options, name));
+    require_motion(scene, scene.boundaries.back());
+  }
+}
+
+void read_loads(Options& options, Scene& scene) {
+  for (const std::string& name : options.names("load"))
+    scene.loads.push_back(read_load(options, name));
+}
+
+}  // namespace floe

@@ -1,0 +1,109 @@
+// The sheet and its ice, or a lattice file; regions and cuts.
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "reading.h"
+
+namespace floe {
+namespace {
+
+constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top", "all"};
+
+void read_sheet(Options& options, Scene& scene) {
+  SheetPlan& plan = scene.sheet;
+  plan.length = options.number("sheet: length");
+  plan.width = options.number("sheet: width", {}, plan.length);
+  plan.element_size = options.number("sheet: element_size");
+  plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
+  plan.relaxation = options.choice<Relaxation>("sheet: relaxation");
+  plan.iterations = static_cast<int>(options.integer("sheet: iterations"));
+  plan.tolerance = options.number("sheet: tolerance");
+  if (options.given("sheet: mesh_file")) scene.mesh_file = options.text("sheet: mesh_file");
+  scene.thickness = options.number("sheet: thickness");
+
+  const double shorter = std::min(plan.length, plan.width);
+  if (plan.element_size > shorter)
+    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
+                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
+                     text_of(shorter) + " [m]");
+  constexpr double most_bodies = 1e8;  // indices of beams and facets are 32-bit
+  const double bodies = (plan.length / plan.element_size) * (plan.width / plan.element_size);
+  if (bodies > most_bodies)
+    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +
+                     text_of(bodies) + " bodies, at most " + text_of(most_bodies) +
+                     " are possible");
+}
+
+void read_ice(Options& options, Scene& scene) {
+  scene.ice.young = options.number("ice: young");
+  scene.ice.poisson = options.number("ice: poisson");
+  scene.ice.density = options.number("ice: density");
+  if (!scene.forces.beam) return;
+  scene.shear_factor = options.number("beam: shear_factor");
+  scene.calibrate = options.choice<Calibrate>("beam: calibrate");
+  if (scene.calibrate != Calibrate::isotropic) {
+    scene.torsion = options.choice<Torsion>("beam: torsion");
+    return;
+  }
+  if (scene.ice.poisson > largest_isotropic_poisson)
+    throw InputError("ice: poisson: " + text_of(scene.ice.poisson) +
+                     " must be <= 1/3 for beam: calibrate: isotropic, or stiffnesses are negative");
+  for (const auto* key : {"beam: shear", "beam: torsion"})
+    options.refuse(key, "would have no effect: 'beam: calibrate' is isotropic");
+}
+
+}  // namespace
+
+void read_lattice_source(Options& options, Scene& scene) {
+  scene.has_sheet = options.given_section("sheet");
+  const bool has_file = options.given("lattice_file");
+  if (scene.has_sheet && options.on_command_line("lattice_file") &&
+      !options.section_on_command_line("sheet")) {
+    options.refuse("sheet", "'lattice_file' of the command line takes its place");
+    scene.has_sheet = false;
+  }
+  if (scene.has_sheet && has_file)
+    throw InputError(
+        "lattice_file: a scene has either 'sheet' or 'lattice_file', this one has both");
+  if (!scene.has_sheet && !has_file)
+    throw InputError("sheet: a scene needs either 'sheet' or 'lattice_file', this one has neither");
+  if (scene.has_sheet) {
+    read_sheet(options, scene);
+    read_ice(options, scene);
+  } else {
+    scene.lattice_file = options.text("lattice_file");
+    constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
+    for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
+      options.refuse(key, said_by_file);
+    options.refuse("fracture: calibrate",
+                   "needs 'sheet': a lattice file says nothing of a sheet's section");
+  }
+}
+
+void read_regions_and_cuts(Options& options, Scene& scene) {
+  for (const std::string& name : options.names("region")) {
+    const Region region{name, options.numbers<6>("region: NAME: box", name)};
+    const auto& box = region.box;
+    if (box[0] > box[1] || box[2] > box[3] || box[4] > box[5])
+      throw InputError("region: " + name +
+                       ": box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, "
+                       "y0 <= y1, z0 <= z1 [m]");
+    const auto last = scene.has_sheet ? sheet_sets.begin() : sheet_sets.end() - 1;
+    if (std::find(last, sheet_sets.end(), name) != sheet_sets.end())
+      throw InputError("region: names: '" + name + "' is the name of a set that there is already");
+    scene.regions.push_back(region);
+  }
+  const bool sheet_changed =
+      options.section_on_command_line("sheet") || options.on_command_line("lattice_file");
+  for (const std::string& name : options.names("cut")) {
+    Cut cut{name, options.numbers<2>("cut: NAME: from", name),
+            options.numbers<2>("cut: NAME: to", name), false};
+    cut.may_miss = sheet_changed && !options.on_command_line("cut: NAME: from", name) &&
+                   !options.on_command_line("cut: NAME: to", name);
+    if (cut.from == cut.to) throw InputError("cut: " + name + ": from and to are the same point");
+    scene.cuts.push_back(cut);
+  }
+}
+
+}  // namespace floe
