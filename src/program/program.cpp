@@ -67,9 +67,11 @@ bool is_scene(std::string_view word) {
   return is_file(word) && !fs::equivalent(word, share_folder() / "tools" / word, none);
 }
 
-/// On the first rank only, or every rank would say the same.
+/// On the first rank only, or every rank would say the same. The others have not failed: a launcher
+/// ends all processes with the first that has, if need be before the first rank has spoken.
 int say(const std::string& text, Exit code, std::FILE* where = stdout) {
-  if (is_first_rank()) std::fputs(text.c_str(), where);
+  if (!is_first_rank()) return done;
+  std::fputs(text.c_str(), where);
   return code;
 }
 
