@@ -60,6 +60,9 @@ int run(const floe::Scene& scene, Start& start) {
   Lattice& lattice = start.lattice;
 
   const std::string lattice_id = fingerprint(lattice);
+  const OutputSize size_of_output =
+      output_size(lattice, scene.forces.fracture, scene.boundaries.size(), scene.loads.size(),
+                  scene.obstacles.size());
   Folded folded;
   if (!needs_shapes(scene)) folded.fold_shapes(lattice);
 
@@ -72,13 +75,6 @@ int run(const floe::Scene& scene, Start& start) {
   if (is_static) hold_free_motions(scene, lattice, model);
   std::optional<OutOfPlane> rest;
   if (is_static && start.skips.planar) rest = out_of_plane(scene, lattice, loads, model.part());
-  if (scene.check_only) {
-    if (is_static) check_solver_options(model);
-    say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
-        std::to_string(model.part().global_beams) + " beams\n");
-    return done;
-  }
-
   release_setup(scene, model);
   folded.fold_shapes(lattice);
   folded.fold_beams(lattice);
@@ -119,8 +115,17 @@ int run(const floe::Scene& scene, Start& start) {
       OutputMemory(output->memory()).remember(checkpoint);
     }
   };
-  const RunResult result =
-      integrate(scene, model, rest ? &*rest : nullptr, lattice_id, observe, prepare, remember);
+  const auto on_plan = [&](const RunPlan& plan) {
+    say(plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD)));
+    return !scene.check_only;
+  };
+  const RunResult result = integrate(scene, model, rest ? &*rest : nullptr, lattice_id, on_plan,
+                                     observe, prepare, remember);
+  if (scene.check_only) {
+    say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
+        std::to_string(model.part().global_beams) + " beams\n");
+    return done;
+  }
   prepare();  // a run that found not even a first state leaves a summary that says so
   if (!result.stopped) output->finish();  // a stopped run goes on where it was
 

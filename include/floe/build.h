@@ -9,6 +9,7 @@
 
 #include "floe/forces/load.h"
 #include "floe/output/output.h"
+#include "floe/output/size.h"
 #include "floe/scene.h"
 #include "floe/solve/integrator.h"
 
@@ -64,13 +65,19 @@ std::string checkpoint_file(const Scene& scene);
 /// Runs the scene's integrator. Collective.
 /// \param rest  what a planar model leaves out; null for a spatial one
 /// \param lattice_id  its fingerprint, for checkpoints
+/// \param on_plan  is told what the run will do before its first step; false: it is not made
 /// \param prepare  opens the output that a checkpoint goes with, if it is not open
 /// \param others  what checkpoints keep beside the integrator's state
 template <class Space>
 RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
-                    const std::string& lattice_id, const ObserverOf<Space>& observer,
-                    const std::function<void()>& prepare,
+                    const std::string& lattice_id, const OnPlan& on_plan,
+                    const ObserverOf<Space>& observer, const std::function<void()>& prepare,
                     const std::function<void(Memory&)>& others);
+
+/// Lines that say what a run is going to do and to take. \param memory  of all ranks, at present
+/// [bytes]   \throws InputError if it needs more than the scene's limits allow
+std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize& size,
+                      double memory);
 
 /// The scene's loads on the lattice's bodies. \throws InputError for an unknown set
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);

@@ -82,8 +82,10 @@ struct Scene {
     bool allow_unstable = false;
   } time;
   struct {
-    double velocity = 1000;     ///< [m/s]
-    double energy_error = 0.1;  ///< of the energies that moved
+    double velocity = 1000;             ///< [m/s]
+    double energy_error = 0.1;          ///< of the energies that moved
+    double steps = 1e11, frames = 1e5;  ///< a run that needs more is refused
+    double disk = 1000;                 ///< [GB]
   } limit;
   std::vector<Initial> initials;
   struct {

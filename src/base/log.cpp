@@ -52,6 +52,18 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
 }
 
+double resident_memory_mb(MPI_Comm comm) {
+  double mine = 0, all = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    long whole = 0, resident = 0;
+    if (std::fscanf(file, "%ld %ld", &whole, &resident) == 2)
+      mine = static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+    std::fclose(file);
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return all;
+}
+
 Progress::Progress(std::string_view what, double total)
     : what_(what), total_(total), start_(MPI_Wtime()), last_print_(start_) {
   active_ = rank() == 0;
@@ -77,7 +89,14 @@ void Progress::update(double done, std::string_view note) {
   if (now - last_print_ < (terminal_ ? bar_seconds : line_seconds)) return;
   last_print_ = now;
   shown_ = true;
-  const double share = total_ > 0 ? std::clamp(done / total_, 0.0, 1.0) : 0.0;
+  if (!(total_ > 0)) {
+    std::fprintf(stderr, terminal_ ? "\r\033[K%.*s: %.*s" : "%.*s: %.*s\n",
+                 static_cast<int>(what_.size()), what_.data(), static_cast<int>(note.size()),
+                 note.data());
+    std::fflush(stderr);
+    return;
+  }
+  const double share = std::clamp(done / total_, 0.0, 1.0);
   const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
   if (terminal_) {
     constexpr int bar_width = 30;

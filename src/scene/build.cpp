@@ -113,11 +113,12 @@ std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/ch
 
 template <class Space>
 RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
-                    const std::string& lattice_id, const ObserverOf<Space>& observer,
-                    const std::function<void()>& prepare,
+                    const std::string& lattice_id, const OnPlan& on_plan,
+                    const ObserverOf<Space>& observer, const std::function<void()>& prepare,
                     const std::function<void(Memory&)>& others) {
   if (scene.integrator == Integrator::quasistatic)
-    return run_quasistatic(model, {scene.time.end, scene.time.dt}, observer, rest);
+    return run_quasistatic(model, {scene.time.end, scene.time.dt, scene.limit.steps, on_plan},
+                           observer, rest);
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = scene.time.dt;
@@ -125,7 +126,9 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
   options.energy_limit = scene.limit.energy_error;
   options.history = scene.output.history;
   options.fields = scene.output.fields;
-  options.checkpoint = {checkpoint_file(scene),
+  options.most_steps = scene.limit.steps;
+  options.on_plan = on_plan;
+  options.checkpoint = {scene.check_only ? "" : checkpoint_file(scene),
                         scene.checkpoint.every,
                         scene.checkpoint.at_end,
                         scene.output.dir + "/STOP",
@@ -229,10 +232,10 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
 }
 
 template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane*, const std::string&,
-                             const Observer<Spatial>&, const std::function<void()>&,
+                             const OnPlan&, const Observer<Spatial>&, const std::function<void()>&,
                              const std::function<void(Memory&)>&);
 template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane*, const std::string&,
-                             const Observer<Planar>&, const std::function<void()>&,
+                             const OnPlan&, const Observer<Planar>&, const std::function<void()>&,
                              const std::function<void(Memory&)>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);

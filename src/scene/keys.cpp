@@ -220,6 +220,11 @@ constexpr std::array table{
         "dynamics: an error of the energy balance above this part of the energies that moved "
         "stops the run"},
 
+    OptionSpec{"limit: steps", number, "1e11", "", "> 0",
+               "a run that would take more steps is refused before the first"},
+    OptionSpec{"limit: frames", number, "1e5", "", "> 0", "the same for frames of fields.h5"},
+    OptionSpec{"limit: disk", number, "1000", "GB", "> 0", "the same for the room on disk"},
+
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
     OptionSpec{
         "output: history", number, "(auto)", "s", ">= 1e-12, <= 1e12",

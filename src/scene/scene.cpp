@@ -25,6 +25,9 @@ std::string text_of(double value) {
 namespace {
 
 void read_time(Options& options, Scene& scene) {
+  scene.limit.steps = options.number("limit: steps");
+  scene.limit.frames = options.number("limit: frames");
+  scene.limit.disk = options.number("limit: disk");
   scene.time.end = options.number("time: end");
   scene.time.dt = options.number("time: dt", {}, 0.0);
   if (scene.time.dt > scene.time.end)
@@ -36,7 +39,7 @@ void read_time(Options& options, Scene& scene) {
 void read_dynamics(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::quasistatic) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
-    for (const auto* key : {"initial", "limit", "checkpoint", "time: safety",
+    for (const auto* key : {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "time: safety",
                             "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
       options.refuse(key, why);
     return;

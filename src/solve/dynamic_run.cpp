@@ -46,15 +46,45 @@ void DynamicRun<Space>::read_options(TS ts) {
   }
   check(TSGetTimeStep(ts, &options_.dt));
   check(TSGetMaxTime(ts, &options_.end));
+  given_ = options_.dt > 0;
 }
 
 template <class Space>
 void DynamicRun<Space>::plan(double wanted) {
-  steps_ = static_cast<std::int64_t>(std::ceil(options_.end / wanted * (1 - 1e-12)));
-  steps_ = std::max<std::int64_t>(steps_, 1);
+  const double steps = std::ceil(options_.end / wanted * (1 - 1e-12));
+  if (!adaptive_) require_few_steps(steps, wanted);
+  steps_ = adaptive_ ? 1 : std::max<std::int64_t>(static_cast<std::int64_t>(steps), 1);
   dt_ = adaptive_ ? std::min(wanted, options_.end) : options_.end / static_cast<double>(steps_);
   result_.dt = dt_;
   set_sampling();
+}
+
+template <class Space>
+void DynamicRun<Space>::require_few_steps(double steps, double step) const {
+  if (steps <= options_.most_steps) return;
+  throw InputError("time: dt: " + text(step) + " s" +
+                   (result_.limited_by.empty()
+                        ? ""
+                        : " (stable: " + text(result_.stable_dt) + " s, limited by the " +
+                              result_.limited_by + ")") +
+                   " would take " + text(steps) + " steps to time: end " + text(options_.end) +
+                   " s, at most " + text(options_.most_steps) + " are made (limit: steps)");
+}
+
+template <class Space>
+bool DynamicRun<Space>::announce() const {
+  if (!options_.on_plan) return true;
+  RunPlan plan;
+  plan.end = options_.end;
+  plan.dt = dt_;
+  plan.adaptive = adaptive_;
+  plan.given = given_;
+  plan.stable_dt = result_.stable_dt;
+  plan.limited_by = result_.limited_by;
+  if (!adaptive_) plan.steps = static_cast<double>(std::min(steps_, most_steps_));
+  plan.done = static_cast<double>(done_);
+  add_to(plan);
+  return options_.on_plan(plan);
 }
 
 template <class Space>
@@ -121,8 +151,11 @@ bool DynamicRun<Space>::restart() {
   if (options_.checkpoint.restart.empty()) return false;
   checkpoints_.load([&](Memory& memory) { remember(memory); });
   result_.dt = dt_;
-  steps_ = step_base_ +
-           static_cast<std::int64_t>(std::ceil((options_.end - time_base_) / dt_ * (1 - 1e-12)));
+  const double steps = std::ceil((options_.end - time_base_) / dt_ * (1 - 1e-12));
+  if (!adaptive_) {
+    require_few_steps(steps, dt_);
+    steps_ = step_base_ + static_cast<std::int64_t>(steps);
+  }
   if (adaptive_ ? options_.end < state_.time : steps_ < done_)
     throw InputError("time: end: " + text(options_.end) + " must be >= " + text(state_.time) +
                      " [s], the time of the checkpoint");
@@ -221,8 +254,7 @@ void DynamicRun<Space>::audit(const char* where) const {
 
 template <class Space>
 bool DynamicRun<Space>::look_around() {
-  constexpr std::int64_t now_and_then = 50;
-  if (done_ % now_and_then == 0) progress_->update(state_.time, step_text());
+  if (done_ % show_every_ == 0) progress_->update(state_.time, step_text());
   const auto wish = checkpoints_.wish(done_);
   if (wish == Checkpoints::Wish::none) return true;
   if (!within_limits()) return false;  // no checkpoint of a state that is lost already

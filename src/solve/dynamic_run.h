@@ -55,8 +55,10 @@ class DynamicRun {
   /// Goes on from the checkpoint that the options name, if they name one: then the step is its.
   bool restart();
   /// Takes a step as near to the wanted one as divides the run equally; if steps adapt, the wanted
-  /// one to begin with.
+  /// one to begin with. \throws InputError if that makes more steps than allowed
   void plan(double wanted);
+  /// Tells options().on_plan. False: the run is not to be made.
+  bool announce() const;
   /// The same for what is left of the run, in the middle of it.
   void replan(TS ts, double wanted);
   /// When the next step ends [s]; not for steps that adapt.
@@ -97,6 +99,10 @@ class DynamicRun {
   /// What it does between the run's beginning and the first step; false: the run ends here.
   virtual bool first() { return true; }
 
+  /// What the plan says of the steps' time.
+  virtual void add_to(RunPlan& /*plan*/) const {}
+  /// \throws InputError for more steps than allowed
+  void require_few_steps(double steps, double step) const;
   /// Whether the step adapts: then the last one is cut to end at the end.
   bool is_adaptive() const { return adaptive_; }
   void set_adaptive(bool adaptive) { adaptive_ = adaptive; }
@@ -105,6 +111,10 @@ class DynamicRun {
   bool is_last(TSConvergedReason reason) const {
     return reason == TS_CONVERGED_TIME || (reason == TS_CONVERGED_ITS && done_ >= last_step());
   }
+  /// Progress is shown after so many steps.
+  void show_every(std::int64_t steps) { show_every_ = steps; }
+  /// Progress within a step.
+  void show(const std::string& what) { progress_->update(time_, step_text() + ", " + what); }
   /// The next step [s].
   void set_dt(double dt) { dt_ = dt; }
   /// Says why a run ends that did not come to its end.
@@ -166,12 +176,14 @@ class DynamicRun {
   RunResult result_;
   std::exception_ptr error_;
   std::array<double, 2> sample_every_{};
+  bool given_ = false;  // the step, by the user
   double time_ = 0, dt_ = 0, next_sample_ = 0, time_base_ = 0, largest_ = 0;
   bool adaptive_ = false;
   // Step step_base_ ended at time_base_; equal ones follow.
   std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1;
   std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
-  std::int64_t piece_ = 0;                                              // the TS's step 0
+  std::int64_t show_every_ = 1;
+  std::int64_t piece_ = 0;  // the TS's step 0
   std::string why_;
 };
 

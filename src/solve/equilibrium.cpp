@@ -9,9 +9,12 @@
 #include "floe/base/log.h"
 #include "floe/base/ranks.h"
 #include "solve/newton.h"
+#include "solve/text.h"
 
 namespace floe {
 namespace {
+
+constexpr double default_rtol = 1e-10, petsc_atol = 1e-50;
 
 /// Diagonal of the box around all bodies, and at least a body's own size [m].
 double extent(const Part& part) {
@@ -61,7 +64,7 @@ Equilibrium<Space>::Equilibrium(Model<Space>& model)
 template <class Space>
 void Equilibrium<Space>::set_defaults() {
   set_newton_defaults(snes_);
-  check(SNESSetTolerances(snes_, PETSC_DEFAULT, 1e-10, 0.0, 30, PETSC_DEFAULT));
+  check(SNESSetTolerances(snes_, PETSC_DEFAULT, default_rtol, 0.0, 30, PETSC_DEFAULT));
   KSP ksp = nullptr;
   PC pc = nullptr;
   check(SNESGetKSP(snes_, &ksp));
@@ -208,6 +211,7 @@ PetscErrorCode Equilibrium<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   me.contraction_ = it > 0 && me.last_norm_ > 0 ? norm / me.last_norm_ : 0.0;
   me.last_norm_ = norm;
   me.audit("Newton's method");
+  me.on_iteration_(it);
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
@@ -478,6 +482,26 @@ double Equilibrium<Space>::pin_reaction() const {
   const Scale size = scale_of_forces();
   return largest > size.rounding ? largest / size.forces
                                  : 0.0;  // without any load all reactions are rounding
+}
+
+template <class Space>
+bool Equilibrium<Space>::is_stopped_early(double small) {
+  PetscReal atol = 0, rtol = 0, stol = 0;
+  PetscInt most = 0, calls = 0;
+  check(SNESGetTolerances(snes_, &atol, &rtol, &stol, &most, &calls));
+  if (rtol <= default_rtol && atol <= petsc_atol) return false;
+  check(SNESSetTolerances(snes_, 0.0, default_rtol, stol, std::max<PetscInt>(most, 30), calls));
+  const bool solved = balance(state_.time);
+  if (solved) fill_residual(f_);
+  check(SNESSetTolerances(snes_, atol, rtol, stol, most, calls));
+  return solved && pin_reaction() <= small;
+}
+
+template <class Space>
+std::string Equilibrium<Space>::tolerances() const {
+  PetscReal atol = 0, rtol = 0;
+  check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, nullptr, nullptr));
+  return "-snes_rtol " + text(rtol) + (atol > petsc_atol ? ", -snes_atol " + text(atol) : "");
 }
 
 template class Equilibrium<Spatial>;

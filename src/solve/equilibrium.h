@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -37,6 +38,11 @@ class Equilibrium {
   /// of undamaged beams before the first of them breaks: above it the step is refused
   bool solve(double time, double overload_limit = std::numeric_limits<double>::infinity());
 
+  /// Called in each of Newton's iterations, with its number from 0.
+  void set_on_iteration(std::function<void(std::int64_t)> on_iteration) {
+    on_iteration_ = std::move(on_iteration);
+  }
+
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
   std::int64_t newton_iterations() const { return iterations_; }
@@ -47,6 +53,12 @@ class Equilibrium {
   /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load
   /// pushes a motion that nothing holds.
   double pin_reaction() const;
+  /// Whether the pins' reactions are there only because Newton's method stopped early: solves on
+  /// from the present state, to the default tolerance, and looks whether they are below `small`
+  /// then. Leaves the state anywhere.
+  bool is_stopped_early(double small);
+  /// The tolerances that Newton's method has, as options.
+  std::string tolerances() const;
   /// Number of negative eigenvalues of the tangent at the present state: more than none is an
   /// unstable equilibrium. Costs a factorisation if forces are not linear, and one more for what a
   /// planar model leaves out; -1 if the solver is not Cholesky by MUMPS, which tells. To be asked
@@ -121,6 +133,7 @@ class Equilibrium {
   Handle<SNES> snes_;
   std::int64_t iterations_ = 0, assemblies_ = 0;
   bool constant_ = false;  ///< the assembled tangent is that of any state
+  std::function<void(std::int64_t)> on_iteration_ = [](std::int64_t) {};
   std::string why_;
   bool collapsed_ = false;
 };

@@ -92,6 +92,7 @@ RunResult run_leapfrog(Model<Space>& model, const ExplicitOptions& options,
   check(TSSetSolution(ts, solution));
   run.read_options(ts);
   if (!run.restart()) run.begin();
+  if (!run.announce()) return {};
   LeapfrogStep step = [&](double) { return run.guarded([&] { return run.step(ts); }); };
   set_leapfrog_step(ts, &step);
   return run.solve(ts);

@@ -26,6 +26,8 @@ class ExplicitRun : public DynamicRun<Space> {
   /// Takes over that the next step is another than `before`; the state's wrenches are known.
   virtual void step_changed(TS ts, double before) = 0;
   void remember_own(Memory& memory) override;
+  void add_to(RunPlan& plan) const override;
+  virtual int evaluations_a_step() const { return 1; }
 
   /// The given step, or from the stable one. \throws InputError for a given one above it that was
   /// not asked for all the same, and if there is neither
@@ -46,7 +48,7 @@ class ExplicitRun : public DynamicRun<Space> {
   const ExplicitOptions& explicit_options_;
   // Of the last look:
   std::int64_t last_look_ = 0, evaluations_ = 0;
-  double last_stable_ = 0, last_rate_ = 0, last_own_ = 0;
+  double last_stable_ = 0, last_rate_ = 0, last_own_ = 0, seconds_an_evaluation_ = 0;
 };
 
 /// Newton's equations by PETSc's explicit Runge-Kutta methods, all of their -ts_rk_type, on bodies'

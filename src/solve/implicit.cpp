@@ -47,7 +47,9 @@ class ImplicitRun final : public DynamicRun<Space> {
   RunResult run() {
     check(TSSetUp(ts_));
     const double first = plan_.begin(fixed_, options().dt);
+    if (fixed_) this->require_few_steps(options().end / first, first);
     if (!this->restart()) this->plan(first);
+    if (!this->announce()) return {};
     land();
     return this->solve(ts_);
   }
@@ -68,6 +70,10 @@ class ImplicitRun final : public DynamicRun<Space> {
     Columns columns;
     columns.add("energy_numerical", numerical_loss_);
     return columns;
+  }
+  void add_to(RunPlan& plan) const override {
+    plan.adaptive = !fixed_;
+    if (fixed_) plan.steps = std::ceil(plan.end / plan_.given() * (1 - 1e-12));
   }
   void remember_own(Memory& memory) override;
   std::vector<PetscObject> objects() const override;
@@ -316,6 +322,7 @@ PetscErrorCode ImplicitRun<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   run.contraction_ = it > 0 && run.last_norm_ > 0 ? norm / run.last_norm_ : 0.0;
   run.last_norm_ = norm;
   run.audit("Newton's method");
+  run.show("Newton's iteration " + std::to_string(it));
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -19,16 +20,21 @@ constexpr double pin_tolerance =
 }  // namespace
 
 template <class Space>
-void check_solver_options(Model<Space>& model) {
-  const Equilibrium<Space> equilibrium(model);
-}
-
-template <class Space>
 RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
                           const ObserverOf<Space>& observer, const OutOfPlane* rest) {
-  Equilibrium<Space> equilibrium(model);
   RunResult result;
   const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
+  RunPlan plan;
+  plan.end = time.end;
+  plan.dt = given;
+  plan.given = time.dt > 0;
+  plan.steps = std::ceil(time.end / given * (1 - 1e-12));
+  if (!(plan.steps <= time.most_steps))
+    throw InputError("time: dt: " + text(given) + " would take " + text(plan.steps) +
+                     " load steps to time: end " + text(time.end) + ", at most " +
+                     text(time.most_steps) + " are made (limit: steps)");
+  Equilibrium<Space> equilibrium(model);
+  if (time.on_plan && !time.on_plan(plan)) return result;
   const auto accept = [&](std::int64_t step) {
     result.newton_iterations = equilibrium.newton_iterations();
     observer({equilibrium.state(), equilibrium.wrenches(), step});
@@ -36,13 +42,27 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
 
   const auto balanced = [&](double at) {
     const double reaction = equilibrium.pin_reaction();
-    if (reaction > pin_tolerance)
-      result.message = "no equilibrium at time " + text(at) +
-                       ": a motion that nothing holds is loaded (by " + text(reaction) +
-                       " of the forces), or has gone far; prescribe it with `fix`";
-    return reaction <= pin_tolerance;
+    if (reaction <= pin_tolerance) return true;
+    const std::string tolerances = equilibrium.tolerances();
+    result.message = "no equilibrium at time " + text(at) + ": ";
+    if (equilibrium.is_stopped_early(pin_tolerance)) {
+      result.message += "Newton's method stopped where " + text(reaction) +
+                        " of the forces were not in balance (" + tolerances + "); at most " +
+                        text(pin_tolerance) +
+                        " may be: take a smaller tolerance (the default: -snes_rtol 1e-10)";
+    } else {
+      result.message += "a motion that nothing holds is loaded (by " + text(reaction) +
+                        " of the forces), or has gone far; prescribe it with `fix`";
+    }
+    return false;
   };
 
+  Progress progress("load steps", time.end);
+  double now = 0, dt = given;
+  equilibrium.set_on_iteration([&](std::int64_t it) {
+    progress.update(
+        now, "step " + std::to_string(result.steps + 1) + ", iteration " + std::to_string(it));
+  });
   if (!equilibrium.solve(0.0)) {
     result.message = "no equilibrium at time 0: " + equilibrium.why() +
                      "; a ramp on loads and motions would let them come in steps";
@@ -50,8 +70,6 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
   }
   if (!balanced(0.0)) return result;
   accept(0);
-  Progress progress("load steps", time.end);
-  double now = 0, dt = given;
   constexpr double rounding = 1e-12;  // a last step shorter than this part of a step is none
   while (time.end - now > rounding * given) {
     const double left = time.end - now;
@@ -91,8 +109,6 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
   return result;
 }
 
-template void check_solver_options(Model<Spatial>&);
-template void check_solver_options(Model<Planar>&);
 template RunResult run_quasistatic(Model<Spatial>&, const TimeSpan&, const Observer<Spatial>&,
                                    const OutOfPlane*);
 template RunResult run_quasistatic(Model<Planar>&, const TimeSpan&, const Observer<Planar>&,

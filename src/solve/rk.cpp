@@ -45,6 +45,7 @@ class RkRun final : public ExplicitRun<Spatial> {
       boundary_work_ = equations_.begin(state());
       choose_step();
     }
+    if (!announce()) return {};
     if (is_adaptive()) {
       set_tolerances();
       limit_steps();
@@ -57,6 +58,12 @@ class RkRun final : public ExplicitRun<Spatial> {
  private:
   void read_types();
   StabilityPolynomial polynomial() const;
+  int evaluations_a_step() const override {
+    PetscInt stages = 1;
+    check(TSRKGetTableau(ts_, &stages, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr,
+                         nullptr));
+    return stages;
+  }
   void set_tolerances();
   void limit_steps();
   bool stepped();

@@ -10,6 +10,7 @@
 #include <random>
 #include <sstream>
 
+#include "floe/base/log.h"
 #include "solve/difference_operators.h"
 
 namespace floe {
@@ -156,9 +157,11 @@ std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
   Trial x = make(std::move(start));
   Trial direction;
   constexpr int most = 400;
+  Progress progress("stable step", 0);
   constexpr double converged = 1e-6;  // relative change of the value, three times in a row
   int quiet = 0;
   for (int it = 0; it < most && quiet < 3; ++it) {
+    if (it > 0) progress.update(it, "iteration " + std::to_string(it));
     if (it == 0 && !search.begin(a.dot(x.z, x.k), along(x, x))) return {};
     std::vector<Trial> space;  // trials are moved about, never copied: each is 144 bytes per body
     space.reserve(3);

@@ -353,8 +353,15 @@ class Failure(OutputTest):
     def test_loads_that_balance_at_the_end_only(self):
         scene = TENSION[:TENSION.index("boundary:")] + "load:\n  names: [a, b]\n"
         scene += "  a: {set: all, force: [1e5, 0, 0]}\n  b: {set: all, force: [-1e5, 0, 0], ramp: 1}\n"
-        folder = self.expect_failure("time 0", "nothing holds", scene=scene)
-        self.assertEqual(self.frames(folder), [])
+        for options in ([], ["-snes_rtol", "1e-3"], ["-snes_atol", "1e4"]):  # no tolerance is to blame
+            folder = self.expect_failure("time 0", "nothing holds", scene=scene, options=options)
+            self.assertEqual(self.frames(folder), [])
+
+    def test_a_tolerance_that_leaves_forces_out_of_balance_is_named(self):
+        for options, said in ((["-snes_rtol", "1e-3"], "-snes_rtol 0.001"), (["-snes_atol", "1e5"], "-snes_atol 100000")):
+            self.expect_failure("Newton's method stopped where", said, "at most 1e-06 may be", scene=TENSION,
+                                options=options)
+        self.run_scene(TENSION, "-snes_rtol", "1e-7")
 
     def test_no_equilibrium_at_the_start(self):
         folder = self.expect_failure("no equilibrium at time 0", "MAX_IT", scene=CANTILEVER.replace(", ramp: 1", ""),

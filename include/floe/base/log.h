@@ -3,6 +3,8 @@
 /// summary.json).
 #pragma once
 
+#include <mpi.h>
+
 #include <array>
 #include <string>
 #include <string_view>
@@ -38,10 +40,14 @@ double peak_memory_mb();
 /// A line for the user that does not end the run, on standard error; called on rank 0 only.
 void warn(const std::string& text);
 
+/// Resident memory of all ranks' processes at present [MB]. Collective.
+double resident_memory_mb(MPI_Comm comm);
+
 /// Progress of long work on rank 0's standard error: a bar with the time left on a terminal, a
 /// plain line every few seconds otherwise, nothing for work that ends within a second.
 class Progress {
  public:
+  /// \param total  0: not known, the notes are all there is
   Progress(std::string_view what, double total);
   ~Progress();
   Progress(const Progress&) = delete;

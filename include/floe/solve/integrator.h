@@ -45,9 +45,31 @@ struct RunResult {
   std::vector<std::string> warnings;  ///< what forces had to say, in order of time; on rank 0
 };
 
+/// What a run is going to do, known before its first step.
+struct RunPlan {
+  double end = 0;             ///< [s]
+  double dt = 0;              ///< the first step [s]
+  bool adaptive = false;      ///< steps follow the error: their number is not known
+  bool given = false;         ///< the step, by the user
+  double stable_dt = 0;       ///< explicit [s]; 0 otherwise
+  std::string limited_by;     ///< explicit: what limits the stable step
+  double steps = 0;           ///< in all; 0: not known
+  double done = 0;            ///< of them, where the run goes on from a checkpoint
+  double seconds_a_step = 0;  ///< by the clock; 0: not known
+  std::string measured;       ///< what that rests on
+};
+
+/// Is told before the first step. False: the run is not made.
+using OnPlan = std::function<bool(const RunPlan&)>;
+
+/// More steps than this are a mistake in a unit: a year has 3e13 microseconds.
+inline constexpr double default_most_steps = 1e11;
+
 struct TimeSpan {
   double end = 1;
   double dt = 0;  ///< 0: one step
+  double most_steps = default_most_steps;
+  OnPlan on_plan = nullptr;
 };
 
 template <class Space>
@@ -79,6 +101,8 @@ struct DynamicOptions {
   double energy_limit = 0.1;     ///< of the energy balance's error over the energies that move
   double history = 0;            ///< time between samples [s]; 0: 200 over the run
   double fields = 0;             ///< further samples, for frames [s]; 0: none
+  double most_steps = default_most_steps;  ///< a run that needs more is refused
+  OnPlan on_plan = nullptr;
   CheckpointOptions checkpoint;
 };
 
@@ -106,10 +130,5 @@ std::string explicit_needs_space();
 /// there. Collective. \throws InputError for a force with history and for another -ts_type
 RunResult run_implicit(Model<Spatial>& model, const DynamicOptions& options,
                        const Observer<Spatial>& observer);
-
-/// Sets the static solver up and gives it up again: for -check. \throws InputError for a solver
-/// PETSc does not have
-template <class Space>
-void check_solver_options(Model<Space>& model);
 
 }  // namespace floe

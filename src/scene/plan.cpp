@@ -1,0 +1,102 @@
+#include "scene/plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "floe/base/petsc.h"
+#include "floe/build.h"
+
+namespace floe {
+namespace {
+
+std::string text(const char* format, auto... values) {
+  std::array<char, 400> line{};
+  std::snprintf(line.data(), line.size(), format, values...);
+  return line.data();
+}
+
+/// A count, in full as long as that says more.
+std::string count(double value) { return text(value < 1e9 ? "%.0f" : "%.4g", value); }
+
+/// "1 frame", "2 frames".
+std::string counted(double value, const std::string& what) {
+  return count(value) + " " + what + (value == 1 ? "" : "s");
+}
+
+std::string bytes(double value) {
+  constexpr std::array units{"kB", "MB", "GB", "TB"};
+  std::size_t unit = 0;
+  for (value /= 1e3; value >= 1e3 && unit + 1 < units.size(); ++unit) value /= 1e3;
+  return text("%.3g %s", value, units[unit]);
+}
+
+std::string duration(double seconds) {
+  constexpr double minute = 60, hour = 60 * minute, day = 24 * hour, year = 365.25 * day;
+  if (seconds < 2 * minute) return text("%.2g s", seconds);
+  if (seconds < 2 * hour) return text("%.2g min", seconds / minute);
+  if (seconds < 3 * day) return text("%.2g h", seconds / hour);
+  if (seconds < 2 * year) return text("%.3g days", seconds / day);
+  return text("%.3g years", seconds / year);
+}
+
+std::string steps_text(const Scene& scene, const RunPlan& plan) {
+  const bool is_static = scene.integrator == Integrator::quasistatic;
+  const std::string step = is_static ? "load step" : "step";
+  if (plan.adaptive)
+    return "steps as long as their error allows, the first " + text("%.4g s", plan.dt);
+  std::string line = step + text(" %.4g", plan.dt) + (is_static ? "" : " s");
+  if (plan.stable_dt > 0 && std::isfinite(plan.stable_dt))
+    line += text(", %.3g of the stable step, limited by the ", plan.dt / plan.stable_dt) +
+            plan.limited_by;
+  line += "; " + counted(plan.steps, step);
+  if (plan.done > 0) line += ", " + count(plan.done) + " of them made";
+  return line;
+}
+
+}  // namespace
+
+PlannedOutput planned_output(const Scene& scene, const RunPlan& plan, const OutputSize& size) {
+  constexpr double default_rows = 200;  // of explicit and implicit runs
+  const bool is_static = scene.integrator == Integrator::quasistatic;
+  // Samples that fall into one step are one; implicit steps end where a sample is due.
+  const double most = plan.steps > 0 && scene.integrator != Integrator::implicit
+                          ? plan.steps
+                          : std::numeric_limits<double>::infinity();
+  const double history = scene.output.history > 0 ? plan.end / scene.output.history
+                         : is_static              ? most
+                                                  : default_rows;
+  const double fields = scene.output.fields > 0 ? plan.end / scene.output.fields : 0;
+  PlannedOutput output;
+  output.frames = 1 + std::max(1.0, std::min(std::ceil(fields), most));
+  output.rows = 1 + std::max(1.0, std::min(std::ceil(history), most));
+  if (scene.output.history == 0)  // whatever is a sample is a row
+    output.rows = std::max(output.rows, 1 + std::min(std::ceil(history) + output.frames, most));
+  output.bytes = size.once + output.rows * size.row + output.frames * size.frame +
+                 (is_static ? 0 : size.checkpoint);
+  return output;
+}
+
+std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize& size,
+                      double memory) {
+  const PlannedOutput output = planned_output(scene, plan, size);
+  const std::string disk = counted(output.rows, "row") + ", " + counted(output.frames, "frame") +
+                           ", " + bytes(output.bytes) + " on disk";
+  if (output.frames > scene.limit.frames)
+    throw InputError("output: fields: " + text("%g", scene.output.fields) + " s would make " +
+                     counted(output.frames, "frame") + " (" + bytes(output.frames * size.frame) +
+                     "), at most " + count(scene.limit.frames) + " are made (limit: frames)");
+  if (output.bytes > 1e9 * scene.limit.disk)
+    throw InputError("output: would be about " + disk + ", at most " +
+                     bytes(1e9 * scene.limit.disk) + " are taken (limit: disk)");
+  std::string lines = "plan: " + steps_text(scene, plan) + "\n";
+  lines += "plan: about " + disk + "; " + bytes(memory) + " of memory so far";
+  if (plan.seconds_a_step > 0 && plan.steps > 0)
+    lines += "; about " + duration((plan.steps - plan.done) * plan.seconds_a_step) + " (by " +
+             plan.measured + ")";
+  return lines + "\n";
+}
+
+}  // namespace floe
