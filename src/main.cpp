@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "floe/base/files.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
