@@ -1,0 +1,51 @@
+# Run by ctest before it looks at its tests: adds an entry for each case of the GoogleTest programs for several ranks, at
+# 1, 2 and 3 ranks, and for each case of the Python tests. What is set here comes from CMakeLists.txt: source, mpi_tests
+# (folder and program, by a blank), mpiexec, environment, floe, hangs [s].
+
+foreach(test IN LISTS mpi_tests)
+  string(REGEX MATCH "^([^ ]+) (.+)$" _ "${test}")
+  set(folder ${CMAKE_MATCH_1})
+  set(program ${CMAKE_MATCH_2})
+  if(NOT EXISTS ${program})
+    foreach(ranks 1 2 3)
+      add_test(${folder}.np${ranks}_NOT_BUILT ${program})
+    endforeach()
+    continue()
+  endif()
+  execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 600)
+  string(REGEX REPLACE " +#[^\n]*" "" listed "${listed}")
+  string(REPLACE "\n" ";" listed "${listed}")
+  foreach(line IN LISTS listed)
+    if(line MATCHES "^  (.+)$")
+      foreach(ranks 1 2 3)
+        set(name ${folder}.np${ranks}.${suite}${CMAKE_MATCH_1})
+        add_test(${name} ${mpiexec} -n ${ranks} ${program} --gtest_filter=${suite}${CMAKE_MATCH_1})
+        set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks} TIMEOUT ${hangs} ENVIRONMENT "${environment}"
+                             SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+      endforeach()
+    elseif(line MATCHES "\\.$")
+      set(suite ${line})
+    endif()
+  endforeach()
+endforeach()
+
+# Debian's Python: h5py and numpy are its packages, whatever other Python stands first on the PATH.
+execute_process(COMMAND /usr/bin/python3 ${source}/list_cases.py OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY
+                TIMEOUT 600 OUTPUT_STRIP_TRAILING_WHITESPACE)
+string(REPLACE "\n" ";" listed "${listed}")
+foreach(line IN LISTS listed)
+  string(REGEX MATCH "^([^ ]+) ?(.*)$" _ "${line}")  # folder/module, case
+  set(script ${source}/${CMAKE_MATCH_1}.py)
+  set(case ${CMAKE_MATCH_2})
+  get_filename_component(name ${script} NAME_WE)
+  set(processors 1)
+  if(name MATCHES "_ranks$")  # at every step each of two ranks waits for the other, and both for a core if another test has it
+    set(processors 2)
+  endif()
+  if(case)
+    string(APPEND name .${case})
+  endif()
+  add_test(${name} /usr/bin/python3 ${script} ${case})
+  set_tests_properties(${name} PROPERTIES PROCESSORS ${processors} TIMEOUT ${hangs} ENVIRONMENT "${environment};FLOE=${floe}"
+                       SKIP_REGULAR_EXPRESSION "OK \\(skipped=1\\)")
+endforeach()
