@@ -94,6 +94,15 @@ class Output(Lattice):
         self._frames = frames_of(self.folder)
         self.times = np.array([time for time, _, _ in self._frames])
 
+    def nearest(self, time, parser):
+        """Time of the frame nearest to `time` (None: the last one); ends the tool if the run has none, or none so late."""
+        if not self._frames:
+            parser.error(f"{self.folder} has no frame yet")
+        last = self.times[-1]
+        if time is not None and not -1e-9 * last <= time <= last * (1 + 1e-9):
+            parser.error(f"--time {time:g}: the frames of {self.folder} go from 0 to {last:g} s")
+        return last if time is None else self.times[np.argmin(np.abs(self.times - time))]
+
     def field(self, name, time):
         """Dataset `name` of the sample nearest to `time`."""
         if not self._frames:

@@ -1,8 +1,10 @@
 #include "floe/base/hdf5.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
 #include <cerrno>
-#include <filesystem>
 #include <utility>
 
 #include "hdf5_id.h"
@@ -30,6 +32,27 @@ void require(bool good, const std::string& path) {
   if (!good) throw_file_error("write", path, errno);
 }
 
+/// Copies a file. Returns what the system says (errno), 0 if all went well.
+int copy_file(const std::string& from, const std::string& to) {
+  const int in = ::open(from.c_str(), O_RDONLY | O_CLOEXEC);
+  const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  std::vector<char> block(1 << 18);
+  int error = in < 0 || out < 0 ? errno : 0;
+  for (::ssize_t size = 1; error == 0 && size > 0;) {
+    size = ::read(in, block.data(), block.size());
+    if (size < 0) error = errno;
+    for (::ssize_t done = 0; error == 0 && done < size;) {
+      const ::ssize_t now =
+          ::write(out, block.data() + done, static_cast<std::size_t>(size - done));
+      if (now < 0) error = errno;
+      done += now;
+    }
+  }
+  if (in >= 0) ::close(in);
+  if (out >= 0 && ::close(out) != 0 && error == 0) error = errno;
+  return error;
+}
+
 /// Nobody else writes under a temporary name: no lock, which some file systems do not have.
 Hdf5Id unlocked() {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -51,15 +74,12 @@ Hdf5File Hdf5File::create(const std::string& path) {
 Hdf5File Hdf5File::change(const std::string& path) {
   quiet_hdf5();
   const std::string temporary = temporary_name(path);
-  std::error_code error;
-  std::filesystem::copy_file(path, temporary, std::filesystem::copy_options::overwrite_existing,
-                             error);
+  errno = copy_file(path, temporary);
   hid_t id = -1;
-  errno = error.value();
-  if (!error) id = H5Fopen(temporary.c_str(), H5F_ACC_RDWR, unlocked());
+  if (errno == 0) id = H5Fopen(temporary.c_str(), H5F_ACC_RDWR, unlocked());
   if (id < 0) {
     const int why = errno;
-    std::filesystem::remove(temporary, error);
+    ::unlink(temporary.c_str());
     throw_file_error("write", path, why);
   }
   return {id, temporary, path};
@@ -81,8 +101,7 @@ Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
 
 Hdf5File::~Hdf5File() {
   if (id_ >= 0) H5Fclose(id_);
-  std::error_code ignored;
-  if (!path_.empty() && path_ != final_path_) std::filesystem::remove(path_, ignored);
+  if (!path_.empty() && path_ != final_path_) ::unlink(path_.c_str());
 }
 
 void Hdf5File::close(Place place) {

@@ -64,6 +64,7 @@ void remove(const std::string& path) {
 
 Fields::Fields(std::string dir, const Lattice& lattice, std::int64_t keep)
     : dir_(std::move(dir)), writer_(lattice) {
+  for (const char* name : {"fields.xmf", "fields.h5"}) remove_left_over(path(name));
   if (keep < 0) {
     begin();
     return;
