@@ -42,6 +42,17 @@ double bytes_on_disk(const std::string& path) {
                               : size;
 }
 
+/// Number of values, which may be more than an integer holds.
+double values_in(hid_t space) {
+  if (H5Sget_simple_extent_type(space) == H5S_NULL) return 0;
+  std::array<hsize_t, H5S_MAX_RANK> extent{};
+  const int dimensions = H5Sget_simple_extent_dims(space, extent.data(), nullptr);
+  double values = 1;
+  for (int k = 0; k < dimensions; ++k)
+    values *= static_cast<double>(extent[static_cast<std::size_t>(k)]);
+  return values;
+}
+
 /// Whether a dataset that fills `bytes` of memory may lie in its file: every part of it has been
 /// written, and no compression makes a thousandth of it.
 bool is_stored(hid_t data, hid_t plan, hid_t space, double bytes, double on_disk) {
@@ -56,7 +67,7 @@ bool is_stored(hid_t data, hid_t plan, hid_t space, double bytes, double on_disk
   for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
     needed *= std::ceil(static_cast<double>(extent[k]) / static_cast<double>(chunk[k]));
   hsize_t there = 0;
-  return H5Dget_num_chunks(data, H5S_ALL, &there) >= 0 && static_cast<double>(there) >= needed;
+  return H5Dget_num_chunks(data, space, &there) >= 0 && static_cast<double>(there) >= needed;
 }
 
 }  // namespace
@@ -127,8 +138,7 @@ std::int64_t Hdf5File::open_dataset(const std::string& name) const {
     refuse(" is a virtual dataset; its values must be in this file");
   if (H5Pget_external_count(plan) > 0) refuse(" has its values in another file");
   const Hdf5Id type(H5Dget_type(data), H5Tclose), space(H5Dget_space(data), H5Sclose);
-  const double bytes = static_cast<double>(H5Sget_simple_extent_npoints(space)) *
-                       static_cast<double>(H5Tget_size(type));
+  const double bytes = values_in(space) * static_cast<double>(H5Tget_size(type));
   if (bytes > 0 && !is_stored(data, plan, space, bytes, bytes_on_disk(path_)))
     refuse(" has values that its file does not hold: they were never written");
   return data;
