@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "floe/base/petsc.h"
+#include "floe/base/ranks.h"
 #include "floe/forces/fracture.h"
 #include "forces/breakable_blocks.h"
 #include "forces/spatial_beams.h"
@@ -199,16 +200,15 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   std::span<const std::array<std::int32_t, 2>> released() const override { return released_; }
 
   double overload(const State<Spatial>& state) const override {
-    double mine = 0, all = 0;
+    double most = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = criterion_of(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t m = b * lanes + lane;
-        if (m < crack_of_.size() && crack_of_[m] == none) mine = std::max(mine, double(s2[lane]));
+        if (m < crack_of_.size() && crack_of_[m] == none) most = std::max(most, double(s2[lane]));
       }
     }
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
-    return std::sqrt(all);
+    return std::sqrt(largest_over_ranks(most, part_.comm));
   }
 
   Advance advance(const State<Spatial>& state) override {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "floe/base/ranks.h"
 #include "forces/all_gathered.h"
 
 namespace floe {
@@ -13,7 +14,7 @@ namespace {
 double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
-  if (size(comm) > 1) MPI_Allreduce(MPI_IN_PLACE, mine.data(), 2, MPI_DOUBLE, MPI_MAX, comm);
+  largest_over_ranks(mine, comm);
   return mine;
 }
 
@@ -45,6 +46,7 @@ bool ContactWatch::is_due(const State<Spatial>& state, const Part& part, const C
   const auto [theirs, their_speed] = of_obstacles(contacts, state.time);
   std::array<double, 2> all =
       largest({std::max(way_, theirs), std::max(speed_, their_speed)}, part.comm);
+  if (!std::isfinite(all[0])) return false;  // the run has blown up: places are no numbers
   const double slack = contacts.slack();
   if (all[0] > slack) {
     way_ = ways(state, part, contacts);

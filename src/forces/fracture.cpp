@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "floe/base/ranks.h"
 #include "forces/breakable_beams.h"
 
 namespace floe {
@@ -21,10 +22,10 @@ double uniform(std::uint64_t seed, std::int32_t index) {
 
 /// Mean section over the whole lattice, the same bits on any number of ranks: sums of integers.
 double mean_section(const Part& part) {
-  double mine = 0, largest = 0;
+  double largest = 0;
   const auto area = [&](std::size_t m) { return part.beams.width[m] * part.beams.height[m]; };
-  for (std::size_t m = 0; m < part.beams.bodies.size(); ++m) mine = std::max(mine, area(m));
-  MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, part.comm);
+  for (std::size_t m = 0; m < part.beams.bodies.size(); ++m) largest = std::max(largest, area(m));
+  largest = largest_over_ranks(largest, part.comm);
   constexpr double fine = 0x1p31;
   std::int64_t sum = 0, all = 0;
   for (std::size_t m = 0; m < part.beams.bodies.size(); ++m) {
@@ -86,13 +87,12 @@ double overload(const Part& part, const std::vector<BeamSection>& sections,
                 FractureOptions fracture) {
   fracture.weibull_modulus = 0;
   const std::vector<Strength<double>> all = strengths(part, fracture);
-  double mine = 0, most = 0;
+  double most = 0;
   for (std::size_t m = 0; m < sections.size(); ++m) {
     const auto& [n, qy, qz, t, my, mz] = sections[m];
-    mine = std::max(mine, criterion(all[m], BeamStress<double>{n, qy, qz, {t, my, mz}}));
+    most = std::max(most, criterion(all[m], BeamStress<double>{n, qy, qz, {t, my, mz}}));
   }
-  MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE, MPI_MAX, part.comm);
-  return std::sqrt(most);
+  return std::sqrt(largest_over_ranks(most, part.comm));
 }
 
 void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks) {

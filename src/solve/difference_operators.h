@@ -9,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "floe/base/ranks.h"
 #include "floe/solve/model.h"
 
 namespace floe {
@@ -38,8 +39,7 @@ class Operators {
       fastest2 = std::max(fastest2, floe::dot(speed, speed));
       std::fill_n(moved_.record(b) + Space::velocity, Space::record - Space::velocity, 0.0);
     }
-    MPI_Allreduce(MPI_IN_PLACE, &fastest2, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
-    speed_ = std::sqrt(fastest2);
+    speed_ = std::sqrt(largest_over_ranks(fastest2, part_.comm));
     for (const auto& force : model.forces()) {
       bound_.stiffness += force->own_rates().stiffness;
       bound_.damping += force->own_rates().damping;
@@ -74,14 +74,14 @@ class Operators {
   /// Stiffness and damping times z; the latter is empty if nothing damps. Steps of the differences
   /// are 1e-6 of the length scale and of a radian.
   void apply(const Vector& z, Vector& stiffness, Vector& damping) {
-    double mine = 0, largest = 0;
+    double largest = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b) {
       const auto x = unweighted(z, b);
       for (std::size_t k = 0; k < x.size(); ++k)
-        mine = std::max(mine,
-                        std::abs(x[k]) / (k < Space::translations ? model_.length_scale() : 1.0));
+        largest = std::max(
+            largest, std::abs(x[k]) / (k < Space::translations ? model_.length_scale() : 1.0));
     }
-    MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+    largest = largest_over_ranks(largest, part_.comm);
     const double step = largest > 0 ? 1e-6 / largest : 0.0;
     stiffness = difference(z, step, 0);
     if (step > 0) stiffness *= 0.5 / step;
@@ -131,8 +131,7 @@ class Operators {
   /// need not be taken, nor kept.
   void decide(Vector& damping) {
     const double mine = damping.size() > 0 ? damping.cwiseAbs().maxCoeff() : 0;
-    double largest = 0;
-    MPI_Allreduce(&mine, &largest, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+    const double largest = largest_over_ranks(mine, part_.comm);
     decided_ = true;
     damped_ = largest > 0 || bound_.damping > 0;
     if (damped_) return;

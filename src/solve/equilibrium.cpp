@@ -5,7 +5,9 @@
 #include <cstring>
 #include <limits>
 
+#include "floe/base/audit.h"
 #include "floe/base/log.h"
+#include "floe/base/ranks.h"
 #include "solve/newton.h"
 
 namespace floe {
@@ -13,16 +15,16 @@ namespace {
 
 /// Diagonal of the box around all bodies, and at least a body's own size [m].
 double extent(const Part& part) {
-  std::array<double, 7> mine, all;  // high, minus low, radius of gyration
-  mine.fill(-std::numeric_limits<double>::infinity());
+  std::array<double, 7> all;  // high, minus low, radius of gyration
+  all.fill(-std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
     for (std::size_t k = 0; k < 3; ++k) {
-      mine[k] = std::max(mine[k], part.bodies.position[b][k]);
-      mine[3 + k] = std::max(mine[3 + k], -part.bodies.position[b][k]);
+      all[k] = std::max(all[k], part.bodies.position[b][k]);
+      all[3 + k] = std::max(all[3 + k], -part.bodies.position[b][k]);
     }
-    mine[6] = std::max(mine[6], std::sqrt(part.bodies.inertia[b][2] / part.bodies.mass[b]));
+    all[6] = std::max(all[6], std::sqrt(part.bodies.inertia[b][2] / part.bodies.mass[b]));
   }
-  MPI_Allreduce(mine.data(), all.data(), 7, MPI_DOUBLE, MPI_MAX, part.comm);
+  largest_over_ranks(all, part.comm);
   return all[6] + std::hypot(all[0] + all[3], all[1] + all[4], all[2] + all[5]);
 }
 
@@ -190,13 +192,12 @@ typename Equilibrium<Space>::Scale Equilibrium<Space>::scale_of_forces() const {
 template <class Space>
 bool Equilibrium<Space>::is_lost() const {
   constexpr double far = 100;  // times the lattice's extent
-  double mine = 0, all = 0;
+  double farthest2 = 0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
     const Vec3<double> u = displacement(state_, b);
-    mine = std::max(mine, dot(u, u));
+    farthest2 = std::max(farthest2, dot(u, u));
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
-  return std::sqrt(all) > far * (extent_ + prescribed_);
+  return std::sqrt(largest_over_ranks(farthest2, part_.comm)) > far * (extent_ + prescribed_);
 }
 
 template <class Space>
@@ -206,11 +207,12 @@ PetscErrorCode Equilibrium<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   auto& me = *static_cast<Equilibrium*>(self);
   me.contraction_ = it > 0 && me.last_norm_ > 0 ? norm / me.last_norm_ : 0.0;
   me.last_norm_ = norm;
+  me.audit("Newton's method");
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm)) {
-    *reason = SNES_DIVERGED_FNORM_NAN;
+    *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
     return 0;
   }
   if (norm > me.scale_of_forces().tolerance(rtol, atol)) return 0;
@@ -236,9 +238,8 @@ std::vector<double> Equilibrium<Space>::increments_to(double time) {
     if (k % n < Space::translations) size = std::max(size, std::abs(target[k]));
   }
   check(VecRestoreArrayRead(x_, &x));
-  const std::array<double, 2> mine{moves, size};
-  std::array<double, 2> all{};
-  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_MAX, part_.comm);
+  std::array<double, 2> all{moves, size};
+  largest_over_ranks(all, part_.comm);
   prescribed_ = all[1];
   if (all[0] == 0) return {};
   part_.ghosts.update(increments, n);  // their present values come with their owners' increments
@@ -305,12 +306,21 @@ bool Equilibrium<Space>::predict(double time) {
     if (k % n >= Space::translations) turn = std::max(turn, std::abs(d[k]) / model_.length_scale());
   }
   check(VecRestoreArray(step_, &d));
-  double largest_turn = 0;
-  MPI_Allreduce(&turn, &largest_turn, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
   constexpr double small_turn = 0.02;  // [rad]
-  small_turns_ = largest_turn < small_turn;
+  small_turns_ = largest_over_ranks(turn, part_.comm) < small_turn;
   check(VecAXPY(x_, 1.0, step_));
   return true;
+}
+
+template <class Space>
+void Equilibrium<Space>::audit(const char* where) const {
+  if (!auditing()) return;
+  Vec update = nullptr;
+  check(SNESGetSolutionUpdate(snes_, &update));
+  floe::audit(part_.comm, where,
+              std::array{object_of(tangent_.matrix()), object_of(x_.get()), object_of(f_.get()),
+                         object_of(step_.get()), object_of(update)},
+              std::array{state_.time, last_norm_});
 }
 
 template <class Space>
@@ -344,6 +354,7 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
     return false;
   }
   fill_residual(f_);
+  audit("a load step");
   for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
   return true;
 }
@@ -463,11 +474,10 @@ double Equilibrium<Space>::pin_reaction() const {
     const bool pinned = ((model_.held()[k / n] & ~model_.prescribed()[k / n]) >> (k % n) & 1U) != 0;
     if (pinned) largest = std::max(largest, std::abs(wrenches_.at(k)) * weight(k));
   }
-  double all = 0;
-  MPI_Allreduce(&largest, &all, 1, MPI_DOUBLE, MPI_MAX, part_.comm);
+  largest = largest_over_ranks(largest, part_.comm);
   const Scale size = scale_of_forces();
-  return all > size.rounding ? all / size.forces
-                             : 0.0;  // without any load all reactions are rounding
+  return largest > size.rounding ? largest / size.forces
+                                 : 0.0;  // without any load all reactions are rounding
 }
 
 template class Equilibrium<Spatial>;

@@ -96,6 +96,7 @@ class Equilibrium {
   Scale scale_of_forces() const;
   bool is_lost() const;
   std::int64_t count_folded() const;
+  void audit(const char* where) const;
   Saved save() const;
   void restore(const Saved& saved);
 

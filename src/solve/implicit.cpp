@@ -13,7 +13,7 @@
 #include "solve/newton.h"
 #include "solve/numbers.h"
 #include "solve/step_plan.h"
-#include "solve/text.h"
+#include "base/format.h"
 #include "solve/ts_options.h"
 
 namespace floe {
@@ -36,7 +36,7 @@ class ImplicitRun final : public DynamicRun<Space> {
     equations_.begin(x_, v_);
     problem_.expected = expected_;
     problem_.start = [this](double t, Vec x, Vec v, Vec a) { equations_.acceleration(t, x, v, a); };
-    if (!equations_.held().empty())
+    if (!model().boundaries().empty())  // on some rank, perhaps not on this one
       problem_.prescribe = [this](double t, const LieAlphaStage& s) { equations_.prescribe(t, s); };
     set_up_ts();
     set_up_newton();
@@ -70,6 +70,7 @@ class ImplicitRun final : public DynamicRun<Space> {
     return columns;
   }
   void remember_own(Memory& memory) override;
+  std::vector<PetscObject> objects() const override;
 
   static ImplicitRun& of(TS ts) {
     ImplicitRun* run = nullptr;
@@ -254,10 +255,8 @@ void ImplicitRun<Space>::keep_books(double h) {
 template <class Space>
 bool ImplicitRun<Space>::stepped() {
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
-  PetscInt newton = 0;
   check(TSGetConvergedReason(ts_, &reason));
-  check(TSGetSNESIterations(ts_, &newton));
-  result().newton_iterations = newton_before_ + newton;
+  result().newton_iterations = newton_before_ + liealpha_iterations(ts_);
   if (reason < 0) {
     give_up(failure(reason));
     return false;
@@ -275,7 +274,7 @@ bool ImplicitRun<Space>::stepped() {
   result().dt = h;
   if (!this->moved(now, equations_.largest_speed2())) return false;
   // The last state is the run's to sample.
-  if (reason == TS_CONVERGED_ITERATING && !this->sample_if_due()) return false;
+  if (!this->is_last(reason) && !this->sample_if_due()) return false;
   double allowed = 0;
   check(TSGetTimeStep(ts_, &allowed));
   plan_.made(h, allowed);
@@ -316,11 +315,12 @@ PetscErrorCode ImplicitRun<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   auto& run = *static_cast<ImplicitRun*>(self);
   run.contraction_ = it > 0 && run.last_norm_ > 0 ? norm / run.last_norm_ : 0.0;
   run.last_norm_ = norm;
+  run.audit("Newton's method");
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
   if (!std::isfinite(norm)) {
-    *reason = SNES_DIVERGED_FNORM_NAN;
+    *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
     return 0;
   }
   // What Newton starts from is not good enough by being near: small forces would never act.
@@ -338,6 +338,21 @@ PetscErrorCode ImplicitRun<Space>::in_domain(TS ts, PetscReal, Vec, PetscBool* g
   MPI_Allreduce(&mine, &all, 1, MPI_INT64_T, MPI_SUM, run.model().part().comm);
   *good = all == 0 ? PETSC_TRUE : PETSC_FALSE;
   return 0;
+}
+
+template <class Space>
+std::vector<PetscObject> ImplicitRun<Space>::objects() const {
+  SNES snes = nullptr;
+  Vec residual = nullptr, update = nullptr;
+  check(TSGetSNES(ts_, &snes));
+  check(SNESGetFunction(snes, &residual, nullptr, nullptr));
+  check(SNESGetSolutionUpdate(snes, &update));
+  std::vector<PetscObject> all{object_of(equations_.matrix())};
+  for (const Vec v : liealpha_vectors(ts_)) all.push_back(object_of(v));
+  for (const Vec v :
+       {x_.get(), v_.get(), x_before_.get(), v_before_.get(), expected_.get(), residual, update})
+    all.push_back(object_of(v));
+  return all;
 }
 
 template <class Space>

@@ -25,7 +25,9 @@
 
 #include <petscts.h>
 
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "floe/base/petsc.h"
 
@@ -63,6 +65,10 @@ struct LieAlphaMemory {
 };
 /// What it is at present; the TS must be set up. A start if no step has been made.
 LieAlphaMemory liealpha_memory(TS ts);
+/// Newton's iterations so far, where PETSc counts with 32 bits.
+std::int64_t liealpha_iterations(TS ts);
+/// All vectors of the type itself, for audits.
+std::vector<Vec> liealpha_vectors(TS ts);
 /// The vectors of liealpha_memory() have been given their values: the next step goes on from them
 /// instead of starting.
 void resume_liealpha(TS ts, const LieAlphaMemory& memory);

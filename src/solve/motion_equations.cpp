@@ -98,10 +98,10 @@ void MotionEquations<Space>::acceleration(double time, Vec x, Vec v, Vec a) {
 
 template <class Space>
 void MotionEquations<Space>::prescribe(double time, const LieAlphaStage& stage) const {
-  if (held_.empty()) return;
   model_.prescribe(time, values_);
   model_.prescribe_rates(time, rates_);
   model_.prescribe_accelerations(time, accelerations_);
+  // By all ranks, also by those that hold none: see Numbers.
   const Numbers x(stage.x), v(stage.v), a(stage.a), own(stage.own);
   for (const std::size_t k : held_) {
     const double scale = is_displacement(k) ? 1.0 : length_;

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <vector>
 
+#include "floe/base/ranks.h"
+
 namespace floe {
 
 TangentOptions tangent_options() {
@@ -19,13 +21,12 @@ TangentOptions tangent_options() {
 
 template <class Space>
 double typical_stiffness(const Model<Space>& model) {
-  double mine = 0;
+  double most = 0;
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
-    for (const auto& force : model.forces()) mine = std::max(mine, force->stiffness_bound(b));
+    for (const auto& force : model.forces()) most = std::max(most, force->stiffness_bound(b));
   }
-  double all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_MAX, model.part().comm);
-  return all > 0 ? all : 1.0;
+  most = largest_over_ranks(most, model.part().comm);
+  return most > 0 ? most : 1.0;
 }
 
 void set_cholesky(KSP ksp) {

@@ -15,7 +15,8 @@
 
 namespace floe {
 
-/// To read and write, as long as the object lives.
+/// To read and write, as long as the object lives. By all ranks or by none, whatever their share:
+/// it raises the vector's state, by which PETSc knows whether a norm is still good.
 class Numbers {
  public:
   explicit Numbers(Vec vec) : vec_(vec) {

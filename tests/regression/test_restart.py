@@ -9,7 +9,6 @@ import json
 import os
 import random
 import resource
-import shutil
 import signal
 import subprocess
 import sys
@@ -21,11 +20,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, on_ranks, own_words
+from launch import ENVIRONMENT, FLOE, FULL, REPOSITORY, on_ranks, own_words
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-FULL = os.environ.get("FLOE_FULL") == "1"
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import frames_of  # noqa: E402
 
@@ -49,6 +45,9 @@ checkpoint: {every: 1000}
 PLANAR = (SCENE.replace("forces: [beam, gravity, buoyancy, drag]", "forces: [beam, drag]\nmodel: {planar: true}")
           .replace("force: [0, 0, -1e5], moment: [0, 1e4, 0]", "force: [1e4, 1e5, 0], moment: [0, 0, 1e4]"))
 INTERRUPTED = 3
+# Of a run that is to be interrupted: it does not end by itself, however late that comes. The straight run that it is
+# compared with ends by -ts_max_steps, and has this end as well: the step divides it.
+ENDLESS = ("-time_end", "1e5")
 TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s", "output_s",
          "peak_memory_mb", "ns_per_beam_step"}
 
@@ -81,7 +80,7 @@ class RestartTest(unittest.TestCase):
 
     def finish(self, process, code=0):
         """What a process that must end with `code` said on its standard error."""
-        out, err = process.communicate(timeout=300)
+        out, err = process.communicate()
         self.assertEqual(process.returncode, code, out + err)
         return own_words(err)
 
@@ -90,17 +89,32 @@ class RestartTest(unittest.TestCase):
         return self.folder / how.get("dir", "out/scene")
 
     def interrupted(self, interrupt, *options, dir="b", ranks=1):
-        """A run that `interrupt(process, folder)` stops once its history has some rows."""
-        process = self.begin(*options, dir=dir, ranks=ranks)
+        """A run without an end that `interrupt(process, folder)` stops once its history has some rows."""
+        process = self.begin(*options, *ENDLESS, dir=dir, ranks=ranks)
         self.wait_for_rows(process, self.folder / dir, 20)
         interrupt(process, self.folder / dir)
         return process
 
-    def wait_for_rows(self, process, folder, rows):
-        history = folder / "history.csv"
-        while process.poll() is None and not (history.exists() and history.read_text().count("\n") > rows):
+    def wait_for(self, process, what):
+        """Until what() is true, as long as it takes."""
+        while not what():
+            if process.poll() is not None:
+                self.fail("the run ended before it was interrupted: " + "".join(process.communicate()))
             time.sleep(0.002)
-        self.assertIsNone(process.poll(), "the run ended before it could be interrupted")
+
+    def wait_for_rows(self, process, folder, rows):
+        self.wait_for(process, lambda: rows_of(folder) > rows)
+
+    def steps_of(self, dir):
+        """Steps up to the checkpoint of a folder."""
+        with h5py.File(self.folder / dir / "checkpoint.h5") as file:
+            return int(file["run/step"][()])
+
+    def straight_and_resumed(self, *options, dir="b", ranks=1, straight_ranks=None):
+        """Two folders: a straight run, and that of an endless run that was interrupted and goes on to the same step."""
+        end = ("-ts_max_steps", str(2 * self.steps_of(dir)))
+        straight = self.run_whole(*options, *ENDLESS, *end, dir="straight_" + dir, ranks=straight_ranks or ranks)
+        return straight, self.go_on(*options, *ENDLESS, *end, dir=dir, ranks=ranks)
 
     def go_on(self, *options, dir="b", ranks=1):
         return self.run_whole("-checkpoint_restart", f"{dir}/checkpoint.h5", *options, dir=dir, ranks=ranks)
@@ -124,15 +138,40 @@ class RestartTest(unittest.TestCase):
 
     def check_stopped(self, how, ranks=1):
         """A run that stops as `how` asks says how to go on, and then equals the straight run."""
-        straight = self.run_whole(dir="a", ranks=ranks)
-        process = self.interrupted(how, ranks=ranks)
-        said = self.finish(process, INTERRUPTED)
+        said = self.finish(self.interrupted(how, ranks=ranks), INTERRUPTED)
         self.assertIn("go on with: floe scene.yaml -checkpoint_restart b/checkpoint.h5", said)
         self.assertFalse((self.folder / "b/STOP").exists())
         summary = json.loads((self.folder / "b/summary.json").read_text())
         self.assertEqual(summary["status"], "stopped")
-        self.assertLess(summary["time"], 10)
-        self.assert_same(straight, self.go_on(ranks=ranks))
+        self.assertEqual(summary["steps"], self.steps_of("b"))
+        self.assert_same(*self.straight_and_resumed(ranks=ranks))
+
+    def check_parts(self, scene, stops, *options):
+        """A run in parts, which end at the given shares of its steps, is the run in one piece; its summary."""
+        (self.folder / "scene.yaml").write_text(scene)
+        a = self.run_whole(*options, dir="a")
+        summary = json.loads((a / "summary.json").read_text())
+        resume = []
+        for part in stops:
+            end = ["-ts_max_steps", str(int(part * summary["steps"]))]
+            self.run_whole(*options, *end, *resume, dir="b")
+            resume = ["-checkpoint_restart", "b/checkpoint.h5"]
+        b = self.go_on(*options)
+        rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
+        for row in (a / "history.csv").read_text().split("\n"):
+            self.assertIn(row, rows)
+        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
+        self.assertEqual(first["run/step"], second["run/step"])
+        for name, values in first.items():
+            if name == "bodies/records" or name.startswith("force_"):
+                np.testing.assert_array_equal(values, second[name], name)
+        return summary
+
+
+def rows_of(folder):
+    """Lines of a history that may not be there yet."""
+    history = folder / "history.csv"
+    return history.read_text().count("\n") if history.exists() else 0
 
 
 def stop_file(process, folder):
@@ -158,13 +197,13 @@ class Stopped(RestartTest):
         self.check_stopped(interrupt)
 
     def test_twice(self):
-        straight = self.run_whole(dir="a")
         self.finish(self.interrupted(stop_file), INTERRUPTED)
-        process = self.begin("-checkpoint_restart", "b/checkpoint.h5", dir="b")
-        self.wait_for_rows(process, self.folder / "b", 80)
+        before = rows_of(self.folder / "b")
+        process = self.begin("-checkpoint_restart", "b/checkpoint.h5", *ENDLESS, dir="b")
+        self.wait_for_rows(process, self.folder / "b", before + 20)
         terminate(process, self.folder / "b")
         self.finish(process, INTERRUPTED)
-        self.assert_same(straight, self.go_on())
+        self.assert_same(*self.straight_and_resumed())
 
 
 class StoppedInThePlane(Stopped):
@@ -199,10 +238,10 @@ class GoingOn(RestartTest):
         self.assertFalse((folder / "checkpoint.h5").exists())
 
     def test_by_the_clock(self):
-        process = self.begin("-checkpoint_every", "0.01", dir="b")
-        self.wait_for_rows(process, self.folder / "b", 150)
-        self.assertTrue((self.folder / "b/checkpoint.h5").exists())
-        self.finish(process)
+        process = self.begin("-checkpoint_every", "0.01", *ENDLESS, dir="b")
+        self.wait_for(process, (self.folder / "b/checkpoint.h5").exists)
+        stop_file(process, self.folder / "b")
+        self.finish(process, INTERRUPTED)
 
 
 class Refused(RestartTest):
@@ -288,30 +327,9 @@ class Breaking(RestartTest):
 
 
 class Contact(RestartTest):
-    def goes_on(self, scene, stops):
-        """A run in parts, which end at the given shares of its steps, is the run in one piece; its summary."""
-        (self.folder / "scene.yaml").write_text(scene)
-        a = self.run_whole(dir="a")
-        summary = json.loads((a / "summary.json").read_text())
-        resume = []
-        for part in stops:
-            end = ["-ts_max_steps", str(int(part * summary["steps"]))]
-            self.run_whole(*end, *resume, dir="b")
-            resume = ["-checkpoint_restart", "b/checkpoint.h5"]
-        b = self.go_on()
-        rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
-        for row in (a / "history.csv").read_text().split("\n"):
-            self.assertIn(row, rows)
-        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
-        self.assertEqual(first["run/step"], second["run/step"])
-        for name, values in first.items():
-            if name == "bodies/records" or name.startswith("force_"):
-                np.testing.assert_array_equal(values, second[name], name)
-        return summary
-
     def test_a_sheet_near_a_wall(self):
         """The step gets shorter when the run finds the wall near, not when a restart looks again."""
-        summary = self.goes_on("""integrator: explicit
+        summary = self.check_parts("""integrator: explicit
 forces: [beam, contact]
 sheet: {length: 10, thickness: 1, element_size: 1, iterations: 5}
 beam: {damping_ratio: 0.02}
@@ -325,7 +343,7 @@ checkpoint: {every: 1000}
 
     def test_a_sheet_that_breaks_against_a_slope(self):
         """Friction, crushing and contacts that were born at breaks go on bit for bit, with an obstacle on its way."""
-        summary = self.goes_on("""integrator: explicit
+        summary = self.check_parts("""integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
 sheet: {length: 12, width: 6, thickness: 0.5, element_size: 1.5, iterations: 10}
 beam: {damping_ratio: 0.1}
@@ -354,34 +372,20 @@ class Killing(RestartTest):
 
     def check_killed(self, ranks):
         """kill -9: every file is readable, rows and frames are whole, and going on gives the straight run."""
-        options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", "-time_end", "20" if FULL else "10"]
-        began = time.monotonic()
-        straight = self.run_whole(*options, dir=f"a{ranks}", ranks=ranks)
-        duration = time.monotonic() - began
+        options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", *ENDLESS]
         chance = random.Random(ranks)
-        restarts, start = 0, True
-        dir = f"b{ranks}"
-        folder = self.folder / dir
+        folder, resume = self.folder / "b", []
         for kill in range(20 if FULL else 4):
-            resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
-            process = self.begin(*options, *resume, dir=dir, ranks=ranks)
-            try:
-                process.communicate(timeout=chance.uniform(0.15, 0.6) * duration)
-                self.assertEqual(process.returncode, 0)
-                restarts, start = restarts + (not start), True  # it ended before the kill: from the start again
-                self.assert_same(straight, folder)
-                for name in ("checkpoint.h5", "history.csv", "fields.h5", "fields.xmf"):
-                    (folder / name).unlink()
-                continue
-            except subprocess.TimeoutExpired:
-                self.kill(process, ranks)
+            before = rows_of(folder)
+            process = self.begin(*options, *resume, dir="b", ranks=ranks)
+            self.wait_for_rows(process, folder, before + chance.randrange(1, 100))
+            if kill > 0:  # else there may be none yet, and the run begins again
+                self.wait_for(process, (folder / "checkpoint.h5").exists)
+            time.sleep(chance.uniform(0, 0.05))  # anywhere between two rows, in a frame, in a checkpoint
+            self.kill(process, ranks)
             self.check_files(folder)
-            start = not (folder / "checkpoint.h5").exists()
-            restarts += not start
-        resume = [] if start else ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
-        self.run_whole(*options, *resume, dir=dir, ranks=ranks)
-        self.assertGreater(restarts, 0)
-        self.assert_same(straight, folder)
+            resume = ["-checkpoint_restart", "b/checkpoint.h5"] if (folder / "checkpoint.h5").exists() else []
+        self.assert_same(*self.straight_and_resumed(*options, ranks=ranks))
 
     def kill(self, process, ranks):
         """SIGKILL to every rank; with several they are mpiexec's children, and it ends once they have."""
@@ -394,10 +398,8 @@ class Killing(RestartTest):
         process.communicate()
 
     def check_files(self, folder):
-        if not folder.exists():
-            return
-        rows = (folder / "history.csv").read_text() if (folder / "history.csv").exists() else ""
-        self.assertTrue(rows == "" or rows.endswith("\n"))
+        rows = (folder / "history.csv").read_text()
+        self.assertTrue(rows.endswith("\n"))
         table = list(csv.reader(rows.splitlines()))
         self.assertLessEqual({len(row) for row in table}, {len(table[0])} if table else set())
         for path in (*folder.glob("fields/*.h5"), *folder.glob("*.h5")):
@@ -410,23 +412,22 @@ class Killed(Killing):
 
 
 class DiskFull(RestartTest):
-    def limited(self, size, *options, stop=False):
-        """A run whose files cannot grow beyond `size(folder)` bytes once it has some rows; what it says.
-        `stop` asks it for a last checkpoint."""
-        history = self.folder / "b/history.csv"
-        rows = history.read_text().count("\n") if history.exists() else 0
-        process = self.begin(*options, dir="b")
-        self.wait_for_rows(process, self.folder / "b", rows + 20)
-        limit = size(self.folder / "b")
-        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (limit, limit))
-        if stop:
-            (self.folder / "b/STOP").touch()
+    def says_why(self, process):
+        """What a run says that ended because its files could not grow."""
         said = self.finish(process, 1)
         self.assertIn("floe: cannot write", said)
         self.assertIn("File too large", said)
         self.assertNotIn("internal", said)
         self.assertEqual(list((self.folder / "b").glob("*.part")), [])
         return said
+
+    def limited(self, size, *options):
+        """What a run says whose files cannot grow beyond `size(folder)` bytes once it has some rows."""
+        process = self.begin(*options, *ENDLESS, dir="b")
+        self.wait_for_rows(process, self.folder / "b", 20)
+        limit = size(self.folder / "b")
+        resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (limit, limit))
+        return self.says_why(process)
 
     def test_fields(self):
         said = self.limited(lambda folder: max(path.stat().st_size for path in folder.glob("fields/*.h5")), "-output_fields",
@@ -436,18 +437,23 @@ class DiskFull(RestartTest):
 
     def test_checkpoint(self):
         """The checkpoint does not fit; an earlier one stays as it was, and the run can go on from it."""
-        straight = self.run_whole("-output_fields", "20", dir="a")
-        self.finish(self.interrupted(stop_file, "-output_fields", "20"), INTERRUPTED)
+        rare = ("-output_fields", "1e5", "-output_history", "10")  # a checkpoint comes before the next row
+        process = self.begin(*rare, *ENDLESS, dir="b")
+        self.wait_for_rows(process, self.folder / "b", 2)
+        stop_file(process, self.folder / "b")
+        self.finish(process, INTERRUPTED)
         before = (self.folder / "b/checkpoint.h5").read_bytes()
-        said = self.limited(lambda folder: len(before) - 3000, "-output_fields", "20",
-                            "-checkpoint_restart", "b/checkpoint.h5", stop=True)
+        limit = len(before) - 3000
+        said = self.says_why(self.begin(
+            *rare, *ENDLESS, "-checkpoint_restart", "b/checkpoint.h5", "-checkpoint_every", "0.001", dir="b",
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
         self.assertIn("checkpoint.h5", said)
         self.assertEqual((self.folder / "b/checkpoint.h5").read_bytes(), before)
-        self.assert_same(straight, self.go_on("-output_fields", "20"))
+        self.assert_same(*self.straight_and_resumed(*rare))
 
     def test_history(self):
         said = self.limited(lambda folder: (folder / "history.csv").stat().st_size + 100, "-output_history", "0.001",
-                            "-output_fields", "20")
+                            "-output_fields", "1e5")
         self.assertIn("history.csv", said)
         self.assertTrue((self.folder / "b/history.csv").read_text().endswith("\n"))
 
@@ -473,7 +479,7 @@ class RealDiskFull(RestartTest):
         """What a run says that goes on from the checkpoint with so many bytes left."""
         self.fill(left)
         before = (self.disk / "checkpoint.h5").read_bytes()
-        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", *options, dir="b"), 1)
+        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", *options, *ENDLESS, dir="b"), 1)
         self.assertIn("floe: cannot write", said)
         self.assertIn("No space left on device", said)
         self.assertNotIn("internal", said)
@@ -484,29 +490,26 @@ class RealDiskFull(RestartTest):
         (self.disk / "filler").unlink()
         return said
 
-    def test_a_run_goes_on_once_there_is_room(self):
-        def checkpoint():
-            return (self.disk / "checkpoint.h5").stat().st_size - 4096
+    def check(self, what, left, *options):
+        """A disk that is full ends the run with the name of the file, and it goes on once there is room."""
+        process = self.begin(*options, *ENDLESS, dir="b")
+        self.wait_for_rows(process, self.disk, 1)
+        stop_file(process, self.disk)
+        self.finish(process, INTERRUPTED)
+        self.assertRegex(self.full(left(), *options), what)
+        if "fields" in what:  # not even what names the frames can be written
+            self.assertIn(what, self.full(4 << 10, *options))
+        self.assert_same(*self.straight_and_resumed(*options))
 
-        for options, left, name in ((("-output_fields", "20"), lambda: 8 << 10, r"history\.csv"),
-                                    (("-output_history", "1", "-output_fields", "0.05"), lambda: 200 << 10,
-                                     r"b/fields"),
-                                    (("-output_fields", "20", "-output_history", "0.5", "-checkpoint_every", "0.05"),
-                                     checkpoint, r"checkpoint\.h5")):
-            with self.subTest(name):
-                straight = self.run_whole(*options, dir="a")
-                for file in self.disk.iterdir():
-                    shutil.rmtree(file) if file.is_dir() else file.unlink()
-                process = self.begin(*options, dir="b")
-                while process.poll() is None and not (self.disk / "history.csv").exists():
-                    time.sleep(0.002)
-                time.sleep(0.1)
-                (self.disk / "STOP").touch()
-                self.finish(process, INTERRUPTED)
-                self.assertRegex(self.full(left(), *options), name)
-                if "fields" in name:  # not even what names the frames can be written
-                    self.assertIn("b/fields", self.full(4 << 10, *options))
-                self.assert_same(straight, self.go_on(*options))
+    def test_history(self):
+        self.check(r"history\.csv", lambda: 8 << 10, "-output_fields", "1e5")
+
+    def test_fields(self):
+        self.check("b/fields", lambda: 200 << 10, "-output_history", "1", "-output_fields", "0.05")
+
+    def test_checkpoint(self):
+        self.check(r"checkpoint\.h5", lambda: (self.disk / "checkpoint.h5").stat().st_size - 4096,
+                   "-output_fields", "1e5", "-output_history", "10", "-checkpoint_every", "0.05")
 
 
 if __name__ == "__main__":

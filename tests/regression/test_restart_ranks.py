@@ -16,11 +16,10 @@ class Stopped(RestartTest):
         self.check_stopped(stop_file, 2)
 
     def test_on_another_number_of_ranks(self):
-        straight = self.run_whole(dir="a")
         for before, after in ((1, 2), (2, 1), (2, 3)):
             dir = f"b{before}{after}"
             self.finish(self.interrupted(stop_file, dir=dir, ranks=before), INTERRUPTED)
-            b = self.go_on(dir=dir, ranks=after)
+            straight, b = self.straight_and_resumed(dir=dir, ranks=after, straight_ranks=1)
             first, second = contents(straight / "fields.h5"), contents(b / "fields.h5")
             self.assertEqual(set(first), set(second))
             for key, values in first.items():

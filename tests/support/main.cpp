@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "floe/base/audit.h"
 #include "floe/base/petsc.h"
 
 namespace {
@@ -56,6 +57,7 @@ int main(int argc, char** argv) {
   int failed = 0;
   {
     floe::Session session(argc, argv, "");
+    floe::set_auditing(true);
     const OwnFolder folder;
     if (floe::rank() != 0) {
       auto& listeners = testing::UnitTest::GetInstance()->listeners();
