@@ -10,6 +10,7 @@
 
 #include "floe/base/command_line.h"
 #include "floe/base/environment.h"
+#include "floe/base/files.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"

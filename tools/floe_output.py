@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""Reads an output folder of floe: summary.json, options.yaml, lattice.h5, fields.h5. SI units everywhere."""
+"""Reads an output folder of floe: summary.json, options.yaml, lattice.h5, history.csv, fields. SI units everywhere.
+
+Also that of a run that is under way, was killed or has failed: what is there is whole.
+"""
 import csv
 import json
 import re
@@ -61,22 +64,52 @@ class Lattice:
         return [placed[corners[ends[f]:ends[f + 1]], :2] for f in top]
 
 
+def frames_of(folder):
+    """All frames in a folder, in order of time: [(time, file, group)]. None is ever there in part."""
+    folder = Path(folder)
+    files = [file for file in folder.glob("fields/*.h5") if file.stem.isdigit()]
+    if not (folder / "fields").is_dir():  # of floe 0.1: a single file
+        files = [folder / "fields.h5"]
+    frames = []
+    for path in files:
+        with h5py.File(path) as file:
+            frames += [(float(group.attrs["time"]), path, name) for name, group in file.items() if "time" in group.attrs]
+    return sorted(frames)
+
+
+def rows_of(folder):
+    """Rows of history.csv as {column: text}; of a run that is under way without a last one that is not whole yet."""
+    with open(Path(folder) / "history.csv", newline="") as file:
+        return list(csv.DictReader(line for line in file if line.endswith("\n")))
+
+
 class Output(Lattice):
     """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        self.summary = json.loads((self.folder / "summary.json").read_text())
+        summary = self.folder / "summary.json"
+        self.summary = json.loads(summary.read_text()) if summary.exists() else {}  # empty until the run has ended
         super().__init__(self.folder / "lattice.h5")
-        with h5py.File(self.folder / "fields.h5") as file:
-            frames = {name: float(group.attrs["time"]) for name, group in file.items() if "time" in group.attrs}
-        self._groups = sorted(frames, key=frames.get)
-        self.times = np.array([frames[name] for name in self._groups])
+        self._frames = frames_of(self.folder)
+        self.times = np.array([time for time, _, _ in self._frames])
+
+    def nearest(self, time, parser):
+        """Time of the frame nearest to `time` (None: the last one); ends the tool if the run has none, or none so late."""
+        if not self._frames:
+            parser.error(f"{self.folder} has no frame yet")
+        last = self.times[-1]
+        if time is not None and not -1e-9 * last <= time <= last * (1 + 1e-9):
+            parser.error(f"--time {time:g}: the frames of {self.folder} go from 0 to {last:g} s")
+        return last if time is None else self.times[np.argmin(np.abs(self.times - time))]
 
     def field(self, name, time):
         """Dataset `name` of the sample nearest to `time`."""
-        with h5py.File(self.folder / "fields.h5") as file:
-            return file[self._groups[int(np.argmin(np.abs(self.times - time)))]][name][:]
+        if not self._frames:
+            raise KeyError(f"{self.folder} has no frame yet")
+        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
+        with h5py.File(path) as file:
+            return file[group][name][:]
 
     def body_quantity(self, name, time):
         """Values n of a quantity of BODY_QUANTITIES, its unit and label."""
@@ -92,8 +125,7 @@ class Output(Lattice):
 
     def history(self, name):
         """One column of history.csv."""
-        with open(self.folder / "history.csv", newline="") as file:
-            return np.array([float(row[name]) for row in csv.DictReader(file)])
+        return np.array([float(row[name]) for row in rows_of(self.folder)])
 
     def options(self):
         """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""

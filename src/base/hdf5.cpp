@@ -1,45 +1,16 @@
 #include "floe/base/hdf5.h"
 
-#include <hdf5.h>
+#include <fcntl.h>
+#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <stdexcept>
+#include <utility>
 
-#include "floe/base/petsc.h"
+#include "hdf5_id.h"
 
 namespace floe {
 namespace {
-
-/// Closes an HDF5 identifier of any kind at the end of a scope.
-class Id {
- public:
-  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  ~Id() {
-    if (id_ >= 0) close_(id_);
-  }
-  Id(const Id&) = delete;
-  Id& operator=(const Id&) = delete;
-  operator hid_t() const { return id_; }  // NOLINT: HDF5 calls take the bare identifier
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-constexpr const char* temporary_ending = ".part";
-
-void require(bool good, const std::string& what, const std::string& path) {
-  if (good) return;
-  const int why = errno;  // HDF5 keeps what the system said
-  if (path.ends_with(temporary_ending)) std::remove(path.c_str());
-  throw FileError("cannot " + what + " " + path + (why != 0 ? ": " : "") +
-                  (why != 0 ? std::strerror(why) : ""));
-}
 
 template <class T>
 hid_t native();
@@ -56,132 +27,118 @@ hid_t native<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
 
-void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// HDF5 keeps what the system said in errno.
+void require(bool good, const std::string& path) {
+  if (!good) throw_file_error("write", path, errno);
+}
+
+/// Copies a file. Returns what the system says (errno), 0 if all went well.
+int copy_file(const std::string& from, const std::string& to) {
+  const int in = ::open(from.c_str(), O_RDONLY | O_CLOEXEC);
+  const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  std::vector<char> block(1 << 18);
+  int error = in < 0 || out < 0 ? errno : 0;
+  for (::ssize_t size = 1; error == 0 && size > 0;) {
+    size = ::read(in, block.data(), block.size());
+    if (size < 0) error = errno;
+    for (::ssize_t done = 0; error == 0 && done < size;) {
+      const ::ssize_t now =
+          ::write(out, block.data() + done, static_cast<std::size_t>(size - done));
+      if (now < 0) error = errno;
+      done += now;
+    }
+  }
+  if (in >= 0) ::close(in);
+  if (out >= 0 && ::close(out) != 0 && error == 0) error = errno;
+  return error;
+}
+
+/// Nobody else writes under a temporary name: no lock, which some file systems do not have.
+Hdf5Id unlocked() {
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  H5Pset_file_locking(access, false, true);
+  return {access, H5Pclose};
+}
 
 }  // namespace
 
-Hdf5File Hdf5File::create(const std::string& path, std::uintmax_t room) {
-  quiet();
-  const std::string temporary = path + temporary_ending;
-  std::error_code unknown;
-  const auto folder = std::filesystem::absolute(path).parent_path();
-  const auto space = std::filesystem::space(folder, unknown);
-  if (!unknown && space.available < room) {
-    errno = ENOSPC;
-    require(false, "write", temporary);
-  }
-  const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  require(id >= 0, "create", temporary);
+Hdf5File Hdf5File::create(const std::string& path) {
+  quiet_hdf5();
+  const std::string temporary = temporary_name(path);
+  errno = 0;
+  const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unlocked());
+  require(id >= 0, path);
   return {id, temporary, path};
 }
 
-Hdf5File Hdf5File::create_growing(const std::string& path) {
-  quiet();
-  const hid_t id = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  require(id >= 0, "create", path);
-  return {id, path, path};
-}
-
-Hdf5File Hdf5File::open_growing(const std::string& path) {
-  quiet();
-  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  require(id >= 0, "open", path);
-  return {id, path, path};
-}
-
-Hdf5File Hdf5File::open(const std::string& path, const std::string& key) {
-  quiet();
-  if (!std::filesystem::is_regular_file(path))
-    throw InputError(key + ": '" + path + "' does not exist or is not a regular file");
-  const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (id < 0) throw InputError(key + ": '" + path + "' is not an HDF5 file");
-  return {id, path, path, key};
+Hdf5File Hdf5File::change(const std::string& path) {
+  quiet_hdf5();
+  const std::string temporary = temporary_name(path);
+  errno = copy_file(path, temporary);
+  hid_t id = -1;
+  if (errno == 0) id = H5Fopen(temporary.c_str(), H5F_ACC_RDWR, unlocked());
+  if (id < 0) {
+    const int why = errno;
+    ::unlink(temporary.c_str());
+    throw_file_error("write", path, why);
+  }
+  return {id, temporary, path};
 }
 
 Hdf5File::Hdf5File(Hdf5File&& other) noexcept
     : id_(std::exchange(other.id_, -1)),
       path_(std::move(other.path_)),
       final_path_(std::move(other.final_path_)),
-      key_(std::move(other.key_)),
-      staged_(std::exchange(other.staged_, -1)),
-      staged_name_(std::move(other.staged_name_)) {}
+      key_(std::move(other.key_)) {}
 
 Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
   std::swap(id_, other.id_);
   std::swap(path_, other.path_);
   std::swap(final_path_, other.final_path_);
   std::swap(key_, other.key_);
-  std::swap(staged_, other.staged_);
-  std::swap(staged_name_, other.staged_name_);
   return *this;
 }
 
 Hdf5File::~Hdf5File() {
-  if (id_ < 0) return;
-  if (staged_ >= 0) H5Gclose(staged_);
-  H5Fclose(id_);
-  if (path_ != final_path_) std::remove(path_.c_str());
+  if (id_ >= 0) H5Fclose(id_);
+  if (!path_.empty() && path_ != final_path_) ::unlink(path_.c_str());
 }
 
-void Hdf5File::close() {
-  if (id_ < 0) return;
+void Hdf5File::close(Place place) {
   errno = 0;
-  require(H5Fclose(std::exchange(id_, -1)) >= 0, "write", path_);
-  if (path_ != final_path_) std::filesystem::rename(path_, final_path_);
+  require(H5Fclose(std::exchange(id_, -1)) >= 0, final_path_);
+  put_in_place(std::exchange(path_, {}), final_path_, place);
 }
 
-void Hdf5File::flush() {
+void Hdf5File::link(const std::string& name, const std::string& file, const std::string& object) {
   errno = 0;
-  require(H5Fflush(id_, H5F_SCOPE_GLOBAL) >= 0, "write", path_);
+  require(H5Lcreate_external(file.c_str(), object.c_str(), id_, name.c_str(), H5P_DEFAULT,
+                             H5P_DEFAULT) >= 0,
+          final_path_);
 }
 
-void Hdf5File::stage(const std::string& group) {
+void Hdf5File::remove(const std::string& name) {
   errno = 0;
-  staged_ = H5Gcreate_anon(id_, H5P_DEFAULT, H5P_DEFAULT);
-  require(staged_ >= 0, "write " + group + " to", path_);
-  staged_name_ = group;
-}
-
-void Hdf5File::publish() {
-  flush();  // all of the group is on disk before the file knows of it
-  require(H5Olink(staged_, id_, staged_name_.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
-          "write " + staged_name_ + " to", path_);
-  H5Gclose(std::exchange(staged_, -1));
-  staged_name_.clear();
-  flush();
-}
-
-void Hdf5File::copy(const Hdf5File& from, const std::string& name) {
-  errno = 0;
-  require(H5Ocopy(from.id_, name.c_str(), id_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) >= 0,
-          "copy " + name + " to", path_);
-}
-
-std::pair<std::int64_t, std::string> Hdf5File::place(const std::string& name) const {
-  if (staged_ < 0 || name.rfind(staged_name_, 0) != 0) return {id_, name};
-  return {staged_, name == staged_name_ ? "." : name.substr(staged_name_.size() + 1)};
+  require(H5Ldelete(id_, name.c_str(), H5P_DEFAULT) >= 0, final_path_);
 }
 
 std::int64_t Hdf5File::create_dataset(const std::string& name, std::int64_t rows, int columns,
                                       std::int64_t type) {
   const std::array<hsize_t, 2> extent{static_cast<hsize_t>(rows), static_cast<hsize_t>(columns)};
-  const Id space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
-  const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  const Hdf5Id space(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
+  const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  const auto [where, relative] = place(name);
   errno = 0;
-  const hid_t data =
-      H5Dcreate2(where, relative.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT);
-  require(data >= 0, "write " + name + " to", path_);
+  const hid_t data = H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT);
+  require(data >= 0, final_path_);
   return data;
 }
 
 void Hdf5File::write_any(const std::string& name, const void* values, std::int64_t count,
                          int columns, std::int64_t type) {
-  const Id data(create_dataset(name, count / columns, columns, type), H5Dclose);
+  const Hdf5Id data(create_dataset(name, count / columns, columns, type), H5Dclose);
   if (count > 0)
-    require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0,
-            "write " + name + " to", path_);
+    require(H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, final_path_);
 }
 
 template <class T>
@@ -189,8 +146,8 @@ void Hdf5File::write_blocks(const std::string& name, std::int64_t rows, int colu
                             const std::function<void(std::int64_t, std::span<T>)>& make) {
   constexpr std::int64_t block = 1 << 14;  // rows: stays in the cache
   const std::int64_t type = native<T>();
-  const Id data(create_dataset(name, rows, columns, type), H5Dclose);
-  const Id file(H5Dget_space(data), H5Sclose);
+  const Hdf5Id data(create_dataset(name, rows, columns, type), H5Dclose);
+  const Hdf5Id file(H5Dget_space(data), H5Sclose);
   std::vector<T> values;
   for (std::int64_t first = 0; first < rows; first += block) {
     const std::int64_t count = std::min(block, rows - first);
@@ -198,11 +155,11 @@ void Hdf5File::write_blocks(const std::string& name, std::int64_t rows, int colu
     make(first, values);
     const std::array<hsize_t, 2> start{static_cast<hsize_t>(first), 0},
         extent{static_cast<hsize_t>(count), static_cast<hsize_t>(columns)};
-    const Id memory(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
+    const Hdf5Id memory(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
     require(H5Sselect_hyperslab(file, H5S_SELECT_SET, start.data(), nullptr, extent.data(),
                                 nullptr) >= 0 &&
                 H5Dwrite(data, type, memory, file, H5P_DEFAULT, values.data()) >= 0,
-            "write " + name + " to", path_);
+            final_path_);
   }
 }
 template void Hdf5File::write_blocks(const std::string&, std::int64_t, int,
@@ -227,122 +184,26 @@ void Hdf5File::write(const std::string& name, std::span<const std::int32_t> valu
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
-  const auto [where, relative] = place(object);
   errno = 0;
-  const Id target(H5Oopen(where, relative.c_str(), H5P_DEFAULT), H5Oclose);
-  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Id attribute(
+  const Hdf5Id target(H5Oopen(id_, object.c_str(), H5P_DEFAULT), H5Oclose);
+  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Id attribute(
       H5Acreate2(target, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT),
       H5Aclose);
-  require(attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0,
-          "write attribute " + name + " to", path_);
+  require(attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value) >= 0, final_path_);
 }
 
 void Hdf5File::write_text(const std::string& name, const std::string& text) {
   errno = 0;
-  const Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type, text.size() + 1);
-  const Id space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  const Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
   H5Pset_create_intermediate_group(links, 1);
-  const Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
-                H5Dclose);
+  const Hdf5Id data(H5Dcreate2(id_, name.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
+                    H5Dclose);
   require(data >= 0 && H5Dwrite(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()) >= 0,
-          "write " + name + " to", path_);
-}
-
-std::string Hdf5File::read_text(const std::string& name) const {
-  const std::string where = key_ + ": '" + path_ + "': " + name;
-  if (!has(name)) throw InputError(where + " is missing");
-  const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  const Id stored(H5Dget_type(data), H5Tclose);
-  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0)
-    throw InputError(where + " is not a text");
-  std::string text(H5Tget_size(stored), '\0');
-  if (H5Dread(data, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
-    throw InputError(where + " cannot be read");
-  return text.substr(0, text.find('\0'));
-}
-
-double Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
-  const Id target(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                  H5Aclose);
-  double value = 0;
-  if (target < 0 || H5Aread(target, H5T_NATIVE_DOUBLE, &value) < 0)
-    throw InputError(key_ + ": '" + path_ + "': " + object + " has no attribute " + name);
-  return value;
-}
-
-bool Hdf5File::has(const std::string& name) const {
-  std::string path;
-  std::size_t start = 0;
-  while (start < name.size()) {  // H5Lexists wants every parent to exist
-    const std::size_t slash = name.find('/', start);
-    path += "/" + name.substr(start, slash - start);
-    if (path != "/" && H5Lexists(id_, path.c_str(), H5P_DEFAULT) <= 0) return false;
-    if (slash == std::string::npos) break;
-    start = slash + 1;
-  }
-  return true;
-}
-
-std::vector<std::string> Hdf5File::members(const std::string& group) const {
-  std::vector<std::string> names;
-  const Id id(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
-  if (id < 0) throw InputError(key_ + ": '" + path_ + "': " + group + " is not a group");
-  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
-  };
-  H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names);
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::pair<std::int64_t, std::int64_t> Hdf5File::shape(const std::string& name) const {
-  const std::string where = key_ + ": '" + path_ + "': " + name;
-  if (!has(name)) throw InputError(where + " is missing");
-  const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (data < 0) throw InputError(where + " is not a dataset");
-  const Id space(H5Dget_space(data), H5Sclose);
-  const int dimensions = H5Sget_simple_extent_ndims(space);
-  if (dimensions < 1 || dimensions > 2)
-    throw InputError(where + " has " + std::to_string(dimensions) +
-                     " dimensions, must have 1 or 2");
-  std::array<hsize_t, 2> extent{0, 1};
-  H5Sget_simple_extent_dims(space, extent.data(), nullptr);
-  return {static_cast<std::int64_t>(extent[0]), static_cast<std::int64_t>(extent[1])};
-}
-
-void Hdf5File::read_any(const std::string& name, int columns, std::int64_t type,
-                        void* values) const {
-  const std::string where = key_ + ": '" + path_ + "': " + name;
-  const auto [rows, actual] = shape(name);
-  if (actual != columns)
-    throw InputError(where + " has shape " + std::to_string(rows) + " x " + std::to_string(actual) +
-                     ", must be n x " + std::to_string(columns));
-  const Id data(H5Dopen2(id_, name.c_str(), H5P_DEFAULT), H5Dclose);
-  const Id stored(H5Dget_type(data), H5Tclose);
-  const H5T_class_t kind = H5Tget_class(stored);
-  const bool wants_integers = type == H5T_NATIVE_INT32;
-  if (wants_integers ? kind != H5T_INTEGER : (kind != H5T_INTEGER && kind != H5T_FLOAT))
-    throw InputError(where + (wants_integers ? " must hold integers" : " must hold numbers"));
-  if (rows > 0 && H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
-    throw InputError(where + " cannot be read");
-}
-
-std::vector<double> Hdf5File::read(const std::string& name, int columns) const {
-  const auto [rows, actual] = shape(name);
-  std::vector<double> values(static_cast<std::size_t>(rows * actual));
-  read_any(name, columns, H5T_NATIVE_DOUBLE, values.data());
-  return values;
-}
-
-std::vector<std::int32_t> Hdf5File::read_indices(const std::string& name, int columns) const {
-  const auto [rows, actual] = shape(name);
-  std::vector<std::int32_t> values(static_cast<std::size_t>(rows * actual));
-  read_any(name, columns, H5T_NATIVE_INT32, values.data());
-  return values;
+          final_path_);
 }
 
 }  // namespace floe

@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numeric>
 #include <span>
 
 #include "floe/base/hdf5.h"
@@ -10,6 +14,12 @@
 
 namespace floe {
 namespace {
+
+std::string text_of(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.9g", value);
+  return text.data();
+}
 
 /// Names the file and the dataset in whatever is wrong with it.
 class Reader {
@@ -27,9 +37,9 @@ class Reader {
     std::vector<double> values = file_.read(name);
     expect(name, values.size(), count);
     for (std::size_t k = 0; k < count; ++k) {
-      if (!std::isfinite(values[k]) || (positive && values[k] <= 0))
-        refuse(name, "entry " + std::to_string(k) + " is " + std::to_string(values[k]) +
-                         (positive ? ", must be > 0" : ", must be finite"));
+      check_size(name, "entry", k, values[k]);
+      if (positive && values[k] <= 0)
+        refuse(name, "entry " + std::to_string(k) + " is " + text_of(values[k]) + ", must be > 0");
     }
     return values;
   }
@@ -40,8 +50,7 @@ class Reader {
     expect(name, values.size() / columns, count);
     std::vector<std::array<double, columns>> out(count);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!std::isfinite(values[k]))
-        refuse(name, "row " + std::to_string(k / columns) + " is not finite");
+      check_size(name, "row", k / columns, values[k]);
       out[k / columns][k % columns] = values[k];
     }
     return out;
@@ -59,6 +68,13 @@ class Reader {
   }
 
  private:
+  /// Products of a few such numbers are still finite.
+  void check_size(const std::string& name, const char* what, std::size_t k, double value) const {
+    constexpr double largest = 1e30;
+    if (!(std::abs(value) <= largest))
+      refuse(name, std::string(what) + " " + std::to_string(k) + " has the value " +
+                       text_of(value) + ", must be finite and at most 1e30 in size");
+  }
   void expect(const std::string& name, std::size_t actual, std::size_t count) const {
     if (actual != count)
       refuse(name, "has " + std::to_string(actual) + " rows, must have " + std::to_string(count));
@@ -105,15 +121,32 @@ void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
     const Vec3<double> e{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double distance = std::sqrt(dot(e, e));
     if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
-      in.refuse("/beams/length", "row " + std::to_string(k) + " is " +
-                                     std::to_string(beams.length[k]) + ", but its bodies are " +
-                                     std::to_string(distance) + " m apart");
+      in.refuse("/beams/length", "row " + std::to_string(k) + " is " + text_of(beams.length[k]) +
+                                     ", but its bodies are " + text_of(distance) + " m apart");
     const Vec3<double> y{beams.axis_y[k][0], beams.axis_y[k][1], beams.axis_y[k][2]};
     const Vec3<double> normal = cross(e, y);
     if (std::abs(std::sqrt(dot(y, y)) - 1) > 1e-6 ||
         std::sqrt(dot(normal, normal)) < 1e-6 * distance)
       in.refuse("/beams/axis_y",
                 "row " + std::to_string(k) + " must be a unit vector that is not along the beam");
+  }
+}
+
+/// A second beam between the same bodies would be a mistake that doubles a stiffness.
+void check_pairs(const Reader& in, const std::vector<std::array<std::int32_t, 2>>& pairs) {
+  const bool sorted = std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal()) ==
+                      pairs.end();  // as floe writes them
+  if (sorted) return;
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return pairs[a] < pairs[b]; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const std::size_t a = order[k - 1], b = order[k];
+    if (pairs[a] == pairs[b])
+      in.refuse("/beams/bodies", "rows " + std::to_string(a) + " and " + std::to_string(b) +
+                                     " both join bodies " + std::to_string(pairs[a][0]) + " and " +
+                                     std::to_string(pairs[a][1]));
   }
 }
 
@@ -131,6 +164,7 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
       in.refuse("/beams/bodies", "row " + std::to_string(k) + " must have the smaller index first");
     beams.bodies.push_back({pairs[2 * k], pairs[2 * k + 1]});
   }
+  check_pairs(in, beams.bodies);
   beams.area = in.scalars("/beams/area", m);
   beams.inertia_y = in.scalars("/beams/inertia_y", m);
   beams.inertia_z = in.scalars("/beams/inertia_z", m);

@@ -1,67 +1,73 @@
 /// \file
-/// fields.h5 and fields.xmf: bodies and beams over time, for ParaView and for plots.
+/// The frames of a run, for ParaView and for plots: fields.h5, fields.xmf and the folder fields/.
 ///
-/// fields.h5: /mesh/topology (XDMF mixed: 3, number of corners, corners ... per face; one point per
-/// body if the lattice has no shapes), /mesh/body (body of each face), /mesh/beams (m x 2), and per
-/// time a group /t000000 with the attribute `time` and
-///   points (vertices in the world), centres (n x 3, bodies' centroids),
-///   bodies_displacement, bodies_rotation (n x 3; rotation vectors), face_displacement,
-///   face_rotation (the same, per face), beams_force (N, Q2, Q3), beams_moment (T, M2, M3),
-///   beams_stress (largest tensile stress, shear stress), and where beams may break: damage (D per
-///   beam), crack_points and cracks (the two faces of each broken section as quadrilaterals,
-///   carried by its two bodies), crack_beam (the beam of each).
+/// fields/NNNNNN.h5 are segments: frames from the number in the name on, each a group /tNNNNNN (see
+/// output/frame.h). The last segment grows by being replaced, as a whole and at once, until it has
+/// segment_frames or segment_bytes; so every file is whole at any time, whoever reads it, and a
+/// run killed or stopped by a full disk loses the frame that it was writing and no other.
+/// fields/mesh.h5 has what all frames share. fields.xmf names every frame: those of full segments
+/// by including fields/NNNNNN.xmf. fields.h5 has links to the mesh and to the frames; those to the
+/// last ones (a sixteenth of all) may come later, at the end of a run at the latest.
 #pragma once
 
-#include <array>
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "floe/base/hdf5.h"
-#include "floe/forces/beam.h"
+#include "output/frame.h"
 
 namespace floe {
 
-/// One state in global order.
-struct Frame {
-  double time = 0;
-  std::vector<Point3> displacement;
-  std::vector<std::array<double, 4>> rotation;  ///< from rest
-  std::vector<Point3> rotation_vector;
-  std::vector<BeamSection> sections;
-  std::vector<double> damage;  ///< empty if nothing can break
-};
-
-/// Lives on rank 0.
+/// Lives on rank 0. What is written raises FileError, and is as it was before the call then.
 class Fields {
  public:
-  /// \param keep  number of frames of an earlier fields.h5 to go on after; -1: a new file
-  /// \throws InputError if there are fewer, or the file is not readable
-  Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep = -1);
+  static constexpr std::size_t segment_frames = 100;
+  static constexpr std::size_t segment_bytes = 1 << 19;  ///< of values, without HDF5's own
+
+  /// Makes the files, or cuts those of an earlier run back. \param lattice  must outlive this
+  /// \param keep  number of its frames to go on after; -1: a new run
+  /// \throws InputError as require() does
+  Fields(std::string dir, const Lattice& lattice, std::int64_t keep = -1);
+  /// Touches nothing. \throws InputError if a folder has fewer frames, or they cannot be read
+  static void require(const std::string& dir, std::int64_t frames);
+
   void write(const Frame& frame);
+  /// All frames so far outlive a crash of the machine.
+  void sync();
+  /// All frames so far are in fields.h5 too.
+  void finish();
 
  private:
-  void write_mesh();
-  std::int32_t body_of_face(std::int64_t face, std::int32_t from) const;
-  /// A body's principal axes in the world.
-  Triad<double> axes_of(std::size_t body, const Frame& frame) const;
-  /// A vector of each body, to each of its faces.
-  void write_on_faces(const std::string& name, const std::vector<Point3>& of_bodies);
-  void cut_back(std::size_t keep);
-  void write_bodies(const std::string& group, const Frame& frame);
-  void write_beams(const std::string& group, const Frame& frame);
-  void write_cracks(const std::string& group, const Frame& frame);
-  std::string cracks_grid(std::size_t k) const;
+  struct Kept {  ///< a frame of the last segment
+    double time;
+    std::size_t cracks;
+    bool breakable;
+  };
+
+  /// The first frames of an earlier run.
+  struct Earlier {
+    std::vector<std::size_t> segments;
+    std::vector<Kept> last;
+  };
+  static Earlier look_at(const std::string& dir, std::size_t keep);
+
+  void begin();
+  std::string path(const std::string& name) const { return dir_ + "/" + name; }
+  std::size_t bytes(const Kept& frame) const;
+  bool last_is_full() const;
+  void remove_earlier() const;
+  void cut_back();
+  std::string grids_of_last() const;
   void write_xmf() const;
-  std::string grid(std::size_t k) const;
+  void write_index();
 
   std::string dir_;
-  const Lattice& lattice_;
-  std::optional<Hdf5File> file_;
-  bool breakable_ = false;  ///< frames have the beams' damage
-  std::vector<double> times_;
-  std::vector<std::size_t> cracks_;        ///< per frame: faces of cracks
-  std::size_t points_, faces_, topology_;  ///< of /mesh: vertices, polygons, numbers of topology
+  FrameWriter writer_;
+  std::size_t count_ = 0;                 ///< frames
+  std::size_t linked_ = 0;                ///< frames that fields.h5 has
+  std::vector<std::size_t> segments_;     ///< first frame of each
+  std::vector<Kept> last_;                ///< frames of the last segment
+  std::vector<std::string> not_on_disk_;  ///< files written since sync()
 };
 
 }  // namespace floe

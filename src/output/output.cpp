@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "floe/base/files.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "output/cracks.h"
@@ -353,23 +354,10 @@ void Output<Space>::finish() {
   impl_->memory.row_pending = false;
   if (impl_->pending) impl_->write_frame(*impl_->pending);
   impl_->pending.reset();
+  if (impl_->fields) impl_->fields->finish();
 }
 
 template class Output<Spatial>;
 template class Output<Planar>;
-
-void write_whole(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".part";
-  {
-    std::ofstream file(temporary);
-    file << text;
-    if (!file.flush()) {
-      const std::string why = std::strerror(errno);
-      std::filesystem::remove(temporary);
-      throw FileError("cannot write " + path + ": " + why);
-    }
-  }
-  std::filesystem::rename(temporary, path);
-}
 
 }  // namespace floe

@@ -1,6 +1,8 @@
 #include "mesh_file.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -46,11 +48,22 @@ Relaxed read(const SheetPlan& plan, const std::string& path) {
   Relaxed relaxed;
   for (std::size_t k = 0; k + 1 < values.size(); k += 2)
     relaxed.generators.push_back({values[k], values[k + 1]});
+  for (const auto& [x, y] : relaxed.generators) {
+    if (!(std::abs(x) <= plan.length / 2 && std::abs(y) <= plan.width / 2))
+      throw InputError("sheet: mesh_file: '" + path + "' has a generator outside the sheet");
+  }
   if (static_cast<std::int64_t>(relaxed.generators.size()) != number_of_cells(plan))
     throw InputError("sheet: mesh_file: '" + path + "' has " +
                      std::to_string(relaxed.generators.size()) + " generators, the sheet " +
                      std::to_string(number_of_cells(plan)) + " cells");
-  relaxed.iterations = static_cast<int>(file.read_attribute("generators", "iterations_done"));
+  const double done = file.read_attribute("generators", "iterations_done");
+  if (!(done >= 0 && done <= 1e9))
+    throw InputError("sheet: mesh_file: '" + path + "' has a bad number of iterations");
+  relaxed.iterations = static_cast<int>(done);
+  std::vector<Point2> sorted = relaxed.generators;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    throw InputError("sheet: mesh_file: '" + path + "' has a generator twice");
   return relaxed;
 }
 
@@ -69,7 +82,12 @@ Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file
                                   const std::function<void(int, double)>& on_iteration) {
   int me = 0, there = 0;
   MPI_Comm_rank(comm, &me);
-  if (me == 0) there = std::filesystem::exists(file) ? 1 : 0;
+  std::error_code ignored;  // what is there and cannot be read is no reason to make it anew
+  if (me == 0)
+    there = std::filesystem::symlink_status(file, ignored).type() !=
+                    std::filesystem::file_type::not_found
+                ? 1
+                : 0;
   MPI_Bcast(&there, 1, MPI_INT, 0, comm);
   Relaxed relaxed;
   if (there != 0) {

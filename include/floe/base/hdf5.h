@@ -10,22 +10,22 @@
 #include <utility>
 #include <vector>
 
+#include "floe/base/files.h"
+
 namespace floe {
 
-/// One open HDF5 file. Files written whole go to a temporary name that close() renames; a
-/// destructor without close() leaves nothing behind. Errors of the system end the run; a file the
-/// user gave that cannot be used raises InputError.
+/// One open HDF5 file. Files are written under a temporary name that close() puts in its place; a
+/// destructor without close() leaves nothing behind. Errors of the system raise FileError; a file
+/// the user gave that cannot be used raises InputError, and nothing is read or allocated beyond
+/// what the file really holds.
 class Hdf5File {
  public:
-  /// A new file that will be called `path` once close() has been called. \param room  bytes that
-  /// the file system must have left
-  static Hdf5File create(const std::string& path, std::uintmax_t room = 0);
-  /// A file that grows and is flushed sample by sample (fields.h5); starts empty.
-  static Hdf5File create_growing(const std::string& path);
-  /// An existing file that goes on growing. \throws FileError if it cannot be opened
-  static Hdf5File open_growing(const std::string& path);
+  /// A new file that will be called `path` once close() has been called.
+  static Hdf5File create(const std::string& path);
+  /// A copy of an existing file, to be changed, that takes its place in close().
+  static Hdf5File change(const std::string& path);
   /// An existing file, for reading. \param key  the option that named it, for messages
-  /// \throws InputError if it is missing or is not HDF5.
+  /// \throws InputError if it cannot be read or is not HDF5.
   static Hdf5File open(const std::string& path, const std::string& key = "lattice_file");
 
   Hdf5File(Hdf5File&& other) noexcept;
@@ -34,10 +34,8 @@ class Hdf5File {
   Hdf5File& operator=(const Hdf5File&) = delete;
   ~Hdf5File();
 
-  /// Finishes and renames a file made by create().
-  void close();
-  /// Everything written so far is on disk and readable.
-  void flush();
+  /// Finishes a file made by create() or change() and puts it in its place.
+  void close(Place place = Place::renamed);
 
   /// Writes rows x columns values (columns = 1: a vector); groups in `name` are made as needed.
   void write(const std::string& name, std::span<const double> values, int columns = 1);
@@ -52,18 +50,15 @@ class Hdf5File {
   void attribute(const std::string& object, const std::string& name, double value);
   void write_text(const std::string& name, const std::string& text);
 
-  /// What is written below `group` from here on is not part of the file before publish(), which
-  /// adds it as a whole: a process killed in between leaves the file as it was.
-  void stage(const std::string& group);
-  void publish();
-  /// Copies an object and all below it from another file, under the same name.
-  void copy(const Hdf5File& from, const std::string& name);
+  /// `name` stands for an object of another file, whose path is relative to this one's folder.
+  void link(const std::string& name, const std::string& file, const std::string& object);
+  void remove(const std::string& name);
 
   bool has(const std::string& name) const;
   /// Names of the members of a group, sorted.
   std::vector<std::string> members(const std::string& group) const;
-  /// Rows and columns (1 for a vector). \throws InputError naming the dataset if it is missing or
-  /// has rank > 2.
+  /// Rows and columns (1 for a vector). \throws InputError naming the dataset if it is missing, has
+  /// other than one or two dimensions, or has more values than the file holds
   std::pair<std::int64_t, std::int64_t> shape(const std::string& name) const;
   /// All values of a dataset, row-major. \throws InputError if it is missing or has another number
   /// of columns.
@@ -75,18 +70,19 @@ class Hdf5File {
  private:
   Hdf5File(std::int64_t id, std::string path, std::string final_path, std::string key = {})
       : id_(id), path_(std::move(path)), final_path_(std::move(final_path)), key_(std::move(key)) {}
-  /// Where an object called `name` is made: in the staged group or in the file.
-  std::pair<std::int64_t, std::string> place(const std::string& name) const;
+  /// The dataset, open, once it is known to lie in this file with all its values.
+  std::int64_t open_dataset(const std::string& name) const;
   std::int64_t create_dataset(const std::string& name, std::int64_t rows, int columns,
                               std::int64_t type);
   void write_any(const std::string& name, const void* values, std::int64_t count, int columns,
                  std::int64_t type);
-  void read_any(const std::string& name, int columns, std::int64_t type, void* values) const;
+  /// The file and `name` in it, for messages.
+  std::string where(const std::string& name) const;
+  std::int64_t rows_of(const std::string& name, int columns) const;
+  void read_any(const std::string& name, std::int64_t type, void* values) const;
 
   std::int64_t id_ = -1;
   std::string path_, final_path_, key_;
-  std::int64_t staged_ = -1;
-  std::string staged_name_;
 };
 
 }  // namespace floe

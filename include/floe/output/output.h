@@ -81,7 +81,4 @@ class Output {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Writes `text` to a file under a temporary name, then renames it. One rank.
-void write_whole(const std::string& path, const std::string& text);
-
 }  // namespace floe
