@@ -19,7 +19,7 @@ template <class Space>
 void beam(benchmark::State& run, const BeamOptions& options) {
   bench::Sheet<Space> c(run.range(0));
   const auto force = make_beam_force<Space>(c.part, options);
-  for (auto _ : run) {
+  for ([[maybe_unused]] auto _ : run) {
     force->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
   }
@@ -45,7 +45,7 @@ void product(benchmark::State& run) {
   Handle<Vec> x, y;
   check(MatCreateVecs(tangent.matrix(), x.put(), y.put()));
   check(VecSet(x, 1.0));
-  for (auto _ : run) check(MatMult(tangent.matrix(), x, y));
+  for ([[maybe_unused]] auto _ : run) check(MatMult(tangent.matrix(), x, y));
   count(run, c.part);
 }
 void spatial_matrix(benchmark::State& run) { product<Spatial>(run); }

@@ -34,9 +34,9 @@ struct Blocks {
       shapes.face_of.push_back(shapes.face_of.back() + 6);
       shapes.vertex_of.push_back(base + 8);
       masses.push_back(920);
-      poses.push_back(
-          {(1 + gap) * Vec3<double>{1.0 * (k % n), 1.0 * (k / n % n), 1.0 * (k / n / n)},
-           exp_rotation({turn * random(), turn * random(), turn * random()})});
+      poses.push_back({(1 + gap) * Vec3<double>{1.0 * (k % n), 1.0 * (k / n % n),
+                                                1.0 * static_cast<double>(k / n / n)},
+                       exp_rotation({turn * random(), turn * random(), turn * random()})});
     }
   }
 };
@@ -51,7 +51,7 @@ void evaluate(benchmark::State& state, double gap, double turn = 0.02, double dr
     bodies.push_back({blocks.poses[static_cast<std::size_t>(b)], {}, {}});
   std::vector<ContactWrench> wrenches(bodies.size());
   double side = 1;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     side = -side;
     for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].pose.x.z += side * drift;
     contacts.place(bodies, 0);
@@ -83,7 +83,7 @@ void build(benchmark::State& state) {
   const Blocks blocks(static_cast<int>(state.range(0)), 0.01);
   Contacts contacts(blocks.shapes, blocks.masses, {}, {}, {});
   const std::vector<std::uint8_t> here(blocks.poses.size(), 1);
-  for (auto _ : state) contacts.build(blocks.poses, here, 0);
+  for ([[maybe_unused]] auto _ : state) contacts.build(blocks.poses, here, 0);
   state.counters["us_per_body"] = benchmark::Counter(
       1e-6 * static_cast<double>(blocks.poses.size()),
       benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

@@ -129,7 +129,7 @@ const Blocks& blocks_of(const InSpace& c) {
 template <class Space>
 void step_in(benchmark::State& bench, double damping, bool breakable) {
   auto& c = Case<Space>::of(bench.range(0), damping, breakable);
-  for (auto _ : bench) c.step();
+  for ([[maybe_unused]] auto _ : bench) c.step();
   c.count(bench);
 }
 void step(benchmark::State& bench, double damping, bool breakable) {
@@ -141,7 +141,7 @@ void planar_step(benchmark::State& bench, double damping) {
 
 void zero(benchmark::State& bench) {
   InSpace& c = InSpace::of(bench.range(0), 0);
-  for (auto _ : bench) {
+  for ([[maybe_unused]] auto _ : bench) {
     std::fill(c.wrenches.values.begin(), c.wrenches.values.end(), 0.0);
     benchmark::ClobberMemory();
   }
@@ -160,7 +160,7 @@ void zero(benchmark::State& bench) {
 }
 void gather(benchmark::State& bench) {
   const InSpace& c = InSpace::of(bench.range(0), 0);
-  for (auto _ : bench) gather_all(c);
+  for ([[maybe_unused]] auto _ : bench) gather_all(c);
   c.count(bench);
 }
 
@@ -183,7 +183,7 @@ void gather(benchmark::State& bench) {
 }
 void kernel(benchmark::State& bench) {
   const InSpace& c = InSpace::of(bench.range(0), 0);
-  for (auto _ : bench) compute_all(c);
+  for ([[maybe_unused]] auto _ : bench) compute_all(c);
   c.count(bench);
 }
 
@@ -195,13 +195,13 @@ void kernel(benchmark::State& bench) {
 }
 void scatter(benchmark::State& bench) {
   InSpace& c = InSpace::of(bench.range(0), 0);
-  for (auto _ : bench) scatter_all(c);
+  for ([[maybe_unused]] auto _ : bench) scatter_all(c);
   c.count(bench);
 }
 
 void beams(benchmark::State& bench, double damping) {
   InSpace& c = InSpace::of(bench.range(0), damping);
-  for (auto _ : bench) {
+  for ([[maybe_unused]] auto _ : bench) {
     c.model.beams()->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
   }
@@ -211,7 +211,8 @@ void beams(benchmark::State& bench, double damping) {
 void bodies(benchmark::State& bench) {
   InSpace& c = InSpace::of(bench.range(0), 0);
   std::fill(c.wrenches.values.begin(), c.wrenches.values.end(), 0.0);
-  for (auto _ : bench) benchmark::DoNotOptimize(c.motion.step(c.state, c.wrenches, 1e-9));
+  for ([[maybe_unused]] auto _ : bench)
+    benchmark::DoNotOptimize(c.motion.step(c.state, c.wrenches, 1e-9));
   c.count(bench);
 }
 
@@ -222,7 +223,7 @@ void ts(benchmark::State& bench) {
   Handle<Vec> solution;
   check(VecCreateSeq(PETSC_COMM_SELF, 16, solution.put()));
   LeapfrogStep nothing = [](double) { return true; };
-  for (auto _ : bench) {
+  for ([[maybe_unused]] auto _ : bench) {
     Handle<TS> stepper;
     check(TSCreate(PETSC_COMM_SELF, stepper.put()));
     check(TSSetType(stepper, ts_leapfrog));

@@ -36,6 +36,28 @@ def parser(description, **options):
                                    formatter_class=argparse.RawDescriptionHelpFormatter, **options)
 
 
+def count(text):
+    """A whole number of at least 1, as argparse's type."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{number} is not at least 1")
+    return number
+
+
+count.__name__ = "whole number"
+
+
+def numbers(kind, least):
+    """An argparse type: numbers of at least `least`, separated by commas."""
+    def read(text):
+        found = [kind(word) for word in text.split(",")]
+        if min(found) < least:
+            raise argparse.ArgumentTypeError(f"{min(found)} is not at least {least}")
+        return found
+    read.__name__ = "list of numbers"
+    return read
+
+
 def run(main):
     """Ends the process by what main() returns; files that cannot be read or written are one line, and so is Ctrl-C."""
     try:

@@ -150,6 +150,13 @@ Session::Session(const char* program, const UserOptions& user) : program_(progra
   check(PetscPushErrorHandler(remember_error, nullptr));
 }
 
-Session::~Session() { (void)PetscFinalize(); }
+Session::~Session() {
+  // PETSc lists options that nothing has asked for (from 3.19 on unasked), also where a run has
+  // been refused. warn_unused_options() says so where it matters.
+  PetscBool given = PETSC_FALSE;
+  (void)PetscOptionsHasName(nullptr, nullptr, "-options_left", &given);
+  if (given == PETSC_FALSE) (void)PetscOptionsSetValue(nullptr, "-options_left", "no");
+  (void)PetscFinalize();
+}
 
 }  // namespace floe

@@ -40,8 +40,8 @@ bool is_subcommand(std::string_view word) {
 int run_subcommand(char** argv) {
   const std::string name = argv[0];
   if (ranks_of_launcher() > 1) {
-    if (is_first_rank())
-      std::fprintf(stderr, "floe %s: is one process: start it without mpiexec\n", name.c_str());
+    if (!is_first_rank()) return done;  // see say()
+    std::fprintf(stderr, "floe %s: is one process: start it without mpiexec\n", name.c_str());
     return bad_input;
   }
   const auto folder = share_folder();

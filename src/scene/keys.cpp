@@ -123,6 +123,9 @@ constexpr std::array table{
                "Coulomb's coefficient between bodies"},
     OptionSpec{"contact: plastic_limit", number, "(none)", "Pa", ">= 1e-3, <= 1e15",
                "most normal force over the contact's area; what is crushed is remembered"},
+    OptionSpec{"contact: initial_overlap", choice, "press", "", "press | stress_free",
+               "what overlaps at the start presses apart (refused above a tenth of the smaller "
+               "one's size), or is taken as rest"},
     OptionSpec{"contact: restitution", number, "1", "", ">= 1e-6, <= 1",
                "part of the speed that a central impact of a face on a plane gives back"},
     OptionSpec{"obstacle: names", names, "(none)", "", "",

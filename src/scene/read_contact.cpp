@@ -76,6 +76,7 @@ void read_contact(Options& options, Scene& scene) {
   contact.friction = options.number("contact: friction");
   if (options.given("contact: plastic_limit"))
     contact.plastic_limit = options.number("contact: plastic_limit");
+  contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
   contact.damping_ratio = damping_ratio_of(options.number("contact: restitution"));
   for (const std::string& name : options.names("obstacle")) {
     Obstacle obstacle = read_shape(options, name);

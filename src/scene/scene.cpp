@@ -52,6 +52,12 @@ void read_dynamics(Options& options, Scene& scene) {
   scene.checkpoint.at_end = options.given_section("checkpoint");
   scene.limit.velocity = options.number("limit: velocity");
   scene.limit.energy_error = options.number("limit: energy_error");
+  for (const Obstacle& o : scene.obstacles) {
+    const double speed = o.motion.largest_speed(o.radius());
+    if (speed > scene.limit.velocity)
+      throw InputError("obstacle: " + o.name + ": moves at up to " + text_of(speed) +
+                       " m/s, limit: velocity allows " + text_of(scene.limit.velocity));
+  }
   if (scene.forces.beam) {
     scene.beam.damping_ratio = options.number("beam: damping_ratio");
     scene.beam.damping_modes = options.choice<DampingModes>("beam: damping_modes");

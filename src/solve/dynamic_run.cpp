@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
+#include "base/format.h"
 #include "floe/base/ranks.h"
+#include "forces/all_gathered.h"
 #include "solve/numbers.h"
-#include "solve/text.h"
+#include "solve/ts_options.h"
 
 namespace floe {
 
@@ -36,11 +39,13 @@ void DynamicRun<Space>::read_options(TS ts) {
   check(TSSetTimeStep(ts, options_.dt > 0 ? options_.dt : -1.0));
   check(TSSetMaxTime(ts, options_.end));
   check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
-  check(TSSetMaxSteps(ts, std::numeric_limits<PetscInt>::max()));
-  check(TSSetFromOptions(ts));
+  if (const auto given = given_max_steps()) most_steps_ = *given;
+  {
+    const HiddenMaxSteps hidden;
+    check(TSSetFromOptions(ts));
+  }
   check(TSGetTimeStep(ts, &options_.dt));
   check(TSGetMaxTime(ts, &options_.end));
-  check(TSGetMaxSteps(ts, &most_steps_));
 }
 
 template <class Space>
@@ -63,7 +68,7 @@ void DynamicRun<Space>::replan(TS ts, double wanted) {
     steps_ = static_cast<std::int64_t>(std::ceil(left / wanted * (1 - 1e-12)));
     dt_ = left / static_cast<double>(steps_);
     steps_ += done_;
-    check(TSSetMaxSteps(ts, static_cast<PetscInt>(std::min<std::int64_t>(steps_, most_steps_))));
+    limit_steps(ts);
   }
   result_.dt = dt_;
   check(TSSetTimeStep(ts, dt_));
@@ -130,15 +135,12 @@ bool DynamicRun<Space>::restart() {
 
 template <class Space>
 RunResult DynamicRun<Space>::solve(TS ts) {
-  check(TSSetStepNumber(ts, static_cast<PetscInt>(done_)));
   check(TSSetTime(ts, state_.time));
   check(TSSetTimeStep(ts, dt_));
   if (adaptive_) {
-    check(TSSetMaxSteps(ts, most_steps_));
     check(TSSetMaxTime(ts, options_.end));
     check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_MATCHSTEP));
   } else {
-    check(TSSetMaxSteps(ts, static_cast<PetscInt>(std::min<std::int64_t>(steps_, most_steps_))));
     check(TSSetMaxTime(ts, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
   }
   check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
@@ -149,6 +151,7 @@ RunResult DynamicRun<Space>::solve(TS ts) {
   }
   if (result_.done && options_.checkpoint.at_end)
     checkpoints_.save([&](Memory& memory) { remember(memory); });
+  take_remarks();
   result_.steps = done_;
   result_.steps_now = done_ - before_;
   result_.message = why_;
@@ -160,16 +163,37 @@ RunResult DynamicRun<Space>::solve(TS ts) {
 /// All steps. False if the run did not come to its end.
 template <class Space>
 bool DynamicRun<Space>::step(TS ts) {
-  const int ierr = TSSolve(ts, nullptr);
-  if (error_) std::rethrow_exception(error_);
-  if (ierr == PETSC_ERR_FP) {  // the error of an adaptive step
-    why_ = "a number that is not finite after time " + text(time_) + " s";
-    return false;
+  for (;;) {
+    begin_piece(ts);
+    const int ierr = TSSolve(ts, nullptr);
+    if (error_) std::rethrow_exception(error_);
+    if (ierr == PETSC_ERR_FP) {  // the error of an adaptive step
+      why_ = "a number that is not finite after time " + text(time_) + " s";
+      return false;
+    }
+    check(ierr);
+    TSConvergedReason reason = TS_CONVERGED_ITERATING;
+    check(TSGetConvergedReason(ts, &reason));
+    if (reason < 0 || is_last(reason)) return reason > 0;
   }
-  check(ierr);
-  TSConvergedReason reason = TS_CONVERGED_ITERATING;
-  check(TSGetConvergedReason(ts, &reason));
-  return reason > 0;
+}
+
+/// The first piece's steps are the run's. Those of a later one begin with 1, since at step 0 a TS
+/// begins anew and forgets what it knows of the steps before.
+template <class Space>
+void DynamicRun<Space>::begin_piece(TS ts) {
+  const std::int64_t pieces = done_ / steps_of_a_piece;
+  piece_ = pieces == 0 ? 0 : pieces * steps_of_a_piece - 1;
+  check(TSSetStepNumber(ts, static_cast<PetscInt>(done_ - piece_)));
+  limit_steps(ts);
+}
+
+/// The TS goes to the end of the piece, or of the run.
+template <class Space>
+void DynamicRun<Space>::limit_steps(TS ts) {
+  const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
+  const std::int64_t last = std::max(std::min(last_step(), end), done_);
+  check(TSSetMaxSteps(ts, static_cast<PetscInt>(last - piece_)));
 }
 
 template <class Space>
@@ -220,6 +244,38 @@ bool DynamicRun<Space>::finish() {
   return sample(true);
 }
 
+/// What forces have to say since the last look, in order of time, goes to the user. Collective.
+template <class Space>
+void DynamicRun<Space>::take_remarks() {
+  using Remark = typename Force<Space>::Remark;
+  std::vector<double> times;
+  std::vector<char> texts;  // each ended by a zero
+  for (const auto& force : model_.forces()) {
+    for (const Remark& remark : force->take_remarks()) {
+      times.push_back(remark.time);
+      texts.insert(texts.end(), remark.text.c_str(), remark.text.c_str() + remark.text.size() + 1);
+    }
+  }
+  const MPI_Comm comm = model_.part().comm;
+  times = all_gathered(times, MPI_DOUBLE, comm);
+  if (times.empty()) return;
+  texts = all_gathered(texts, MPI_CHAR, comm);
+  if (rank(comm) != 0) return;
+  std::vector<Remark> all;
+  const char* next = texts.data();
+  for (const double time : times) {
+    all.push_back({time, next});
+    next += all.back().text.size() + 1;
+  }
+  std::sort(all.begin(), all.end(), [](const Remark& a, const Remark& b) {
+    return std::tie(a.time, a.text) < std::tie(b.time, b.text);
+  });
+  for (const Remark& remark : all) {
+    warn(remark.text);
+    result_.warnings.push_back(remark.text);
+  }
+}
+
 /// Collective: all ranks agree.
 template <class Space>
 bool DynamicRun<Space>::within_limits() {
@@ -251,6 +307,7 @@ bool DynamicRun<Space>::sample(bool last) {
   const std::array<double, 2> mine{kinetic, boundary};
   std::array<double, 2> all{};
   MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+  take_remarks();
   auto reported = model_.report(state_);
   const Columns own = own_columns();
   for (const auto& [name, value] : own.values()) {

@@ -5,8 +5,11 @@
 
 #include <petscts.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +22,9 @@
 #include "solve/ledger.h"
 
 namespace floe {
+
+/// Most steps that a TS is asked for at once: it counts with 32 bits. Tests make it small.
+inline std::int64_t steps_of_a_piece = std::int64_t{1} << 30;  // NOLINT
 
 /// A run with a step that divides it into equal ones, or with one that adapts. An integrator
 /// derives from this, and in each step calls
@@ -43,7 +49,8 @@ class DynamicRun {
   double time() const { return time_; }
   std::int64_t done() const { return done_; }
 
-  /// Gives a TS the run's times and reads its options; -ts_dt, -ts_max_time and -ts_max_steps win.
+  /// Gives a TS the run's times and reads its options; -ts_dt, -ts_max_time and -ts_max_steps (of
+  /// 64 bits) win.
   void read_options(TS ts);
   /// Goes on from the checkpoint that the options name, if they name one: then the step is its.
   bool restart();
@@ -93,6 +100,11 @@ class DynamicRun {
   /// Whether the step adapts: then the last one is cut to end at the end.
   bool is_adaptive() const { return adaptive_; }
   void set_adaptive(bool adaptive) { adaptive_ = adaptive; }
+  /// Whether the state after a step is the run's last, where the TS gives the reason why it ends:
+  /// it ends, too, where a piece of the run does.
+  bool is_last(TSConvergedReason reason) const {
+    return reason == TS_CONVERGED_TIME || (reason == TS_CONVERGED_ITS && done_ >= last_step());
+  }
   /// The next step [s].
   void set_dt(double dt) { dt_ = dt; }
   /// Says why a run ends that did not come to its end.
@@ -127,12 +139,17 @@ class DynamicRun {
   static constexpr double early = 1e-6;             // of a step
 
   bool step(TS ts);
+  void begin_piece(TS ts);
+  void limit_steps(TS ts);
+  /// Unless the time of its end comes first.
+  std::int64_t last_step() const { return adaptive_ ? most_steps_ : std::min(steps_, most_steps_); }
   void set_sampling();
   bool due() const;
   bool sample(bool last = false);
   bool finish();
   std::string step_text() const;
   bool within_limits();
+  void take_remarks();
   std::string where() const;
   void remember(Memory& memory);
 
@@ -153,7 +170,8 @@ class DynamicRun {
   bool adaptive_ = false;
   // Step step_base_ ended at time_base_; equal ones follow.
   std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1;
-  PetscInt most_steps_ = 0;  // -ts_max_steps
+  std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
+  std::int64_t piece_ = 0;                                              // the TS's step 0
   std::string why_;
 };
 

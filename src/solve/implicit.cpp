@@ -13,7 +13,7 @@
 #include "solve/newton.h"
 #include "solve/numbers.h"
 #include "solve/step_plan.h"
-#include "solve/text.h"
+#include "base/format.h"
 #include "solve/ts_options.h"
 
 namespace floe {
@@ -255,10 +255,8 @@ void ImplicitRun<Space>::keep_books(double h) {
 template <class Space>
 bool ImplicitRun<Space>::stepped() {
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
-  PetscInt newton = 0;
   check(TSGetConvergedReason(ts_, &reason));
-  check(TSGetSNESIterations(ts_, &newton));
-  result().newton_iterations = newton_before_ + newton;
+  result().newton_iterations = newton_before_ + liealpha_iterations(ts_);
   if (reason < 0) {
     give_up(failure(reason));
     return false;
@@ -276,7 +274,7 @@ bool ImplicitRun<Space>::stepped() {
   result().dt = h;
   if (!this->moved(now, equations_.largest_speed2())) return false;
   // The last state is the run's to sample.
-  if (reason == TS_CONVERGED_ITERATING && !this->sample_if_due()) return false;
+  if (!this->is_last(reason) && !this->sample_if_due()) return false;
   double allowed = 0;
   check(TSGetTimeStep(ts_, &allowed));
   plan_.made(h, allowed);

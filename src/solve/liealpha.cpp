@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "solve/ts_type.h"
 
@@ -28,6 +29,7 @@ struct LieAlpha {
   double radius, hold;
   double h, last_step;
   bool resumed;
+  std::int64_t iterations;
   Vec x0, v0, a0, own0;
   Vec x1, v1, a1, own1;
   Vec start;      ///< the method's own acceleration at t_n as the present h wants it
@@ -122,8 +124,10 @@ PetscErrorCode solve_stage(TS ts, PetscBool* good) {
   PetscCall(SNESSolve(ts->snes, nullptr, me.increment));
   PetscCall(SNESGetIterationNumber(ts->snes, &newton));
   PetscCall(SNESGetLinearSolveIterations(ts->snes, &linear));
-  ts->snes_its += newton;
-  ts->ksp_its += linear;
+  me.iterations += newton;
+  constexpr PetscInt most = std::numeric_limits<PetscInt>::max();
+  ts->snes_its += std::min(newton, most - ts->snes_its);
+  ts->ksp_its += std::min(linear, most - ts->ksp_its);
   PetscCall(put_stage(ts, me.increment));  // a line search may have looked elsewhere last
   PetscCall(TSPostStage(ts, time, 0, &me.x1));
   PetscCall(TSAdaptCheckStage(ts->adapt, ts, time, me.x1, good));
@@ -300,6 +304,8 @@ LieAlphaMemory liealpha_memory(TS ts) {
   const LieAlpha& me = of(ts);
   return {me.a0, me.own0, me.last_step, ts->adapt->timestepjustdecreased};
 }
+
+std::int64_t liealpha_iterations(TS ts) { return of(ts).iterations; }
 
 std::vector<Vec> liealpha_vectors(TS ts) {
   std::vector<Vec> all;

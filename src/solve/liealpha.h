@@ -25,6 +25,7 @@
 
 #include <petscts.h>
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -64,6 +65,8 @@ struct LieAlphaMemory {
 };
 /// What it is at present; the TS must be set up. A start if no step has been made.
 LieAlphaMemory liealpha_memory(TS ts);
+/// Newton's iterations so far, where PETSc counts with 32 bits.
+std::int64_t liealpha_iterations(TS ts);
 /// All vectors of the type itself, for audits.
 std::vector<Vec> liealpha_vectors(TS ts);
 /// The vectors of liealpha_memory() have been given their values: the next step goes on from them

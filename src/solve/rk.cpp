@@ -14,7 +14,7 @@
 #include "solve/explicit_run.h"
 #include "solve/numbers.h"
 #include "solve/rk_stability.h"
-#include "solve/text.h"
+#include "base/format.h"
 
 namespace floe {
 namespace {
@@ -228,8 +228,7 @@ bool RkRun::stepped() {
   }
   if (!moved(now, equations_.largest_speed2(state()))) return false;
   // The last state is the run's to sample.
-  if (reason == TS_CONVERGED_ITERATING && !(evaluate_and_sample_if_due() && keep_step_stable(ts_)))
-    return false;
+  if (!is_last(reason) && !(evaluate_and_sample_if_due() && keep_step_stable(ts_))) return false;
   return look_around();
 }
 

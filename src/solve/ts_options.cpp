@@ -3,6 +3,7 @@
 #include <petscts.h>
 
 #include <array>
+#include <charconv>
 #include <map>
 #include <optional>
 #include <string>
@@ -99,6 +100,30 @@ void refuse_without_effect(const std::string& type) {
 }
 
 }  // namespace
+
+std::optional<std::int64_t> given_max_steps() {
+  const auto text = value_of("-ts_max_steps");
+  if (!text) return {};
+  std::int64_t value = -1;
+  const char* end = text->data() + text->size();
+  const auto [stop, error] = std::from_chars(text->data(), end, value);
+  constexpr std::int64_t most = 1'000'000'000'000'000;
+  if (error != std::errc{} || stop != end || value < 0 || value > most)
+    throw InputError("ts_max_steps: " + (text->empty() ? "no value given," : *text) +
+                     " must be an integer >= 0, <= 1e15");
+  return value;
+}
+
+HiddenMaxSteps::HiddenMaxSteps() : value_(value_of("-ts_max_steps")) {
+  if (value_) check(PetscOptionsSetValue(nullptr, "-ts_max_steps", "1"));
+}
+
+HiddenMaxSteps::~HiddenMaxSteps() {
+  if (!value_) return;
+  (void)PetscOptionsSetValue(nullptr, "-ts_max_steps", value_->c_str());
+  PetscBool asked_for = PETSC_FALSE;  // it is no option that nothing has asked for
+  (void)PetscOptionsHasName(nullptr, nullptr, "-ts_max_steps", &asked_for);
+}
 
 std::string explicit_type() {
   refuse_solvers();

@@ -8,8 +8,8 @@ import tempfile
 import unittest
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+from launch import ENVIRONMENT, FLOE, REPOSITORY, on_ranks, own_words
+
 SCENES = REPOSITORY / "input"
 LOADER = Path("/lib64/ld-linux-x86-64.so.2")
 
@@ -26,23 +26,23 @@ class CommandLine(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def run_it(self, *words, ranks=0, code=0, floe=(FLOE,)):
-        """Runs floe in the folder, if `ranks` by mpiexec: its standard output and error."""
-        launcher = ["mpiexec", "-n", str(ranks)] if ranks else []
-        run = subprocess.run([*launcher, *map(str, floe), *words], cwd=self.folder, capture_output=True, text=True)
+    def run_it(self, *words, ranks=1, code=0, floe=(FLOE,)):
+        """Runs floe in the folder: its standard output and error."""
+        run = subprocess.run(on_ranks(ranks, [*floe, *words]), cwd=self.folder, env=ENVIRONMENT, capture_output=True,
+                             text=True)
         self.assertEqual(run.returncode, code, f"{words}: {run.stdout}{run.stderr}")
-        return run.stdout, run.stderr
+        return run.stdout, own_words(run.stderr)
 
-    def refused(self, *words, ranks=0):
+    def refused(self, *words, ranks=1):
         """The one line by which floe refuses."""
         out, error = self.run_it(*words, ranks=ranks, code=2)
         self.assertEqual(out, "")
-        lines = [line for line in error.splitlines() if line.startswith("floe")]
+        lines = error.splitlines()
         self.assertEqual(len(lines), 1, error)
         return lines[0]
 
     def test_no_words(self):
-        for ranks in (0, 2):
+        for ranks in (1, 2):
             out, error = self.run_it(code=2, ranks=ranks)
             self.assertEqual(out, "")
             self.assertEqual(error.count("usage: floe SCENE.yaml"), 1)
@@ -65,6 +65,11 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.run_it(str(SCENES / "tension.yaml"), "-check", "--help")[0], usage)
         self.assertTrue(self.run_it("help")[0].startswith(usage))
         self.assertEqual(self.run_it("help", "options")[0], self.run_it("-help")[0])
+        scenes = self.run_it("help", "scenes")[0]
+        self.assertRegex(scenes, r"(?m)^  tension +Tension test of a square sheet$")
+        for scene in SCENES.glob("*.yaml"):
+            self.assertRegex(scenes, rf"(?m)^  {scene.stem} +\S")
+        self.assertLess(max(map(len, scenes.splitlines()[1:])), 105)
         self.assertIn("the nearest one is 'plot_load'", self.refused("help", "plotload"))
 
     def test_every_tool_answers(self):

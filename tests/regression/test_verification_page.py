@@ -15,19 +15,21 @@ def row(section, quantity, value, **more):
 
 
 class Page(unittest.TestCase):
-    def make(self, lines):
-        """The page's text and the finished process, for a record of these lines."""
+    def make(self, *files):
+        """The page's text and the finished process, for files of these lines."""
         with tempfile.TemporaryDirectory() as folder:
-            record, page = Path(folder, "r.jsonl"), Path(folder, "page.md")
-            record.write_text("\n".join(lines) + "\n")
-            run = subprocess.run([str(PAGE), str(record), str(page)], capture_output=True, text=True)
+            page = Path(folder, "page.md")
+            for k, lines in enumerate(files):
+                Path(folder, f"{k}.jsonl").write_text("\n".join(lines) + "\n")
+            run = subprocess.run([str(PAGE), folder, str(page)], capture_output=True, text=True)
             return page.read_text() if page.exists() else None, run
 
     def test_tables(self):
         rows = [row("Tension", "E/Eb, L/l = 20", 0.5), row("Beams", "tip", -23.5, unit="m", note="a|b"),
                 row("Tension", "E/Eb, L/l = 20", 1.05), row("Tension", "bad", 2.0, **{"pass": False}),
                 row("Beams", "reported", 3e-13, reference=None, tolerance=None)]
-        text, run = self.make([json.dumps(r) for r in rows])
+        lines = [json.dumps(r) for r in rows]
+        text, run = self.make(lines[:3], lines[3:])
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertIn("2 of 3 comparisons pass", text)
         self.assertIn("| E/Eb, L/l = 20 | 1.05 | 1 | 0.1 | pass |", text)
@@ -37,6 +39,9 @@ class Page(unittest.TestCase):
         self.assertLess(text.index("## Tension"), text.index("## Beams"))
 
     def test_broken_record(self):
+        text, run = self.make()
+        self.assertEqual((text, run.returncode), (None, 1))
+        self.assertIn("holds no numbers", run.stderr)
         text, run = self.make(['{"section": "a"'])
         self.assertEqual(text, None)
         self.assertEqual(run.returncode, 1)

@@ -1,7 +1,7 @@
 /// \file
 /// Numbers that are compared with a reference: expected by GoogleTest and, where FLOE_RECORD names
-/// a file, appended to it as one JSON line each, from which tools/verification_page makes
-/// docs/verification.md.
+/// a folder, appended to the test's own file there as one JSON line each, from which
+/// tools/verification_page makes docs/verification.md.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ struct Checked {
   std::string unit = {}, note = {};
 };
 
-/// Appends it to the file that FLOE_RECORD names, if any.
+/// Appends it to SUITE.TEST.jsonl in the folder that FLOE_RECORD names, if any.
 void record(const Checked& c, bool pass);
 
 /// Records a number and expects it to lie within its tolerance of the reference.

@@ -58,7 +58,9 @@ Reference exact_overlap(const std::vector<Kernel::Plane_3>& a,
     return std::all_of(all.begin(), all.end(),
                        [&](const auto& q) { return q.has_on_negative_side(point); });
   };
-  boost::optional<Kernel::Point_3> inner = exact(guess);
+  // CGAL 6 has std::optional where 5 has boost's.
+  decltype(CGAL::halfspace_intersection_interior_point_3(all.begin(), all.end())) inner =
+      exact(guess);
   if (!is_inside(*inner)) {
     inner = CGAL::halfspace_intersection_interior_point_3(all.begin(), all.end());
     if (!inner || !is_inside(*inner)) return {};
