@@ -58,7 +58,7 @@ std::string help() {
   }
   return text +
          "\nTopics: scenes (those that come with floe), options (all of them), a section or key of\n"
-         "scenes (floe help sheet), version.\n";
+         "options (floe help sheet), version.\n";
 }
 
 int help(std::string_view topic) {
