@@ -8,6 +8,11 @@
 #include "floe/base/audit.h"
 #include "floe/base/petsc.h"
 
+#ifdef __SANITIZE_ADDRESS__
+/// MPI and PETSc keep what they have until the process ends.
+extern "C" const char* __asan_default_options() { return "detect_leaks=0"; }
+#endif
+
 namespace {
 
 /// An empty folder, the current one of all ranks: tests that run at the same time must not meet in
