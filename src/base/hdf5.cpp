@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "floe/base/files.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -31,13 +32,15 @@ class Id {
   herr_t (*close_)(hid_t);
 };
 
-constexpr const char* temporary_ending = ".part";
-
 void require(bool good, const std::string& what, const std::string& path) {
   if (good) return;
   const int why = errno;  // HDF5 keeps what the system said
-  if (path.ends_with(temporary_ending)) std::remove(path.c_str());
-  throw FileError("cannot " + what + " " + path + (why != 0 ? ": " : "") +
+  std::string named = path;
+  if (path.ends_with(temporary_ending)) {
+    std::remove(path.c_str());
+    named = path.substr(0, path.size() - temporary_name("").size());
+  }
+  throw FileError("cannot " + what + " " + named + (why != 0 ? ": " : "") +
                   (why != 0 ? std::strerror(why) : ""));
 }
 
@@ -62,7 +65,7 @@ void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 Hdf5File Hdf5File::create(const std::string& path, std::uintmax_t room) {
   quiet();
-  const std::string temporary = path + temporary_ending;
+  const std::string temporary = temporary_name(path);
   std::error_code unknown;
   const auto folder = std::filesystem::absolute(path).parent_path();
   const auto space = std::filesystem::space(folder, unknown);
@@ -127,7 +130,9 @@ void Hdf5File::close() {
   if (id_ < 0) return;
   errno = 0;
   require(H5Fclose(std::exchange(id_, -1)) >= 0, "write", path_);
-  if (path_ != final_path_) std::filesystem::rename(path_, final_path_);
+  if (path_ == final_path_) return;
+  errno = 0;
+  require(std::rename(path_.c_str(), final_path_.c_str()) == 0, "write", path_);
 }
 
 void Hdf5File::flush() {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "floe/base/files.h"
 #include "floe/base/rotation.h"
 #include "floe/output/output.h"
 
@@ -101,6 +102,16 @@ std::int32_t Fields::body_of_face(std::int64_t face, std::int32_t from) const {
   if (lattice_.shapes.empty()) return static_cast<std::int32_t>(face);
   while (face >= lattice_.shapes.face_of[static_cast<std::size_t>(from) + 1]) ++from;
   return from;
+}
+
+void Fields::require(const std::string& dir, std::int64_t frames) {
+  const std::string path = dir + "/fields.h5", key = "checkpoint: restart";
+  const Hdf5File file = Hdf5File::open(path, key);
+  for (std::int64_t k = 0; k < frames; ++k) {
+    if (!file.has(group_name(static_cast<std::size_t>(k))))
+      throw InputError(key + ": '" + path + "' has " + std::to_string(k) +
+                       " frames, the checkpoint knows of " + std::to_string(frames));
+  }
 }
 
 /// Keeps the mesh and the first frames. Later ones are left behind in the old file, whose copy

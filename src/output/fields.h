@@ -39,6 +39,8 @@ class Fields {
   /// \throws InputError if there are fewer, or the file is not readable
   Fields(const std::string& dir, const Lattice& lattice, std::int64_t keep = -1);
   void write(const Frame& frame);
+  /// \throws InputError if a folder's fields.h5 has fewer frames, or is not readable
+  static void require(const std::string& dir, std::int64_t frames);
 
  private:
   void write_mesh();

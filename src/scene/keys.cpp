@@ -207,6 +207,9 @@ constexpr std::array table{
         "stops the run"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
+    OptionSpec{"output: overwrite", flag, "false", "", "",
+               "take a folder that holds the checkpoint of an unfinished run, or files that are "
+               "not floe's; never part of options.yaml"},
     OptionSpec{
         "output: history", number, "(auto)", "s", "> 0",
         "between rows of history.csv, where steps of implicit end too; auto: every load step, "

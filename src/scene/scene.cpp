@@ -9,6 +9,7 @@
 
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
+#include "floe/output/run_folder.h"
 #include "keys.h"
 
 namespace floe {
@@ -103,7 +104,9 @@ void read_water(Options& options, Scene& scene) {
 
 Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
 
-Obstacle read_shape(Options& options, const std::string& name) {
+using Inputs = std::vector<std::pair<std::string, std::string>>;
+
+Obstacle read_shape(Options& options, const std::string& name, Inputs& inputs) {
   enum class Shape { halfspace, box, cone, cylinder, file };
   const auto of = [&](const char* key) {
     return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
@@ -125,6 +128,7 @@ Obstacle read_shape(Options& options, const std::string& name) {
   }
   if (shape == Shape::file) {
     const std::string file = options.text("obstacle: NAME: file", name);
+    inputs.emplace_back("obstacle: " + name + ": file", file);
     return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
   }
   const Vec3<double> base = of("base");
@@ -179,7 +183,7 @@ void read_contact(Options& options, Scene& scene) {
     throw InputError("contact: restitution: " + text_of(restitution) + " must be <= 1");
   contact.damping_ratio = damping_ratio_of(restitution);
   for (const std::string& name : options.names("obstacle")) {
-    Obstacle obstacle = read_shape(options, name);
+    Obstacle obstacle = read_shape(options, name, scene.inputs);
     obstacle.name = name;
     obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
     obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
@@ -197,7 +201,10 @@ void read_sheet(Options& options, Scene& scene) {
   const std::int64_t iterations = options.integer("sheet: iterations");
   plan.iterations = static_cast<int>(std::min<std::int64_t>(iterations, 1'000'000'000));
   plan.tolerance = options.number("sheet: tolerance");
-  if (options.given("sheet: mesh_file")) scene.mesh_file = options.text("sheet: mesh_file");
+  if (options.given("sheet: mesh_file")) {
+    scene.mesh_file = options.text("sheet: mesh_file");
+    scene.inputs.emplace_back("sheet: mesh_file", scene.mesh_file);
+  }
   scene.thickness = options.number("sheet: thickness");
 
   const double shorter = std::min(plan.length, plan.width);
@@ -244,6 +251,7 @@ void read_lattice_source(Options& options, Scene& scene) {
     read_ice(options, scene);
   } else {
     scene.lattice_file = options.text("lattice_file");
+    scene.inputs.emplace_back("lattice_file", scene.lattice_file);
     constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
     for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);
@@ -450,7 +458,9 @@ Scene read_scene(const std::string& path) {
   read_report(options, scene);
   read_output(options, scene);
   scene.check_only = options.flag("check");
-  scene.options_yaml = options.yaml();  // without the restart: it repeats the whole run
+  // Without overwrite and restart: it repeats the whole run, and no more.
+  scene.options_yaml = options_heading() + options.yaml();
+  scene.output.overwrite = options.flag("output: overwrite");
   if (options.given("checkpoint: restart"))
     scene.checkpoint.restart = options.text("checkpoint: restart");
   options.reject_unread();
