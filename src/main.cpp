@@ -17,11 +17,11 @@
 #include "floe/lattice/folded.h"
 #include "floe/output/output.h"
 #include "floe/output/run_folder.h"
+#include "program/program.h"
 
 namespace {
 
-// What a shell sees. 2 is floe::InputError; 3: on request, a checkpoint has been written.
-enum Exit { done = 0, failed = 1, bad_input = 2, stopped = 3 };
+using enum floe::program::Exit;
 
 void say(const std::string& text, std::FILE* where = stdout) {
   if (floe::rank() == 0) {
@@ -212,6 +212,7 @@ int run_to_an_end(const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (const auto code = floe::program::answer(argc, argv)) return *code;
   switch (floe::wants_help(argc, argv)) {
     case floe::Help::text:
       std::fputs(floe::options_help().c_str(), stdout);
@@ -226,7 +227,7 @@ int main(int argc, char** argv) {
   floe::Mpi mpi(argc, argv);
   try {
     const std::string path = floe::check_command_line(argc, argv);
-    floe::read_scene_text(path);
+    floe::read_scene_text(path, MPI_COMM_WORLD, floe::program::near_scene);
     floe::Session session(argc, argv, path);
     signals.arm();
     give_memory_back();

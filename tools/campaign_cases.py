@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The paper's cases: sheets, meshes, tests, how each is run and what is kept of it. Used by tools/campaign and
-tools/campaign_report. SI units."""
+"""The paper's cases: sheets, meshes, tests, how each is run and what is kept of it. Used by floe campaign and
+floe campaign_report. SI units."""
 import math
 from dataclasses import dataclass
 from typing import Callable

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Counterparts of the paper's figures, from the results of a campaign (tools/campaign_report)."""
+"""Counterparts of the paper's figures, from the results of a campaign (floe campaign_report)."""
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection, PolyCollection

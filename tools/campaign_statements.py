@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The paper's statements, each with our numbers and the verdict they give, and where we differ, why (tools/campaign_report)."""
+"""The paper's statements, each with our numbers and the verdict they give, and where we differ, why (floe campaign_report)."""
 import numpy as np
 
 import campaign_figures as figures

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Results of a campaign and their tables (tools/campaign_report)."""
+"""Results of a campaign and their tables (floe campaign_report)."""
 import json
 from pathlib import Path
 

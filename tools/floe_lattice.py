@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Writes lattice.h5 files: frames, sheets of regular triangles, loose blocks.
 
-What floe reads as `lattice_file: FILE.h5`. As a command: tools/make_lattice KIND [options] FILE.h5
-(tools/make_lattice --help, tools/make_lattice KIND --help). As a module:
+What floe reads as `lattice_file: FILE.h5`. As a command: floe make_lattice KIND [options] FILE.h5
+(floe make_lattice --help, floe make_lattice KIND --help). As a module:
 
     import floe_lattice as fl
     fl.straight_frame(length=10, elements=64, section=fl.Section(0.01, 0.01, young=2.1e11)).write("beam.h5")
@@ -353,7 +353,7 @@ def elastica(elements):
 
 
 def _arguments():
-    parser = argparse.ArgumentParser(prog="tools/make_lattice", description="Writes a lattice.h5 file for floe.")
+    parser = argparse.ArgumentParser(prog="floe make_lattice", description="Writes a lattice.h5 file for floe.")
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
 
     def kind(name, text, **options):

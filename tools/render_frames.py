@@ -1,4 +1,4 @@
-"""Runs inside pvpython for tools/render: draws the frames of a job, a JSON file that tools/render writes."""
+"""Runs inside pvpython for floe render: draws the frames of a job, a JSON file that it writes."""
 import json
 import math
 import sys

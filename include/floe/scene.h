@@ -107,8 +107,10 @@ struct Scene {
 /// \throws InputError with one line that names the key, the value and what is allowed.
 Scene read_scene(const std::string& path);
 
-/// The text of `floe -help`, and the same table as Markdown (docs/options.md).
+/// The text of `floe -help`, the same table as Markdown (docs/options.md), and as part of the man
+/// page.
 std::string options_help();
 std::string options_markdown();
+std::string options_man();
 
 }  // namespace floe

@@ -10,7 +10,7 @@
 
 namespace floe {
 
-/// Whether PETSc (3.18) or one of the packages under it could ask for an option of this name.
+/// Whether PETSc or one of the packages under it could ask for an option of this name.
 bool is_petsc_option(std::string_view name);
 
 /// The known name nearest to `name` (joined with "_"): a key of the table as in YAML, or, if that

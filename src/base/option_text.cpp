@@ -1,4 +1,5 @@
-// The table of options as help, as Markdown, and the options of a run as YAML.
+// The table of options as help, as Markdown, as part of a man page, and the options of a run as
+// YAML.
 #include <algorithm>
 #include <cctype>
 
@@ -103,6 +104,28 @@ std::string help_markdown(std::span<const OptionSpec> table) {
     }
     text += "| `" + std::string(line.key) + "` | " + cell(allowed_text(line)) + " | " +
             cell(fallback_text(line)) + " | " + cell(std::string(line.doc)) + " |\n";
+  }
+  return text;
+}
+
+std::string help_man(std::span<const OptionSpec> table) {
+  const auto escaped = [](std::string_view plain) {
+    std::string text;
+    for (const char c : plain) text += c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
+    const bool is_request = !text.empty() && (text.front() == '.' || text.front() == '\'');
+    return (is_request ? "\\&" : "") + text;
+  };
+  std::string text;
+  std::string_view section = "-";
+  for (const OptionSpec& line : table) {
+    if (section_of(line.key) != section) {
+      section = section_of(line.key);
+      text += ".SS " + (section.empty() ? std::string("Top level") : escaped(section)) + "\n";
+    }
+    text += ".TP\n.B " + escaped("-" + option_name(line.key)) + "\n" + escaped(line.doc) +
+            "\n.br\n" + escaped(allowed_text(line)) +
+            (line.fallback == "(required)" ? "; " : "; default ") + escaped(fallback_text(line)) +
+            "\n";
   }
   return text;
 }

@@ -171,12 +171,16 @@ class SceneText {
   std::map<std::string, std::size_t> lines_;  ///< where each joined key was first given
 };
 
-std::string read_file(const std::string& path) {
+using NearTo = std::function<std::string(const std::string&)>;
+
+std::string read_file(const std::string& path, const NearTo& near_to) {
   if (path.size() > longest_path || path.find("${") != std::string::npos)
     throw InputError("scene " + shown(path) + ": PETSc cannot read a file of this name");
   struct stat status {};
-  if (stat(path.c_str(), &status) != 0)
-    throw InputError("scene " + shown(path) + ": " + std::strerror(errno));
+  if (stat(path.c_str(), &status) != 0) {
+    const std::string why = std::strerror(errno);
+    throw InputError("scene " + shown(path) + ": " + why + (near_to ? near_to(path) : ""));
+  }
   if (!S_ISREG(status.st_mode))
     throw InputError(
         "scene " + shown(path) + ": " +
@@ -198,7 +202,7 @@ std::string read_file(const std::string& path) {
 Help wants_help(int argc, const char* const* argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
-    if (word == "-help" || word == "--help" || word == "-h") return Help::text;
+    if (word == "-help") return Help::text;
     if (word == "-help_markdown") return Help::markdown;
   }
   return Help::none;
@@ -218,11 +222,11 @@ std::string check_command_line(int argc, const char* const* argv) {
   return argv[1];
 }
 
-void read_scene_text(const std::string& path, MPI_Comm comm) {
+void read_scene_text(const std::string& path, MPI_Comm comm, const NearTo& near_to) {
   std::string verdict;
   if (rank(comm) == 0) {
     try {
-      const std::string text = read_file(path);
+      const std::string text = read_file(path, near_to);
       SceneText(path, text).check_all();
     } catch (const InputError& error) {
       verdict = error.what();

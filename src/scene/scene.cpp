@@ -492,4 +492,6 @@ std::string options_markdown() {
          help_markdown(scene_keys());
 }
 
+std::string options_man() { return help_man(scene_keys()); }
+
 }  // namespace floe

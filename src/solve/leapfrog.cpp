@@ -1,11 +1,6 @@
 #include "solve/leapfrog.h"
 
-// The only file that looks inside a TS: a new type has no other way in. The layout is that of one
-// release.
-#include <petsc/private/tsimpl.h>
-
-static_assert(PETSC_VERSION_MAJOR == 3 && PETSC_VERSION_MINOR == 18,
-              "check the TS type against this PETSc");
+#include "solve/ts_type.h"
 
 namespace floe {
 namespace {
@@ -22,7 +17,7 @@ PetscErrorCode step(TS ts) noexcept {
 
 PetscErrorCode destroy(TS ts) noexcept { return PetscFree(ts->data); }
 PetscErrorCode nothing(TS) noexcept { return 0; }
-PetscErrorCode no_options(TS, PetscOptionItems*) noexcept { return 0; }
+PetscErrorCode no_options(TS, TsOptionItems) noexcept { return 0; }
 PetscErrorCode view(TS, PetscViewer viewer) noexcept {
   return PetscViewerASCIIPrintf(viewer, "  velocities half a step behind positions, fixed step\n");
 }

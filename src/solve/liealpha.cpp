@@ -1,13 +1,10 @@
 #include "solve/liealpha.h"
 
-// A new type has no other way into a TS. The layout is that of one release.
-#include <petsc/private/tsimpl.h>
-
 #include <algorithm>
 #include <array>
+#include <cmath>
 
-static_assert(PETSC_VERSION_MAJOR == 3 && PETSC_VERSION_MINOR == 18,
-              "check the TS type against this PETSc");
+#include "solve/ts_type.h"
 
 namespace floe {
 namespace {
@@ -231,7 +228,7 @@ PetscErrorCode destroy(TS ts) noexcept {
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode set_from_options(TS ts, PetscOptionItems* PetscOptionsObject) noexcept {
+PetscErrorCode set_from_options(TS ts, TsOptionItems PetscOptionsObject) noexcept {
   LieAlpha& me = of(ts);
   PetscFunctionBegin;
   PetscOptionsHeadBegin(PetscOptionsObject, "Generalised-alpha method on the rotation group");

@@ -1,13 +1,10 @@
 #!/usr/bin/python3
 """Bad input ends with one line on standard error, exit code 2 and nothing written, at 1 and at 2 ranks.
 
-Each case is (scene text or None for no scene file, words after the scene, words its error must hold). It runs
-in a temporary folder of its own, as a user would run it, with a time limit: a rank that waits for another
-that has given up is the failure this looks for.
+Each case runs in a temporary folder of its own, as a user would run it. A rank that waits for another that has
+given up is a failure that this looks for.
 """
-import concurrent.futures
-import os
-import subprocess
+import re
 import sys
 import tempfile
 import unittest
@@ -16,15 +13,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+import launch
 
-SECONDS = 60  # one run takes well below 1 s; the machine may be busy
-ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+sys.path.insert(0, str(launch.REPOSITORY / "tools"))
+import floe_lattice as fl  # noqa: E402
 
 SHEET = "sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}\n"
 HELD = "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
@@ -237,152 +229,173 @@ LATTICE_FILES = {
 
 
 class BadInput(unittest.TestCase):
+    """A class of cases, each of them a test: see `case`."""
     maxDiff = None
+
+    @classmethod
+    def case(cls, name, words, part, prepare, ranks=(1, 2)):
+        """Adds a test: floe with `words`, in a folder that `prepare(folder)` fills, says `part`."""
+        def test(self):
+            for n in ranks:
+                with self.subTest(ranks=n), tempfile.TemporaryDirectory() as folder:
+                    prepare(Path(folder))
+                    self.refused(words, part, n, Path(folder))
+
+        method = "test_" + re.sub(r"\W+", "_", name)
+        assert not hasattr(cls, method), f"two cases named {name}"
+        setattr(cls, method, test)
 
     def refused(self, words, part, ranks, folder):
         """Runs floe with `words` in `folder`; checks how it ends and that nothing has been written."""
         before = sorted(folder.rglob("*"))
-        command = [str(FLOE), *words]
-        if ranks > 1:
-            command = ["mpiexec", "-q", "-n", str(ranks), *command]
-        run = subprocess.run(command, cwd=folder, env={**os.environ, **ENVIRONMENT}, capture_output=True,
-                             text=True, timeout=SECONDS)
+        run = launch.run(*words, ranks=ranks, cwd=folder)
         lines = run.stderr.splitlines()
         self.assertEqual(len(lines), 1, f"one line expected: {run.stderr!r} {run.stdout!r}")
         self.assertIn(part, lines[0])
         self.assertEqual(run.returncode, 2, lines[0])
         self.assertEqual(sorted(folder.rglob("*")), before, "something has been written")
 
-    def setUp(self):
-        self.pool = concurrent.futures.ThreadPoolExecutor(6)  # a run is mostly waiting for MPI to start
-        self.addCleanup(self.pool.shutdown)
-        self.cases = []
 
-    def on_ranks(self, name, words, part, prepare):
-        """Starts the case on 1 and 2 ranks; finish() looks at what came out."""
-        def one(ranks):
-            with tempfile.TemporaryDirectory() as folder:
-                prepare(Path(folder))
-                self.refused(words, part, ranks, Path(folder))
-        for ranks in (1, 2):
-            self.cases.append((name, ranks, self.pool.submit(one, ranks)))
+def scene_file(text):
+    """Fills a folder with this scene."""
+    return lambda folder: (folder / "scene.yaml").write_text(text)
 
-    def finish(self):
-        for name, ranks, case in self.cases:
-            with self.subTest(case=name, ranks=ranks):
-                case.result()
 
-    def test_command_line(self):
-        for name, (scene, words, part) in COMMAND_LINE.items():
-            self.on_ranks(name, ["scene.yaml", *words], part,
-                          lambda folder, scene=scene: (folder / "scene.yaml").write_text(scene))
-        self.finish()
+class CommandLine(BadInput):
+    pass
 
-    def test_what_needs_space(self):
-        for name, (scene, words, part) in NEEDS_SPACE.items():
-            self.on_ranks(name, ["scene.yaml", *words], part,
-                          lambda folder, scene=scene: (folder / "scene.yaml").write_text(scene))
-        self.finish()
 
-    def test_scenes(self):
-        for name, (scene, part, *words) in SCENES.items():
-            self.on_ranks(name, ["scene.yaml", *(words[0] if words else [])], part,
-                          lambda folder, scene=scene: (folder / "scene.yaml").write_text(scene))
-        self.finish()
+for title, (scene, words, part) in COMMAND_LINE.items():
+    CommandLine.case(title, ["scene.yaml", *words], part, scene_file(scene))
 
-    def test_scene_files(self):
-        self.on_ranks("no scene", [], "usage", lambda folder: None)
-        self.on_ranks("an option in place of the scene", ["-check"], "usage", lambda folder: None)
-        self.on_ranks("missing file", ["missing.yaml"], "missing.yaml", lambda folder: None)
-        self.on_ranks("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())
-        self.on_ranks("device", ["/dev/null"], "/dev/null", lambda folder: None)
-        self.on_ranks("binary", ["a.h5"], "a.h5", lambda folder: h5py.File(folder / "a.h5", "w").close())
-        self.finish()
 
-    def test_lattice_files(self):
-        frame = fl.straight_frame(length=4, elements=4, section=fl.Section(1, 1))
-        for name, (change, part) in LATTICE_FILES.items():
-            def prepare(folder, change=change):
-                (folder / "scene.yaml").write_text(FILE)
-                frame.write(folder / "bad.h5")
-                with h5py.File(folder / "bad.h5", "r+") as file:
-                    change(file)
-            self.on_ranks(name, ["scene.yaml"], part, prepare)
-        def without_sides(folder):
-            (folder / "scene.yaml").write_text(FILE.replace("[beam]", "[beam, fracture]"))
-            frame.write(folder / "bad.h5")
-            with h5py.File(folder / "bad.h5", "r+") as file:
-                del file["beams/width"], file["beams/height"]
-        self.on_ranks("fracture of sections without sides", ["scene.yaml"], "/beams/width", without_sides)
-        self.on_ranks("not HDF5", ["scene.yaml"], "bad.h5",
-                      lambda folder: [(folder / "scene.yaml").write_text(FILE),
-                                      (folder / "bad.h5").write_text("no")])
-        self.finish()
+class NeedsSpace(BadInput):
+    pass
 
-    def test_shapes(self):
-        """Of an obstacle and of loose bodies: cubes that are no closed convex polyhedra with plane faces."""
-        cube = np.array([[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], float) / 2
-        faces = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
-        dented = cube.copy()
-        dented[6] = 0.1  # a corner that no plane of another face is beyond
-        cases = {"without a top": (cube, faces[:1] + faces[2:], "faces must close"),
-                 "without two sides": (cube, faces[:2] + faces[2:5:2], "faces must close"),
-                 "a face twice": (cube, faces + faces[:1], "faces must close"),
-                 "a face the other way round": (cube, faces[:5] + [faces[5][::-1]], "faces must close"),
-                 "vertices of each face its own":
-                     (cube[np.concatenate(faces)], [list(range(4 * k, 4 * k + 4)) for k in range(6)], "faces must close"),
-                 "flat": (cube * [1, 1, 0], faces, "volume > 0"),
-                 "inside out": (cube, [face[::-1] for face in faces], "counter-clockwise"),
-                 "dented": (dented, faces, "not plane")}
-        scene = "integrator: explicit\nforces: [contact]\nlattice_file: good.h5\ncontact: {young: 1e7}\n"
-        for name, (vertices, corners, part) in cases.items():
-            def spoilt(path, vertices=vertices, corners=corners):
-                with h5py.File(path, "a") as file:
-                    if "shapes" in file:
-                        del file["shapes"]
-                    file["shapes/vertices"] = vertices
-                    file["shapes/corners"] = np.concatenate(corners).astype(np.int32)
-                    file["shapes/corner_of"] = np.cumsum([0, *map(len, corners)]).astype(np.int32)
-                    file["shapes/face_of"] = np.array([0, len(corners)], np.int32)
-                    file["shapes/vertex_of"] = np.array([0, len(vertices)], np.int32)
 
-            def good(path):
-                fl.Lattice(np.array([[0.0, 0, 9]]), np.array([[1.0, 0, 0, 0]]), np.array([920.0]),
-                           np.full((1, 3), 920 / 6), shapes=fl.Shapes.boxes(np.ones((1, 3)))).write(path)
+for title, (scene, words, part) in NEEDS_SPACE.items():
+    NeedsSpace.case(title, ["scene.yaml", *words], part, scene_file(scene))
 
-            def an_obstacle(folder, spoilt=spoilt):
-                good(folder / "good.h5")
-                spoilt(folder / "bad.h5")
-                (folder / "scene.yaml").write_text(
-                    scene + "obstacle: {names: [o], o: {shape: file, file: bad.h5}}\n")
 
-            def a_body(folder, spoilt=spoilt):
-                good(folder / "good.h5")
-                spoilt(folder / "good.h5")
-                (folder / "scene.yaml").write_text(scene)
+class Scenes(BadInput):
+    pass
 
-            self.on_ranks("obstacle " + name, ["scene.yaml"], part, an_obstacle)
-            if name != "dented":  # its centroid is not the origin, which is what is found first
-                self.on_ranks("body " + name, ["scene.yaml"], "/shapes", a_body)
-        self.finish()
 
-    def test_a_body_inside_another(self):
-        def nested(folder):
-            sizes = np.array([[3.0, 3, 3], [1, 1, 1]])
-            mass = 920 * sizes.prod(1)
-            fl.Lattice(np.zeros((2, 3)), np.array([[1.0, 0, 0, 0]] * 2), mass, mass[:, None] * sizes**2 / 6,
-                       shapes=fl.Shapes.boxes(sizes)).write(folder / "bad.h5")
-            (folder / "scene.yaml").write_text("integrator: explicit\nforces: [contact]\nlattice_file: bad.h5\n"
-                                               "contact: {young: 1e7}\n")
-        self.on_ranks("nested", ["scene.yaml"], "wholly inside", nested)
-        self.finish()
+for title, (scene, part, *words) in SCENES.items():
+    Scenes.case(title, ["scene.yaml", *(words[0] if words else [])], part, scene_file(scene))
 
-    def test_more_ranks_than_bodies(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder)
-            (path / "scene.yaml").write_text(GOOD)
-            words = ["scene.yaml", "-sheet_length", "1", "-sheet_element_size", "1"]  # 2 bodies
-            self.refused(words, "ranks", 3, path)
+
+class SceneFiles(BadInput):
+    pass
+
+
+SceneFiles.case("an option in place of the scene", ["-check"], "usage", lambda folder: None)
+SceneFiles.case("missing file", ["missing.yaml"], "missing.yaml", lambda folder: None)
+SceneFiles.case("folder", ["a"], "directory", lambda folder: (folder / "a").mkdir())
+SceneFiles.case("device", ["/dev/null"], "/dev/null", lambda folder: None)
+SceneFiles.case("binary", ["a.h5"], "a.h5", lambda folder: h5py.File(folder / "a.h5", "w").close())
+
+
+class LatticeFiles(BadInput):
+    pass
+
+
+def frame_file(change, scene=FILE):
+    """Fills a folder with a frame that `change(file)` has spoilt, and a scene."""
+    def prepare(folder):
+        (folder / "scene.yaml").write_text(scene)
+        fl.straight_frame(length=4, elements=4, section=fl.Section(1, 1)).write(folder / "bad.h5")
+        with h5py.File(folder / "bad.h5", "r+") as file:
+            change(file)
+    return prepare
+
+
+def without_sides(file):
+    del file["beams/width"], file["beams/height"]
+
+
+for title, (change, part) in LATTICE_FILES.items():
+    LatticeFiles.case(title, ["scene.yaml"], part, frame_file(change))
+LatticeFiles.case("fracture of sections without sides", ["scene.yaml"], "/beams/width",
+                  frame_file(without_sides, FILE.replace("[beam]", "[beam, fracture]")))
+LatticeFiles.case("not HDF5", ["scene.yaml"], "bad.h5",
+                  lambda folder: [(folder / "scene.yaml").write_text(FILE), (folder / "bad.h5").write_text("no")])
+
+
+class Shapes(BadInput):
+    """Of an obstacle and of loose bodies: cubes that are no closed convex polyhedra with plane faces."""
+
+
+LOOSE = "integrator: explicit\nforces: [contact]\nlattice_file: good.h5\ncontact: {young: 1e7}\n"
+CUBE = np.array([[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], float) / 2
+FACES = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+DENTED = np.vstack([CUBE[:6], [[0.1, 0.1, 0.1]], CUBE[7:]])  # a corner that no plane of another face is beyond
+SHAPES = {
+    "without a top": (CUBE, FACES[:1] + FACES[2:], "faces must close"),
+    "without two sides": (CUBE, FACES[:2] + FACES[2:5:2], "faces must close"),
+    "a face twice": (CUBE, FACES + FACES[:1], "faces must close"),
+    "a face the other way round": (CUBE, FACES[:5] + [FACES[5][::-1]], "faces must close"),
+    "vertices of each face its own":
+        (CUBE[np.concatenate(FACES)], [list(range(4 * k, 4 * k + 4)) for k in range(6)], "faces must close"),
+    "flat": (CUBE * [1, 1, 0], FACES, "volume > 0"),
+    "inside out": (CUBE, [face[::-1] for face in FACES], "counter-clockwise"),
+    "dented": (DENTED, FACES, "not plane"),
+}
+
+
+def loose_body(path):
+    fl.Lattice(np.array([[0.0, 0, 9]]), np.array([[1.0, 0, 0, 0]]), np.array([920.0]), np.full((1, 3), 920 / 6),
+               shapes=fl.Shapes.boxes(np.ones((1, 3)))).write(path)
+
+
+def spoil_shape(path, vertices, corners):
+    with h5py.File(path, "a") as file:
+        if "shapes" in file:
+            del file["shapes"]
+        file["shapes/vertices"] = vertices
+        file["shapes/corners"] = np.concatenate(corners).astype(np.int32)
+        file["shapes/corner_of"] = np.cumsum([0, *map(len, corners)]).astype(np.int32)
+        file["shapes/face_of"] = np.array([0, len(corners)], np.int32)
+        file["shapes/vertex_of"] = np.array([0, len(vertices)], np.int32)
+
+
+def spoilt_obstacle(vertices, corners):
+    def prepare(folder):
+        loose_body(folder / "good.h5")
+        spoil_shape(folder / "bad.h5", vertices, corners)
+        (folder / "scene.yaml").write_text(LOOSE + "obstacle: {names: [o], o: {shape: file, file: bad.h5}}\n")
+    return prepare
+
+
+def spoilt_body(vertices, corners):
+    def prepare(folder):
+        loose_body(folder / "good.h5")
+        spoil_shape(folder / "good.h5", vertices, corners)
+        (folder / "scene.yaml").write_text(LOOSE)
+    return prepare
+
+
+for title, (vertices, corners, part) in SHAPES.items():
+    Shapes.case("obstacle " + title, ["scene.yaml"], part, spoilt_obstacle(vertices, corners))
+    if title != "dented":  # its centroid is not the origin, which is what is found first
+        Shapes.case("body " + title, ["scene.yaml"], "/shapes", spoilt_body(vertices, corners))
+
+
+class Bodies(BadInput):
+    pass
+
+
+def nested(folder):
+    sizes = np.array([[3.0, 3, 3], [1, 1, 1]])
+    mass = 920 * sizes.prod(1)
+    fl.Lattice(np.zeros((2, 3)), np.array([[1.0, 0, 0, 0]] * 2), mass, mass[:, None] * sizes**2 / 6,
+               shapes=fl.Shapes.boxes(sizes)).write(folder / "good.h5")
+    (folder / "scene.yaml").write_text(LOOSE)
+
+
+Bodies.case("a body inside another", ["scene.yaml"], "wholly inside", nested)
+Bodies.case("more ranks than bodies", ["scene.yaml", "-sheet_length", "1", "-sheet_element_size", "1"], "ranks",
+            scene_file(GOOD), ranks=(3,))  # 2 bodies
 
 
 if __name__ == "__main__":

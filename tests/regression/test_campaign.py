@@ -103,7 +103,7 @@ class Campaign(unittest.TestCase):
             values = row["E_over_Eb"][(row["L"] == 20) & (row["l"] == h * factor)]
             self.assertIn(f"| 20 | {h} | {factor}h | {20 / h / factor:.2f} | {116 if factor == 2 else 52} | {values.mean():.4f} ± {values.std(ddof=1):.4f} (2) |",
                           report)
-        self.assertIn("| exact shear | `tools/campaign -- -beam_shear exact` | 8 tension, 4 bending |", report)
+        self.assertIn("| exact shear | `floe campaign -- -beam_shear exact` | 8 tension, 4 bending |", report)
         self.assertIn("| not run | – |", report)
         self.assertNotIn("nan", report)
         for number in (5, 6, 7):

@@ -4,20 +4,12 @@
 Each runs in a temporary folder of its own, as a user would run it, at 1 and at 2 ranks.
 """
 import json
-import os
 import re
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-
-SECONDS = 120
-ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+import launch
 
 PULL = """integrator: explicit
 forces: [beam]
@@ -36,11 +28,7 @@ class Run:
     def __init__(self, scene, *words, ranks=1):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "s.yaml").write_text(scene)
-            command = [str(FLOE), "s.yaml", *words]
-            if ranks > 1:
-                command = ["mpiexec", "-q", "-n", str(ranks), *command]
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=SECONDS,
-                                  env={**os.environ, **ENVIRONMENT})
+            done = launch.run("s.yaml", *words, ranks=ranks, cwd=folder)
             self.code, self.error = done.returncode, done.stderr
             summary = Path(folder, "out/s/summary.json")
             self.summary = json.loads(summary.read_text()) if summary.exists() else None

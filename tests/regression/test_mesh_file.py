@@ -1,17 +1,15 @@
 #!/usr/bin/python3
 """sheet: mesh_file: the second scene of a sheet reads the mesh that the first one made, to the last bit."""
 import json
-import os
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
 import h5py
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-TENSION = [str(REPOSITORY / "input/tension.yaml"), "-sheet_length", "20", "-sheet_width", "20"]
+import launch
+
+TENSION = [str(launch.REPOSITORY / "input/tension.yaml"), "-sheet_length", "20", "-sheet_width", "20"]
 
 
 class MeshFile(unittest.TestCase):
@@ -21,7 +19,7 @@ class MeshFile(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def floe(self, *words, expect=0):
-        run = subprocess.run([str(FLOE), *TENSION, *words], cwd=self.root, capture_output=True, text=True, timeout=120)
+        run = launch.run(*TENSION, *words, cwd=self.root)
         self.assertEqual(run.returncode, expect, run.stderr)
         return run.stderr
 

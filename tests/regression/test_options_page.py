@@ -1,21 +1,17 @@
 #!/usr/bin/python3
 """docs/options.md is what `floe -help_markdown` writes, and -help prints every option."""
-import os
-import subprocess
 import unittest
-from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+import launch
 
 
 def output(*words):
-    return subprocess.run([str(FLOE), *words], capture_output=True, text=True, check=True, timeout=60).stdout
+    return launch.run(*words, check=True).stdout
 
 
 class OptionsPage(unittest.TestCase):
     def test_page_is_current(self):
-        self.assertEqual((REPOSITORY / "docs/options.md").read_text(), output("-help_markdown"),
+        self.assertEqual((launch.REPOSITORY / "docs/options.md").read_text(), output("-help_markdown"),
                          "run: build/release/floe -help_markdown > docs/options.md")
 
     def test_help_lists_the_same_options(self):

@@ -1,13 +1,10 @@
 #!/usr/bin/python3
 """options.yaml in the output folder repeats the run: same options, same results."""
-import os
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+import launch
 
 SCENE = """
 forces: [beam, gravity, buoyancy]
@@ -26,7 +23,7 @@ class OptionsYaml(unittest.TestCase):
             (root / "story.yaml").write_text(SCENE)
 
             def run(*words):
-                subprocess.run([str(FLOE), *words], cwd=root, check=True, capture_output=True, timeout=120)
+                launch.run(*words, cwd=root, check=True)
                 out = root / "out/story"
                 return {name: (out / name).read_text() for name in ("options.yaml", "history.csv")}
 

@@ -5,9 +5,7 @@ Small scenes run in a temporary folder. Numbers are compared with each other, ne
 """
 import csv
 import json
-import os
 import re
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
@@ -15,11 +13,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+import launch
 
 HELD_AND_PULLED = """boundary:
   names: [left, right]
@@ -72,9 +66,7 @@ class OutputTest(unittest.TestCase):
         return self.start_file(path, *options, ranks=ranks)
 
     def start_file(self, path, *options, ranks=1):
-        mpi = ["mpiexec", "-q", "-n", str(ranks)] if ranks > 1 else []
-        return subprocess.run([*mpi, str(FLOE), str(path), *options], cwd=self.folder, capture_output=True, text=True,
-                              timeout=120, env={**os.environ, **ENVIRONMENT})
+        return launch.run(path, *options, ranks=ranks, cwd=self.folder)
 
     def run_scene(self, scene, *options, **how):
         """Runs a scene text that must work; its output folder."""

@@ -112,7 +112,7 @@ class ParaView(unittest.TestCase):
             self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
             render = [str(REPOSITORY / "tools/render"), f"{folder}/out", "--size", "320", "200"]
             drawn = subprocess.run([*render, "--time", "0", "0.02", "--file", f"{folder}/a.png"], capture_output=True,
-                                   text=True, timeout=300)
+                                   text=True)
             self.assertEqual(drawn.returncode, 0, drawn.stdout + drawn.stderr)
             self.assertEqual(drawn.stdout.split(), [f"{folder}/a_0.png", f"{folder}/a_1.png"])
             pixels = (255 * plt.imread(f"{folder}/a_1.png")[:, :, :3]).astype(int)
@@ -121,7 +121,7 @@ class ParaView(unittest.TestCase):
             self.assertGreater(np.sum((red > 150) & (blue < 245)), 2000)  # tops of the ice
             self.assertGreater(np.sum((red < 140) & (red >= blue) & (red > 20)), 500)  # the cone
             if shutil.which("ffmpeg"):
-                film = subprocess.run([*render, "--film", f"{folder}/a.mp4"], capture_output=True, text=True, timeout=300)
+                film = subprocess.run([*render, "--film", f"{folder}/a.mp4"], capture_output=True, text=True)
                 self.assertEqual(film.returncode, 0, film.stdout + film.stderr)
                 self.assertGreater(Path(folder, "a.mp4").stat().st_size, 1000)
 
@@ -130,7 +130,7 @@ class ParaView(unittest.TestCase):
         script, found = folder / "look.py", folder / "seen.json"
         script.write_text(LOOK)
         run = subprocess.run(["xvfb-run", "-a", "pvpython", str(script), str(file), str(found)],
-                             capture_output=True, text=True, timeout=300)
+                             capture_output=True, text=True)
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return json.loads(found.read_text())
 

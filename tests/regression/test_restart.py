@@ -19,11 +19,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from launch import ENVIRONMENT, on_ranks, own_words
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-ENVIRONMENT = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 FULL = os.environ.get("FLOE_FULL") == "1"
 
 # Damping loss, load work, boundary work and the water's forces all have a history or energies of their own. Rows
@@ -73,16 +72,14 @@ class RestartTest(unittest.TestCase):
 
     def begin(self, *options, dir="out/scene", ranks=1, scene="scene.yaml", **how):
         """A started process."""
-        mpi = ["mpiexec", "-q", "-n", str(ranks)] if ranks > 1 else []
-        return subprocess.Popen([*mpi, str(FLOE), scene, *options, "-output_dir", dir], cwd=self.folder,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                env={**os.environ, **ENVIRONMENT}, **how)
+        return subprocess.Popen(on_ranks(ranks, [FLOE, scene, *options, "-output_dir", dir]), cwd=self.folder,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **how)
 
     def finish(self, process, code=0):
         """What a process that must end with `code` said on its standard error."""
         out, err = process.communicate(timeout=300)
         self.assertEqual(process.returncode, code, out + err)
-        return err
+        return own_words(err)
 
     def run_whole(self, *options, **how):
         self.finish(self.begin(*options, **how))

@@ -2,7 +2,7 @@
 """Every scene of input/ runs by the command of its own first line and gives the numbers its header promises.
 
 A scene without an entry in EXPECTED fails; the checks are in scenes/, by subject. The commands run in a
-temporary folder that looks like the repository (build/release/floe, input, tools), so nothing is left behind.
+temporary folder that looks like the repository, with floe on the PATH, so nothing is left behind.
 Commands on several ranks: test_scenes_ranks.py.
 """
 import os
@@ -16,6 +16,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import Output  # noqa: E402
+from launch import ENVIRONMENT  # noqa: E402
 from scenes import beams, contact, fracture, moving, static, structures  # noqa: E402
 
 EXPECTED = {
@@ -74,10 +75,10 @@ class SceneTest(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
-        (self.folder / "build/release").mkdir(parents=True)
-        (self.folder / "build/release/floe").symlink_to(FLOE)
-        for name in ("input", "tools"):
-            (self.folder / name).symlink_to(REPOSITORY / name)
+        (self.folder / "bin").mkdir()
+        (self.folder / "bin/floe").symlink_to(FLOE)
+        (self.folder / "input").symlink_to(REPOSITORY / "input")
+        self.environment = dict(ENVIRONMENT, PATH=f"{self.folder}/bin:{os.environ['PATH']}")
 
     def runner(self, scene):
         """A function that runs the scene's own command, with more options if given: its output."""
@@ -87,7 +88,8 @@ class SceneTest(unittest.TestCase):
 
         def run(*options, ranks=1, status=0):
             command = " ".join([*(["mpiexec", "-n", str(ranks)] if ranks > 1 else []), first[2:], *options])
-            done = subprocess.run(["bash", "-c", command], cwd=self.folder, capture_output=True, text=True)
+            done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, capture_output=True,
+                                  text=True)
             self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
             return Output(self.folder / "out" / scene.stem)
 

@@ -7,7 +7,8 @@ import json
 import subprocess
 import unittest
 
-from test_restart import INTERRUPTED, REPOSITORY, RestartTest, contents, stop_file
+import launch
+from test_restart import INTERRUPTED, RestartTest, contents, stop_file
 
 PULL = """integrator: explicit
 forces: [beam]
@@ -31,9 +32,9 @@ class TsTest(RestartTest):
     def pull(self, *options, code=0, ranks=1):
         """(standard output, standard error) of a pull into out/pull."""
         process = self.begin(*options, dir="out/pull", ranks=ranks, scene="pull.yaml")
-        out, err = process.communicate(timeout=120)
+        out, err = process.communicate()
         self.assertEqual(process.returncode, code, out + err)
-        return out, err
+        return out, launch.own_words(err)
 
     def summary(self):
         return json.loads((self.folder / "out/pull/summary.json").read_text())
@@ -177,7 +178,7 @@ checkpoint: {every: 1000}
 class ChangingSteps(RestartTest):
     def test_go_on_bit_for_bit(self):
         (self.folder / "scene.yaml").write_text(PUSHED)
-        subprocess.run([REPOSITORY / "tools/make_lattice", "block", "--size", "2", "2", "0.5", "--height", "-5",
+        subprocess.run([launch.REPOSITORY / "tools/make_lattice", "block", "--size", "2", "2", "0.5", "--height", "-5",
                         "block.h5"], cwd=self.folder, check=True, capture_output=True)
         for dir, kind in (("b", ()), ("c", RK4)):
             straight = self.run_whole(*kind, dir="a")

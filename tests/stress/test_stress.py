@@ -3,8 +3,6 @@
 
 Short by default; FLOE_FULL=1 (tools/bench stress) takes the long forms: 10 million steps, more seeds and ratios.
 """
-import os
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -13,13 +11,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
+import launch  # noqa: E402
+
+sys.path.insert(0, str(launch.REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 from floe_output import Output  # noqa: E402
 
-FULL = os.environ.get("FLOE_FULL") == "1"
+FULL = launch.FULL
 
 SHEET = """integrator: quasistatic
 forces: [beam]
@@ -50,7 +49,7 @@ boundary:
 class Run:
     """A finished run: code, text (standard error), errors (its lines of ours but warnings), summary, last (displacements)."""
 
-    def __init__(self, scene, *words, lattice=None, motion=None, seconds=600):
+    def __init__(self, scene, *words, lattice=None, motion=None):
         with tempfile.TemporaryDirectory() as folder:
             if lattice is not None:
                 lattice.write(f"{folder}/lattice.h5")
@@ -58,8 +57,7 @@ class Run:
                     for name, values in (motion or {}).items():
                         file[f"bodies/{name}"] = values
             Path(folder, "s.yaml").write_text(scene)
-            done = subprocess.run([str(FLOE), "s.yaml", *words], cwd=folder, capture_output=True, text=True,
-                                  timeout=None if FULL else seconds)
+            done = launch.run("s.yaml", *words, cwd=folder)
             self.code, self.text = done.returncode, done.stderr
             self.errors = [line for line in done.stderr.splitlines()
                            if line.startswith("floe:") and not line.startswith("floe: warning")]

@@ -9,6 +9,7 @@
 #include "base/option_values.h"
 #include "floe/base/options.h"
 #include "floe/base/scene_text.h"
+#include "floe/base/spelling.h"
 #include "floe/scene.h"
 #include "scene/keys.h"
 
@@ -363,6 +364,13 @@ TEST(CommandLine, HelpNeedsNoScene) {
   EXPECT_EQ(help({"floe", "-help"}), Help::text);
   EXPECT_EQ(help({"floe", "a.yaml", "-check", "-help"}), Help::text);
   EXPECT_EQ(help({"floe", "-help_markdown"}), Help::markdown);
+}
+
+TEST(Spelling, NearestWordIsNotFarAway) {
+  constexpr std::array<std::string_view, 3> known{"plot_load", "plot_sheet", "render"};
+  EXPECT_EQ(nearest_word("plotload", known), "plot_load");
+  EXPECT_EQ(nearest_word("redner", known), "render");
+  EXPECT_EQ(nearest_word("campaign", known), "");
 }
 
 std::string text_error(const std::string& text) {

@@ -131,8 +131,9 @@ void reject_unused_options();
 /// end.
 void warn_unused_options();
 
-/// A table as text for a terminal, and as Markdown.
+/// A table as text for a terminal, as Markdown, and as part of a man page (groff_man(7)).
 std::string help_text(std::span<const OptionSpec> table);
 std::string help_markdown(std::span<const OptionSpec> table);
+std::string help_man(std::span<const OptionSpec> table);
 
 }  // namespace floe

@@ -1,0 +1,65 @@
+#include "subcommands.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "places.h"
+#include "program.h"
+
+namespace floe::program {
+namespace {
+
+constexpr std::array table{
+    Subcommand{"plot_sheet", "draws a sheet and its beams, coloured by stress"},
+    Subcommand{"plot_deflection", "draws deflections against those of an infinite plate"},
+    Subcommand{"plot_fragments", "draws the pieces of a sheet that broke"},
+    Subcommand{"plot_load", "draws the forces on obstacles against time"},
+    Subcommand{"render", "pictures and films of a run in space (needs ParaView)"},
+    Subcommand{"make_lattice", "writes lattices of one's own: frames, regular sheets, blocks"},
+    Subcommand{"strength", "the strength of whole sheets over that of their beams"},
+    Subcommand{"campaign", "all sheets and tests of the paper"},
+    Subcommand{"campaign_report", "figures and report of a campaign"},
+};
+
+}  // namespace
+
+std::span<const Subcommand> subcommands() { return table; }
+
+bool is_subcommand(std::string_view word) {
+  return std::any_of(table.begin(), table.end(),
+                     [&](const Subcommand& known) { return known.name == word; });
+}
+
+int run_subcommand(char** argv) {
+  const std::string name = argv[0];
+  if (ranks_of_launcher() > 1) {
+    if (is_first_rank())
+      std::fprintf(stderr, "floe %s: is one process: start it without mpiexec\n", name.c_str());
+    return bad_input;
+  }
+  const auto folder = share_folder();
+  if (folder.empty()) {
+    std::fprintf(stderr, "floe %s: the tools that belong to %s are not there\n", name.c_str(),
+                 program_file().c_str());
+    return failed;
+  }
+  const std::string tool = folder / "tools" / name;
+  // What the tool runs is this floe, unless the user names another.
+  setenv("FLOE", program_file().c_str(), 0);
+  argv[0] = const_cast<char*>(tool.c_str());  // NOLINT: execv's words are not const
+  execv(tool.c_str(), argv);
+  const char* why = std::strerror(errno);
+  const bool there = access(tool.c_str(), X_OK) == 0;
+  std::fprintf(stderr, "floe %s: %s: %s%s\n", name.c_str(), tool.c_str(), why,
+               there ? " (the tools need /usr/bin/python3)" : "");
+  return failed;
+}
+
+}  // namespace floe::program

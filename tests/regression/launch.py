@@ -1,0 +1,37 @@
+"""How tests start floe on any number of ranks, whichever Open MPI is installed (4 or 5), and what it says.
+
+No test gives a run a time limit: ctest ends what hangs, after 20 minutes.
+"""
+import os
+import re
+import subprocess
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+FULL = os.environ.get("FLOE_FULL", "0") not in ("", "0")  # the long forms
+
+# What tools/env exports.
+ENVIRONMENT = {**os.environ, **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
+
+# What the launcher of Open MPI 5 adds to the errors of a run that fails: it has no way to keep it quiet.
+BANNER = re.compile(r"^-{60,}\n(?:prterun |MPI_ABORT was invoked)(?:.*\n)*?-{60,}\n|^\[\S+:\d+\] PMIX ERROR: .*\n", re.M)
+
+PROGRESS = re.compile(r"^[\w ]+: +\d+ %, \d+ s left  .*\n", re.M)
+
+
+def on_ranks(ranks, command):
+    """The command that runs `command` on this many ranks."""
+    return [*(["mpiexec", "-n", str(ranks)] if ranks > 1 else []), *map(str, command)]
+
+
+def own_words(error):
+    """Standard error of a run, without what the launcher adds and without lines of progress, which come when a machine is slow."""
+    return PROGRESS.sub("", BANNER.sub("", error))
+
+
+def run(*words, ranks=1, **how):
+    """A finished run of floe, its standard error in its own words."""
+    done = subprocess.run(on_ranks(ranks, [FLOE, *words]), capture_output=True, text=True, env=ENVIRONMENT, **how)
+    done.stderr = own_words(done.stderr)
+    return done
