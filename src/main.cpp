@@ -15,9 +15,11 @@
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
 #include "floe/base/scene_text.h"
+#include "floe/base/signals.h"
 #include "floe/build.h"
 #include "floe/lattice/folded.h"
 #include "floe/output/output.h"
+#include "floe/output/run_folder.h"
 #include "program/program.h"
 
 namespace {
@@ -50,6 +52,7 @@ struct First {
 /// What a run starts from.
 struct Start {
   double time;
+  std::optional<floe::RunFolder>& folder;
   floe::MeshReport mesh;
   floe::Lattice lattice;
   floe::Skips skips;
@@ -83,11 +86,16 @@ int run(const floe::Scene& scene, Start& start) {
 
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.
+  RunFolder* const folder = start.folder ? &*start.folder : nullptr;
   std::optional<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
   const auto open = [&] {
     reject_unused_options(scene.unused_options);
+    if (restart) require_files(scene.output.dir, *restart, PETSC_COMM_WORLD);
+    folder->begin(restart ? folder->run() : "");
+    start.mesh.keep();
+    start.mesh.keep = [] {};
     if (rank() == 0) folded.unfold(lattice);  // others need no geometry but places
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
                    std::move(lattice), model, loads, scene.options_yaml,
@@ -108,6 +116,7 @@ int run(const floe::Scene& scene, Start& start) {
     }
     prepare();
     output->accept(accepted);
+    folder->note(accepted.state.time, accepted.step);
   };
   const auto remember = [&](Memory& checkpoint) {
     if (checkpoint.loading()) {
@@ -128,16 +137,18 @@ int run(const floe::Scene& scene, Start& start) {
     return done;
   }
   prepare();  // a run that found not even a first state leaves a summary that says so
-  if (!result.stopped) output->finish();  // a stopped run goes on where it was
+  const bool goes_on = result.stopped && !is_static;  // where it was
+  if (!goes_on) output->finish();
 
   // 6. Results
   const Summary summary = summarise(scene, start.skips, model, start.mesh, result, output->first(),
                                     output->last(), MPI_Wtime() - start.time);
-  if (rank() == 0) write_whole(scene.output.dir + "/summary.json", summary.json);
+  folder->finish(summary.json);
   say(summary.text);
-  const std::string how = result.stopped ? "; go on with: floe " + scene.path +
-                                               " -checkpoint_restart " + checkpoint_file(scene)
-                                         : "";
+  say("results: " + scene.output.dir + "/ (summary.json, history.csv; fields.xmf for ParaView)\n");
+  const std::string how =
+      goes_on ? "; go on with: floe " + scene.path + " -checkpoint_restart " + checkpoint_file(scene)
+              : "";
   if (!result.done) say("floe: " + result.message + how + "\n", stderr);
   if (result.unstable_modes > 0)
     say("floe: warning: the equilibrium is unstable (" + std::to_string(result.unstable_modes) +
@@ -147,16 +158,27 @@ int run(const floe::Scene& scene, Start& start) {
   return result.done ? done : result.stopped ? stopped : failed;
 }
 
-int run(const std::string& path, const floe::UserOptions& options) {
+/// \param folder  where the results go, for who ends the run; none if the scene is only checked
+int run(const std::string& path, const floe::UserOptions& options,
+        std::optional<floe::RunFolder>& folder) {
   using namespace floe;
-  Start start{MPI_Wtime(), {}, {}, {}};
+  Start start{MPI_Wtime(), folder, {}, {}, {}};
 
-  // 1. The scene
+  // 1. The scene, and the lock of its output folder
   Scene scene = read_scene(path, options);
   check_reports(scene);
+  const FolderWish wish{scene.output.dir, scene.path, scene.inputs, scene.output.overwrite,
+                        !scene.checkpoint.restart.empty()};
+  if (!scene.check_only) {
+    folder.emplace(wish, PETSC_COMM_WORLD);
+    set_last_words([&folder](const std::string& why) {
+      if (folder) folder->fail(why);
+    });
+  }
 
   // 2. Sheet -> lattice, and what it does not need
   start.lattice = make_lattice(scene, PETSC_COMM_WORLD, start.mesh);
+  stop_if_asked(PETSC_COMM_WORLD);
   set_initial(scene, start.lattice);
   if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
   start.skips = skips_of(scene, start.lattice);
@@ -166,7 +188,35 @@ int run(const std::string& path, const floe::UserOptions& options) {
 
   if (start.mesh.strength) say("strength: " + text_of(*start.mesh.strength) + "\n");
 
-  return start.skips.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
+  const int code = start.skips.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
+  if (scene.check_only) {
+    const std::string problem = RunFolder::problem(wish, PETSC_COMM_WORLD);
+    if (!problem.empty()) say("but a run would be refused now: " + problem + "\n");
+  }
+  return code;
+}
+
+/// The run, and how it ends if something ends it: one line, and what the folder should say.
+int run_to_an_end(const std::string& path, const floe::UserOptions& options) {
+  std::optional<floe::RunFolder> folder;
+  const auto end = [&](const floe::Verdict& why, int code) {
+    if (folder && floe::rank() == 0) folder->fail(why.what());
+    say(std::string("floe: ") + why.what() + "\n", stderr);
+    folder.reset();
+    floe::set_last_words({});
+    return code;
+  };
+  try {
+    const int code = run(path, options, folder);
+    floe::set_last_words({});
+    return code;
+  } catch (const floe::InputError& error) {
+    return end(error, bad_input);
+  } catch (const floe::Stopped& error) {
+    return end(error, stopped);
+  } catch (const floe::RunFailed& error) {
+    return end(error, failed);
+  }
 }
 
 }  // namespace
@@ -175,6 +225,7 @@ int main(int argc, char** argv) {
   if (const auto code = floe::program::answer(argc, argv)) return *code;
   if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
     return floe::program::print_options(help);
+  floe::StopSignals signals;
   floe::Mpi mpi(argc, argv);
   try {
     const floe::CommandLine line = floe::read_command_line(argc, argv);
@@ -182,13 +233,9 @@ int main(int argc, char** argv) {
         floe::read_environment(line.petscrc),
         floe::read_scene_text(line.scene, MPI_COMM_WORLD, floe::program::near_scene), line.options};
     floe::Session session(argv[0], options);
+    signals.arm();
     give_memory_back();
-    try {
-      return run(line.scene, options);
-    } catch (const floe::InputError& error) {  // before PETSc ends, so that only rank 0 speaks
-      say(std::string("floe: ") + error.what() + "\n", stderr);
-      return bad_input;
-    }
+    return run_to_an_end(line.scene, options);
   } catch (const floe::InputError& error) {
     int me = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &me);

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "floe/base/given.h"
@@ -93,7 +94,8 @@ struct Scene {
     bool may_go = false;  ///< asked for by the file, under a command line that may prevent it
   } report;
   struct {
-    std::string dir;     ///< default out/NAME
+    std::string dir;         ///< default out/NAME
+    bool overwrite = false;  ///< take a folder that would be refused
     double history = 0;  ///< 0: every load step; explicit: 200 rows
     double fields = 0;   ///< 0: first and last state only
   } output;
@@ -102,6 +104,8 @@ struct Scene {
     bool at_end = false;  ///< the scene has the section: one at the end too
     std::string restart;  ///< file to go on from; empty: from time 0
   } checkpoint;
+  /// Key and path of each file that the scene names.
+  std::vector<std::pair<std::string, std::string>> inputs;
   bool check_only = false;
   std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
   std::vector<std::string> remarks;      ///< for the first lines of a run

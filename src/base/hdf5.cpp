@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "floe/base/petsc.h"
 #include "hdf5_id.h"
 
 namespace floe {
@@ -29,7 +30,11 @@ hid_t native<std::int32_t>() {
 
 /// HDF5 keeps what the system said in errno.
 void require(bool good, const std::string& path) {
-  if (!good) throw_file_error("write", path, errno);
+  if (good) return;
+  const int why = errno;
+  hdf5_has_failed = true;
+  give_up_on_mpi();  // HDF5 closes everything when MPI ends
+  throw_file_error("write", path, why);
 }
 
 /// Copies a file. Returns what the system says (errno), 0 if all went well.
@@ -100,7 +105,7 @@ Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
 }
 
 Hdf5File::~Hdf5File() {
-  if (id_ >= 0) H5Fclose(id_);
+  if (id_ >= 0 && !hdf5_has_failed) H5Fclose(id_);
   if (!path_.empty() && path_ != final_path_) ::unlink(path_.c_str());
 }
 

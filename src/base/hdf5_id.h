@@ -6,12 +6,16 @@
 
 namespace floe {
 
+/// Whether HDF5 could not write something. It may crash where what is left of that is closed: from
+/// then on nothing is closed any more, as the run is at its end.
+inline bool hdf5_has_failed = false;  // NOLINT: state of the library
+
 /// Closes an HDF5 identifier of any kind at the end of a scope.
 class Hdf5Id {
  public:
   Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
   ~Hdf5Id() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && !hdf5_has_failed) close_(id_);
   }
   Hdf5Id(const Hdf5Id&) = delete;
   Hdf5Id& operator=(const Hdf5Id&) = delete;

@@ -49,6 +49,11 @@ void prepare_one_process() {
   setenv("OMPI_MCA_btl", "self", 0);
 }
 
+std::function<void(const std::string&)>& last_words() {
+  static std::function<void(const std::string&)> words;
+  return words;
+}
+
 [[noreturn]] void report_and_abort() {
   const char* what = "unknown error";
   const char* kind = "internal error: ";
@@ -68,9 +73,11 @@ void prepare_one_process() {
   }
   std::fprintf(stderr, "floe: %s%s\n", kind, what);
   std::fflush(stderr);
+  if (last_words()) last_words()(std::string(kind) + what);
   int running = 0;
   MPI_Initialized(&running);
-  if (running) MPI_Abort(MPI_COMM_WORLD, 1);
+  // MPI_Abort prints eight lines of its own; a process that started alone has nobody to tell.
+  if (running && has_launcher()) MPI_Abort(MPI_COMM_WORLD, 1);
   std::_Exit(1);
 }
 
@@ -93,6 +100,10 @@ void fail(int ierr, const std::source_location& where) {
   }
   throw std::runtime_error(text + " (code " + std::to_string(ierr) + ", " + where.file_name() +
                            ":" + std::to_string(where.line()) + ")");
+}
+
+void set_last_words(std::function<void(const std::string&)> words) {
+  last_words() = std::move(words);
 }
 
 Mpi::Mpi(int& argc, char**& argv) {

@@ -3,24 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "floe/base/options.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
 namespace {
-
-/// Collective: lets rank 0 do what may raise InputError, which then is raised on all ranks.
-void on_root(MPI_Comm comm, auto&& work) {
-  std::string verdict;
-  if (rank(comm) == 0) {
-    try {
-      work();
-    } catch (const InputError& error) {
-      verdict = error.what();
-    }
-  }
-  throw_verdict(verdict, comm);
-}
 
 void broadcast(std::vector<double>& values, MPI_Comm comm) {
   auto count = static_cast<std::int64_t>(values.size());
@@ -48,8 +34,8 @@ std::vector<double> Memory::read(const std::string& name, int columns) {
 void Memory::common(const std::string& name, std::vector<double>& values) {
   if (loading_) {
     values = read(group_ + name);
-  } else if (file_ != nullptr) {
-    file_->write(group_ + name, values);
+  } else {
+    write([&] { file_->write(group_ + name, values); });
   }
 }
 
@@ -74,7 +60,7 @@ void Memory::common(const std::string& name, bool& value) {
 
 void Memory::common(const std::string& name, std::string& text) {
   if (!loading_) {
-    if (file_ != nullptr) file_->write_text(group_ + name, text);
+    write([&] { file_->write_text(group_ + name, text); });
     return;
   }
   on_root(part_.comm, [&] { text = file_->read_text(group_ + name); });
@@ -89,7 +75,7 @@ void Memory::share(const std::string& name, double& value) {
   const int me = rank(part_.comm);
   if (!loading_) {
     const std::vector<double> all = gathered({&value, 1});
-    if (file_ != nullptr) file_->write(group_ + name, all);
+    write([&] { file_->write(group_ + name, all); });
     return;
   }
   const std::vector<double> all = read(group_ + name);
@@ -157,8 +143,10 @@ void Memory::save_rows(const std::string& name, const std::vector<std::int32_t>&
     sorted.push_back(static_cast<std::int32_t>(bodies[k]));
     ordered.insert(ordered.end(), &values[k * w], &values[k * w] + w);
   }
-  file_->write(group_ + name + "_bodies", sorted);
-  file_->write(group_ + name, ordered, width);
+  write([&] {
+    file_->write(group_ + name + "_bodies", sorted);
+    file_->write(group_ + name, ordered, width);
+  });
 }
 
 }  // namespace floe

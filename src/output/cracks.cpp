@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "floe/base/hdf5.h"
+#include "floe/base/on_root.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -45,10 +46,10 @@ double CrackLog::update() {
   MPI_Allreduce(&mine, &now, 1, MPI_INT64_T, MPI_SUM, part_.comm);
   if (now != written_) {
     const std::vector<Break> breaks = gather();
-    if (rank(part_.comm) == 0) {
+    on_root(part_.comm, [&] {
       find_fragments(breaks);
       write(breaks);
-    }
+    });
     written_ = now;
   }
   auto fragments = static_cast<double>(mass_.size());

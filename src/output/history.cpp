@@ -11,21 +11,28 @@
 
 namespace floe {
 
-History::History(const std::string& path, std::int64_t keep) : path_(path) {
-  if (keep > 0) {
-    std::ifstream old(path);
-    std::string line;
-    std::int64_t rows = -1;                                         // the first line is not a row
-    while (rows < keep && std::getline(old, line) && !old.eof()) {  // eof: no newline, torn
-      size_ += static_cast<std::int64_t>(line.size()) + 1;
-      if (++rows == 0) header_ = line + "\n";
-    }
-    if (rows < keep)
-      throw InputError("checkpoint: restart: '" + path + "' has " +
-                       std::to_string(std::max<std::int64_t>(rows, 0)) +
-                       " rows, the checkpoint knows of " + std::to_string(keep) +
-                       ": a run goes on in the folder where it began");
+HistoryStart history_start(const std::string& path, std::int64_t keep) {
+  HistoryStart start;
+  if (keep <= 0) return start;
+  std::ifstream old(path);
+  std::string line;
+  std::int64_t rows = -1;                                         // the first line is not a row
+  while (rows < keep && std::getline(old, line) && !old.eof()) {  // eof: no newline, torn
+    start.size += static_cast<std::int64_t>(line.size()) + 1;
+    if (++rows == 0) start.header = line + "\n";
   }
+  if (rows < keep)
+    throw InputError("checkpoint: restart: '" + path + "' has " +
+                     std::to_string(std::max<std::int64_t>(rows, 0)) +
+                     " rows, the checkpoint knows of " + std::to_string(keep) +
+                     ": a run goes on in the folder where it began");
+  return start;
+}
+
+History::History(const std::string& path, std::int64_t keep) : path_(path) {
+  const HistoryStart start = history_start(path, keep);
+  size_ = start.size;
+  header_ = start.header;
   file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0 || ::ftruncate(file_, size_) != 0 || ::lseek(file_, size_, SEEK_SET) < 0)
     throw FileError("cannot write " + path + ": " + std::strerror(errno));

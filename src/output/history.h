@@ -8,6 +8,14 @@
 
 namespace floe {
 
+/// The first rows of a file.
+struct HistoryStart {
+  std::int64_t size = 0;  ///< in bytes
+  std::string header;     ///< the first line
+};
+/// \throws InputError if the file has fewer rows than `keep`
+HistoryStart history_start(const std::string& path, std::int64_t keep);
+
 /// Lives on rank 0.
 class History {
  public:

@@ -12,6 +12,7 @@
 
 #include "floe/base/files.h"
 #include "floe/base/log.h"
+#include "floe/base/on_root.h"
 #include "floe/base/options.h"
 #include "output/cracks.h"
 #include "output/fields.h"
@@ -33,17 +34,6 @@ Point3 sum_over_ranks(const Point3& mine, MPI_Comm comm) {
   Point3 all{};
   MPI_Allreduce(mine.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, comm);
   return all;
-}
-
-void make_folder(const std::string& dir, MPI_Comm comm) {
-  std::string verdict;
-  if (rank(comm) == 0) {
-    std::error_code error;
-    std::filesystem::create_directories(dir, error);
-    if (error || !std::filesystem::is_directory(dir))
-      verdict = "output: dir: cannot make the folder '" + dir + "': " + error.message();
-  }
-  throw_verdict(verdict, comm);
 }
 
 }  // namespace
@@ -91,6 +81,7 @@ struct Output<Space>::Impl {
   Sample sample(const Accepted<Space>& accepted);
   void check_header();
   void write_row(const Sample& sample);
+  void put_row(const Sample& sample);
   void write_frame(const State<Space>& state);
 };
 
@@ -99,7 +90,6 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
                       const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
                       const OutputMemory* restart) {
   const Timed timed(Event::output);
-  make_folder(options.dir, model.part().comm);
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
     impl_->loads.push_back({placed.load.name,
@@ -124,30 +114,17 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
     impl_->memory = *restart;
     impl_->header_checked = false;
   }
-  std::string verdict;
-  if (rank(model.part().comm) == 0) {
-    try {
-      impl_->open_files(options_yaml, restart != nullptr);
-    } catch (const InputError& error) {
-      verdict = error.what();
-    }
-  }
-  throw_verdict(verdict, model.part().comm);
+  on_root(model.part().comm, [&] { impl_->open_files(options_yaml, restart != nullptr); });
 }
 
 template <class Space>
 void Output<Space>::Impl::open_files(const std::string& options_yaml, bool restarted) {
   const std::string& dir = options.dir;
-  if (!restarted) {
-    // What an earlier run left would contradict this one until its own is written.
-    for (const char* old : {"/summary.json", "/fields.xmf", "/checkpoint.h5", "/breaks.h5"})
-      std::filesystem::remove(dir + old);
-    write_lattice(lattice, dir + "/lattice.h5");
-  }
+  if (!restarted) write_lattice(lattice, dir + "/lattice.h5");
   history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
   keep_what_frames_need();
   fields.emplace(dir, lattice, restarted ? memory.frames : -1);
-  if (restarted) std::filesystem::remove(dir + "/summary.json");
+  if (restarted) std::filesystem::remove(dir + "/summary.json");  // it says how an earlier part ended
   write_whole(dir + "/options.yaml", options_yaml);
 }
 
@@ -233,6 +210,13 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
   return s;
 }
 
+void require_files(const std::string& dir, const OutputMemory& memory, MPI_Comm comm) {
+  on_root(comm, [&] {
+    (void)history_start(dir + "/history.csv", memory.rows);
+    Fields::require(dir, memory.frames);
+  });
+}
+
 /// The first line of history.csv: what the columns of a sample are.
 std::string header_of(const Sample& s) {
   constexpr const char* axes[] = {"x", "y", "z"};
@@ -264,7 +248,12 @@ void Output<Space>::Impl::check_header() {
 template <class Space>
 void Output<Space>::Impl::write_row(const Sample& s) {
   ++memory.rows;
-  if (!history) return;
+  on_root(part.comm, [&] { put_row(s); });
+}
+
+/// Rank 0.
+template <class Space>
+void Output<Space>::Impl::put_row(const Sample& s) {
   if (history->header().empty()) history->write_header(header_of(s));
   char text[32];
   std::string line;
@@ -314,7 +303,7 @@ void Output<Space>::Impl::write_frame(const State<Space>& state) {
     frame.damage = beams(std::move(mine));
   }
   ++memory.frames;
-  if (fields) fields->write(frame);
+  on_root(part.comm, [&] { fields->write(frame); });
 }
 
 template <class Space>

@@ -6,6 +6,7 @@
 
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
+#include "floe/base/signals.h"
 #include "floe/forces/buoyancy.h"
 #include "floe/forces/contact.h"
 #include "floe/forces/drag.h"
@@ -35,15 +36,19 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
     const Timed timed(Event::mesh);
     Progress progress("mesh", scene.sheet.iterations);
     const auto show = [&](int iteration, double move) {
+      stop_if_asked(comm);
       char note[48];
       std::snprintf(note, sizeof note, "largest move %.2g l", move);
       progress.update(iteration, note);
     };
     cells = scene.mesh_file.empty()
                 ? tessellate(scene.sheet, comm, show)
-                : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show);
+                : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show, report.keep);
   }
-  report = {cells.energy_ratio, cells.largest_move, cells.iterations, cells.degenerate, {}, {}};
+  report.energy_ratio = cells.energy_ratio;
+  report.largest_move = cells.largest_move;
+  report.iterations = cells.iterations;
+  report.degenerate = cells.degenerate;
   const Timed timed(Event::lattice);
   return make_sheet(cells, section);
 }

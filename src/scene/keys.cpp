@@ -226,6 +226,9 @@ constexpr std::array table{
     OptionSpec{"limit: disk", number, "1000", "GB", "> 0", "the same for the room on disk"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
+    OptionSpec{"output: overwrite", flag, "false", "", "",
+               "take a folder that holds the checkpoint of an unfinished run, or files that are "
+               "not floe's; never part of options.yaml"},
     OptionSpec{
         "output: history", number, "(auto)", "s", ">= 1e-12, <= 1e12",
         "between rows of history.csv, where steps of implicit end too; auto: every load step, "

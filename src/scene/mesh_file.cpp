@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "floe/base/files.h"
 #include "floe/base/hdf5.h"
+#include "floe/base/on_root.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"
 
@@ -68,6 +70,7 @@ Relaxed read(const SheetPlan& plan, const std::string& path) {
 }
 
 void write(const SheetPlan& plan, const std::string& path, const Relaxed& relaxed) {
+  remove_left_over(path);
   Hdf5File file = Hdf5File::create(path);
   file.write("generators",
              std::span(relaxed.generators.front().data(), 2 * relaxed.generators.size()), 2);
@@ -79,7 +82,8 @@ void write(const SheetPlan& plan, const std::string& path, const Relaxed& relaxe
 }  // namespace
 
 Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file, MPI_Comm comm,
-                                  const std::function<void(int, double)>& on_iteration) {
+                                  const std::function<void(int, double)>& on_iteration,
+                                  std::function<void()>& keep) {
   int me = 0, there = 0;
   MPI_Comm_rank(comm, &me);
   std::error_code ignored;  // what is there and cannot be read is no reason to make it anew
@@ -95,7 +99,9 @@ Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file
   } else {
     Tessellation made = tessellate(plan, comm, on_iteration);
     relaxed = {std::move(made.generators), made.iterations};
-    if (me == 0) write(plan, file, relaxed);
+    keep = [plan, file, comm, relaxed] {
+      on_root(comm, [&] { write(plan, file, relaxed); });
+    };
   }
   Tessellation cells = tessellate(plan, std::move(relaxed.generators));
   cells.iterations = relaxed.iterations;

@@ -9,7 +9,9 @@ namespace {
 
 Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
 
-Obstacle read_shape(Options& options, const std::string& name) {
+using Inputs = std::vector<std::pair<std::string, std::string>>;
+
+Obstacle read_shape(Options& options, const std::string& name, Inputs& inputs) {
   enum class Shape { halfspace, box, cone, cylinder, file };
   const auto of = [&](const char* key) {
     return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
@@ -29,6 +31,7 @@ Obstacle read_shape(Options& options, const std::string& name) {
   }
   if (shape == Shape::file) {
     const std::string file = options.text("obstacle: NAME: file", name);
+    inputs.emplace_back("obstacle: " + name + ": file", file);
     return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
   }
   const Vec3<double> base = of("base");
@@ -79,7 +82,7 @@ void read_contact(Options& options, Scene& scene) {
   contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
   contact.damping_ratio = damping_ratio_of(options.number("contact: restitution"));
   for (const std::string& name : options.names("obstacle")) {
-    Obstacle obstacle = read_shape(options, name);
+    Obstacle obstacle = read_shape(options, name, scene.inputs);
     obstacle.name = name;
     obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
     obstacle.motion = read_motion(options, name, obstacle.vertices.empty());

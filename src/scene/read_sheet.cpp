@@ -19,7 +19,10 @@ void read_sheet(Options& options, Scene& scene) {
   plan.relaxation = options.choice<Relaxation>("sheet: relaxation");
   plan.iterations = static_cast<int>(options.integer("sheet: iterations"));
   plan.tolerance = options.number("sheet: tolerance");
-  if (options.given("sheet: mesh_file")) scene.mesh_file = options.text("sheet: mesh_file");
+  if (options.given("sheet: mesh_file")) {
+    scene.mesh_file = options.text("sheet: mesh_file");
+    scene.inputs.emplace_back("sheet: mesh_file", scene.mesh_file);
+  }
   scene.thickness = options.number("sheet: thickness");
 
   const double shorter = std::min(plan.length, plan.width);
@@ -73,6 +76,7 @@ void read_lattice_source(Options& options, Scene& scene) {
     read_ice(options, scene);
   } else {
     scene.lattice_file = options.text("lattice_file");
+    scene.inputs.emplace_back("lattice_file", scene.lattice_file);
     constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
     for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);

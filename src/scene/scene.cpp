@@ -11,6 +11,7 @@
 
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
+#include "floe/output/run_folder.h"
 #include "keys.h"
 #include "reading.h"
 
@@ -148,7 +149,9 @@ Scene read_all(Options& options, const std::string& path) {
   read_report(options, scene);
   read_output(options, scene);
   scene.check_only = options.flag("check");
-  scene.options_yaml = options.yaml();  // without the restart: it repeats the whole run
+  // Without overwrite and restart: it repeats the whole run, and no more.
+  scene.options_yaml = options_heading() + options.yaml();
+  scene.output.overwrite = options.flag("output: overwrite");
   if (options.given("checkpoint: restart"))
     scene.checkpoint.restart = options.text("checkpoint: restart");
   options.refuse_unread();

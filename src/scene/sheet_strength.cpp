@@ -4,6 +4,7 @@
 
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
+#include "floe/base/signals.h"
 #include "floe/build.h"
 
 namespace floe {
@@ -68,6 +69,7 @@ double first_break(const Scene& scene, const Lattice& lattice, MPI_Comm comm, st
         overloaded =
             overload(model.part(), model.beams()->sections(accepted.state), scene.fracture);
       });
+  stop_if_asked(comm);
   if (!result.done || !(overloaded > 0))
     throw InputError("fracture: calibrate: strength: the sheet cannot be stretched along " +
                      std::string(axis == 0 ? "x: " : "y: ") + result.message);

@@ -3,27 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <csignal>
 #include <filesystem>
 #include <optional>
 
 #include "floe/base/log.h"
 #include "floe/base/options.h"
+#include "floe/base/signals.h"
 
 namespace floe {
 namespace {
 
 constexpr std::int64_t layout = 2;  // of the file; another one is refused
-
-volatile std::sig_atomic_t signal_came = 0;  // NOLINT: a handler can reach nothing else
-
-void note_signal(int) { signal_came = 1; }
-
-std::array<struct sigaction, 3>& earlier() {
-  static std::array<struct sigaction, 3> actions{};
-  return actions;
-}
-constexpr std::array<int, 3> handled{SIGTERM, SIGINT, SIGXFSZ};
 
 /// FNV-1a over 64-bit words.
 class Hash {
@@ -68,23 +58,6 @@ std::string fingerprint(const Lattice& lattice) {
   return std::to_string(lattice.bodies.size()) + " bodies, " +
          std::to_string(lattice.beams.size()) + " beams, " + text.data();
 }
-
-StopSignals::StopSignals() {
-  signal_came = 0;
-  for (std::size_t k = 0; k < handled.size(); ++k) {
-    struct sigaction action {};
-    action.sa_handler = handled[k] == SIGXFSZ ? SIG_IGN : note_signal;
-    action.sa_flags = SA_RESTART | (handled[k] == SIGINT ? static_cast<int>(SA_RESETHAND) : 0);
-    sigemptyset(&action.sa_mask);
-    sigaction(handled[k], &action, &earlier()[k]);
-  }
-}
-
-StopSignals::~StopSignals() {
-  for (std::size_t k = 0; k < handled.size(); ++k) sigaction(handled[k], &earlier()[k], nullptr);
-}
-
-bool StopSignals::came() { return signal_came != 0; }
 
 Checkpoints::Checkpoints(const CheckpointOptions& options, const Part& part)
     : options_(options), part_(part), last_look_time_(MPI_Wtime()), last_save_(last_look_time_) {
@@ -146,26 +119,20 @@ void Checkpoints::save(const std::function<void(Memory&)>& remember) {
   const Timed timed(Event::output);
   options_.prepare();
   std::optional<Hdf5File> file;
-  if (rank(part_.comm) == 0) file.emplace(Hdf5File::create(options_.file));
+  on_root(part_.comm, [&] { file.emplace(Hdf5File::create(options_.file)); });
   Memory memory(part_, file ? &*file : nullptr, false);
   head(memory);
   remember(memory);
   options_.others(memory);
-  if (file) file->close();
+  share_outcome(memory.outcome(), part_.comm);
+  on_root(part_.comm, [&] { file->close(); });
   last_save_ = MPI_Wtime();
 }
 
 void Checkpoints::load(const std::function<void(Memory&)>& remember) {
   std::optional<Hdf5File> file;
-  std::string verdict;
-  if (rank(part_.comm) == 0) {
-    try {
-      file.emplace(Hdf5File::open(options_.restart, "checkpoint: restart"));
-    } catch (const InputError& error) {
-      verdict = error.what();
-    }
-  }
-  throw_verdict(verdict, part_.comm);
+  on_root(part_.comm,
+          [&] { file.emplace(Hdf5File::open(options_.restart, "checkpoint: restart")); });
   Memory memory(part_, file ? &*file : nullptr, true);
   head(memory);
   remember(memory);

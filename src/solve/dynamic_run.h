@@ -69,13 +69,13 @@ class DynamicRun {
   /// at the run's step; says how it ended.
   RunResult solve(TS ts);
 
-  /// Does work inside a callback of PETSc, which no exception may cross: one that a user can put
-  /// right comes out of solve(). False if there was one.
+  /// Does work inside a callback of PETSc, which no exception may cross: a verdict comes out of
+  /// solve(). False if there was one.
   template <class Work>
   bool guarded(Work&& work) {
     try {
       return work();
-    } catch (const InputError&) {
+    } catch (const Verdict&) {
       error_ = std::current_exception();
       return false;
     }

@@ -8,6 +8,7 @@
 #include "floe/base/audit.h"
 #include "floe/base/log.h"
 #include "floe/base/ranks.h"
+#include "floe/base/signals.h"
 #include "solve/newton.h"
 #include "solve/text.h"
 
@@ -215,6 +216,11 @@ PetscErrorCode Equilibrium<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   PetscReal atol = 0, rtol = 0;
   check(SNESGetTolerances(snes, &atol, &rtol, nullptr, nullptr, nullptr));
   *reason = SNES_CONVERGED_ITERATING;
+  me.stopped_ = StopSignals::came(me.part_.comm);
+  if (me.stopped_) {
+    *reason = SNES_DIVERGED_INNER;
+    return 0;
+  }
   if (!std::isfinite(norm)) {
     *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
     return 0;
@@ -352,6 +358,8 @@ template <class Space>
 bool Equilibrium<Space>::solve(double time, double overload_limit) {
   const Saved before = save();
   why_.clear();
+  stopped_ = StopSignals::came(part_.comm);
+  if (stopped_) return false;
   collapsed_ = false;
   if (!balance(time) || (model_.fracture() != nullptr && !let_break(time, overload_limit))) {
     restore(before);
@@ -381,7 +389,7 @@ bool Equilibrium<Space>::let_break(double time, double overload_limit) {
       rounds = done == Advance::broke ? 0 : rounds + 1;
       if (rounds <= most_rounds && balance(time)) continue;
       if (why_.empty()) why_ = "damage does not come to rest";
-      collapsed_ = true;
+      collapsed_ = !stopped_;
       fracture.retreat();
       return false;
     }
@@ -403,6 +411,10 @@ bool Equilibrium<Space>::balance(double time) {
   check(SNESGetConvergedReason(snes_, &reason));
   check(SNESGetIterationNumber(snes_, &taken));
   iterations_ += taken;
+  if (stopped_) {
+    why_ = "stopped on request";
+    return false;
+  }
   if (reason < 0) {
     why_ = reason == SNES_DIVERGED_DTOL
                ? "nothing holds the bodies within 100 times the lattice's extent (does it sink?)"

@@ -50,6 +50,8 @@ class Equilibrium {
   const std::string& why() const { return why_; }
   /// Whether the last failure came after beams had broken: the way on is dynamic.
   bool collapsed() const { return collapsed_; }
+  /// Whether the last failure was a request to stop.
+  bool stopped() const { return stopped_; }
   /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load
   /// pushes a motion that nothing holds.
   double pin_reaction() const;
@@ -135,7 +137,7 @@ class Equilibrium {
   bool constant_ = false;  ///< the assembled tangent is that of any state
   std::function<void(std::int64_t)> on_iteration_ = [](std::int64_t) {};
   std::string why_;
-  bool collapsed_ = false;
+  bool collapsed_ = false, stopped_ = false;
 };
 
 }  // namespace floe

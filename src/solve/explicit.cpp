@@ -80,7 +80,6 @@ template <class Space>
 RunResult run_leapfrog(Model<Space>& model, const ExplicitOptions& options,
                        const Observer<Space>& observer) {
   register_leapfrog();
-  const StopSignals signals;
   LeapfrogRun<Space> run(model, options, observer);
   const Part& part = model.part();
   Handle<Vec> solution;

@@ -397,7 +397,6 @@ RunResult run_implicit(Model<Spatial>& model, const DynamicOptions& options,
                        "(integrator: explicit steps it)");
   }
   check_implicit_options();
-  const StopSignals signals;
   return ImplicitRun<Spatial>(model, options, observer).run();
 }
 

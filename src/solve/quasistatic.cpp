@@ -63,7 +63,14 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
     progress.update(
         now, "step " + std::to_string(result.steps + 1) + ", iteration " + std::to_string(it));
   });
+  const auto stop = [&](double at) {
+    result.stopped = true;
+    result.message = "stopped on request at time " + text(at) + ", load step " +
+                     std::to_string(result.steps) + "; a static run keeps no checkpoint";
+    return result;
+  };
   if (!equilibrium.solve(0.0)) {
+    if (equilibrium.stopped()) return stop(0);
     result.message = "no equilibrium at time 0: " + equilibrium.why() +
                      "; a ramp on loads and motions would let them come in steps";
     return result;
@@ -80,6 +87,7 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
     const double overload_limit =
         divisible ? 1 + overload_tolerance : std::numeric_limits<double>::infinity();
     if (!equilibrium.solve(next, overload_limit)) {
+      if (equilibrium.stopped()) return stop(now);
       dt = 0.5 * step;
       if (equilibrium.collapsed()) {
         result.message = "dynamic failure at load factor " + text(next / time.end) +

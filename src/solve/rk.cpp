@@ -249,7 +249,6 @@ RunResult run_rk(Model<Spatial>& model, const ExplicitOptions& options,
                        "': it remembers what happened, and stages of a step have not happened "
                        "(integrator: explicit steps it with leapfrog)");
   }
-  const StopSignals signals;
   return RkRun(model, options, observer).run();
 }
 

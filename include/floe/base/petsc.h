@@ -5,6 +5,7 @@
 #include <petsc.h>
 
 #include <array>
+#include <functional>
 #include <source_location>
 #include <stdexcept>
 #include <string>
@@ -14,16 +15,28 @@
 
 namespace floe {
 
-/// What the user can put right: a scene, an option, a file. The only exception that main catches.
-/// Always raised alike on all ranks, before any collective call that some rank would miss.
-/// The text is one line that names the key, the value and what is allowed.
-class InputError : public std::runtime_error {
+/// What ends a run with one line and an exit code. Always raised alike on all ranks, before any
+/// collective call that some rank would miss. Nothing else is caught by main.
+class Verdict : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A file of the results cannot be written (a full disk, no permission): ends the run on all ranks
-/// with one line and exit code 1. May be raised on one rank alone.
+/// What the user can put right: a scene, an option, a file (exit code 2). The text is one line that
+/// names the key, the value and what is allowed.
+class InputError : public Verdict {
+ public:
+  using Verdict::Verdict;
+};
+
+/// A run cannot go on (exit code 1).
+class RunFailed : public Verdict {
+ public:
+  using Verdict::Verdict;
+};
+
+/// A file of the results cannot be written (a full disk, no permission). May be raised on one rank
+/// alone; on_root() makes a RunFailed of it.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -83,7 +96,12 @@ class Handle {
   T object_ = nullptr;
 };
 
-/// MPI from construction to destruction; installs the terminate handler (print, MPI_Abort).
+/// What a rank does last when it ends on an error that nobody catches, beside printing it: told
+/// the line that was printed. Must not fail, nor wait for other ranks. Empty: nothing.
+void set_last_words(std::function<void(const std::string&)> last_words);
+
+/// MPI from construction to destruction; installs the terminate handler (print, last words,
+/// MPI_Abort).
 class Mpi {
  public:
   Mpi(int& argc, char**& argv);

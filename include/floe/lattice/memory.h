@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "floe/base/hdf5.h"
+#include "floe/base/on_root.h"
 #include "floe/lattice/partition.h"
 
 namespace floe {
@@ -23,6 +24,9 @@ class Memory {
       : part_(part), file_(file), loading_(loading) {}
 
   bool loading() const { return loading_; }
+  /// How writing to the file went, on rank 0: what cannot be written ends nothing before all ranks
+  /// know of it.
+  const Outcome& outcome() const { return outcome_; }
   /// Names that follow are below this group.
   void enter(const std::string& group) { group_ = group.empty() ? "" : group + "/"; }
 
@@ -61,7 +65,14 @@ class Memory {
   [[noreturn]] void refuse(const std::string& why) const;
 
   const Part& part_;
+  /// Lets rank 0 write, unless that has failed before.
+  template <class Work>
+  void write(Work&& work) {
+    if (file_ != nullptr && outcome_.kind == Outcome::good) outcome_ = outcome_of(work);
+  }
+
   Hdf5File* file_;
+  Outcome outcome_;
   bool loading_;
   std::string group_;
 };

@@ -48,17 +48,21 @@ struct OutputMemory {
   void remember(Memory& memory);
 };
 
+/// Looks whether a folder holds the files that a restart goes on with; changes nothing. Collective.
+/// \throws InputError
+void require_files(const std::string& dir, const OutputMemory& memory, MPI_Comm comm);
+
 /// Takes every accepted state; writes on rank 0. Files of planar runs are those of spatial ones,
 /// with zeros. Collective throughout.
 template <class Space>
 class Output {
  public:
-  /// Makes the folder and writes lattice.h5 and options.yaml.
+  /// Writes lattice.h5 and options.yaml into the folder, which is there.
   /// \param lattice  the whole lattice; rank 0 keeps a reference for the fields' geometry
   /// \param restart  what a checkpoint says, or null: the files of that run are cut back to it and
   /// go on
   /// \param lattice  taken over; rank 0 keeps what frames are made of
-  /// \throws InputError if the folder cannot be made, or does not hold the files to go on with
+  /// \throws InputError if the folder does not hold the files to go on with
   Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
          const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
          const OutputMemory* restart = nullptr);

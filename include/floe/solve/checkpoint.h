@@ -27,18 +27,6 @@ struct CheckpointOptions {
 /// A number that two lattices share only if they are the same, to the last bit.
 std::string fingerprint(const Lattice& lattice);
 
-/// SIGTERM and SIGINT ask for a stop while this lives (a second SIGINT ends the process), and a
-/// file size limit is an error of the write instead of a signal.
-class StopSignals {
- public:
-  StopSignals();
-  ~StopSignals();
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-  /// Whether one came on this rank.
-  static bool came();
-};
-
 /// Writes checkpoints and says when. Collective throughout.
 class Checkpoints {
  public:
