@@ -16,12 +16,16 @@
 namespace floe {
 namespace {
 
+/// Whether HDF5 could not write something. It may crash where what is left of that is closed: from
+/// then on nothing is closed any more, as the run is at its end.
+bool has_failed = false;  // NOLINT: state of the library
+
 /// Closes an HDF5 identifier of any kind at the end of a scope.
 class Id {
  public:
   Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
   ~Id() {
-    if (id_ >= 0) close_(id_);
+    if (id_ >= 0 && !has_failed) close_(id_);
   }
   Id(const Id&) = delete;
   Id& operator=(const Id&) = delete;
@@ -35,6 +39,8 @@ class Id {
 void require(bool good, const std::string& what, const std::string& path) {
   if (good) return;
   const int why = errno;  // HDF5 keeps what the system said
+  has_failed = true;
+  give_up_on_mpi();  // HDF5 closes everything when MPI ends
   std::string named = path;
   if (path.ends_with(temporary_ending)) {
     std::remove(path.c_str());
@@ -59,7 +65,13 @@ hid_t native<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
 
-void quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// Before the first call of HDF5: it prints nothing, and leaves files that it could not write alone
+/// when the process ends.
+void quiet() {
+  static const bool once = H5dont_atexit() >= 0;
+  (void)once;
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 }  // namespace
 
@@ -121,8 +133,8 @@ Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
 
 Hdf5File::~Hdf5File() {
   if (id_ < 0) return;
-  if (staged_ >= 0) H5Gclose(staged_);
-  H5Fclose(id_);
+  if (staged_ >= 0 && !has_failed) H5Gclose(staged_);
+  if (!has_failed) H5Fclose(id_);
   if (path_ != final_path_) std::remove(path_.c_str());
 }
 
