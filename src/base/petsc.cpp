@@ -54,6 +54,20 @@ std::function<void(const std::string&)>& last_words() {
   return words;
 }
 
+bool& gave_up() {
+  static bool yes = false;
+  return yes;
+}
+
+/// MPI_Abort prints eight lines of its own; a process that started alone has nobody to tell.
+[[noreturn]] void end_at_once() {
+  std::fflush(nullptr);
+  int running = 0;
+  MPI_Initialized(&running);
+  if (running && has_launcher()) MPI_Abort(MPI_COMM_WORLD, 1);
+  std::_Exit(1);
+}
+
 [[noreturn]] void report_and_abort() {
   const char* what = "unknown error";
   const char* kind = "internal error: ";
@@ -74,11 +88,7 @@ std::function<void(const std::string&)>& last_words() {
   std::fprintf(stderr, "floe: %s%s\n", kind, what);
   std::fflush(stderr);
   if (last_words()) last_words()(std::string(kind) + what);
-  int running = 0;
-  MPI_Initialized(&running);
-  // MPI_Abort prints eight lines of its own; a process that started alone has nobody to tell.
-  if (running && has_launcher()) MPI_Abort(MPI_COMM_WORLD, 1);
-  std::_Exit(1);
+  end_at_once();
 }
 
 }  // namespace
@@ -112,7 +122,12 @@ Mpi::Mpi(int& argc, char**& argv) {
   MPI_Init(&argc, &argv);
 }
 
-Mpi::~Mpi() { MPI_Finalize(); }
+void give_up_on_mpi() { gave_up() = true; }
+
+Mpi::~Mpi() {
+  if (gave_up()) end_at_once();
+  MPI_Finalize();
+}
 
 namespace {
 

@@ -100,6 +100,10 @@ class Handle {
 /// the line that was printed. Must not fail, nor wait for other ranks. Empty: nothing.
 void set_last_words(std::function<void(const std::string&)> last_words);
 
+/// MPI cannot end in order any more: a library that it would call has failed. The process then ends
+/// where Mpi would, with exit code 1.
+void give_up_on_mpi();
+
 /// MPI from construction to destruction; installs the terminate handler (print, last words,
 /// MPI_Abort).
 class Mpi {
