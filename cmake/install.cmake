@@ -8,6 +8,10 @@ set_target_properties(floe PROPERTIES INSTALL_RPATH "$ORIGIN/${lib_from_bin}")
 install(TARGETS floe RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(TARGETS libfloe floe_usage EXPORT floe
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program NAMELINK_COMPONENT development)
+foreach(level IN LISTS levels)
+  install(TARGETS libfloe_${level}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} COMPONENT program NAMELINK_SKIP)
+endforeach()
 
 # -- its tools, scenes, manual and documentation --------------------------------------------------
 # Of tools/ what floe runs by name, and their modules; the rest is for the source tree.

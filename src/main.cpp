@@ -16,6 +16,7 @@
 #include "floe/base/petsc.h"
 #include "floe/base/scene_text.h"
 #include "floe/base/signals.h"
+#include "floe/base/version.h"
 #include "floe/build.h"
 #include "floe/lattice/folded.h"
 #include "floe/output/output.h"
@@ -185,6 +186,10 @@ int run(const std::string& path, const floe::UserOptions& options,
   for (const std::string& remark : scene.remarks) say(remark + "\n");
   const std::string& why = start.skips.needs_space;
   say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
+  const std::string processors = built_for(PETSC_COMM_WORLD);
+  const bool mixed = processors != built_for();
+  say("library: built for " + processors +
+      (mixed ? "; results differ by rounding from those of one level\n" : "\n"));
 
   if (start.mesh.strength) say("strength: " + text_of(*start.mesh.strength) + "\n");
 

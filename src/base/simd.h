@@ -109,6 +109,7 @@ inline Row load_row(const double* p) {
 }
 inline void store_row(double* p, const Row& row) { __builtin_memcpy(p, &row, sizeof row); }
 inline Row operator+(const Row& a, const Row& b) { return {a.low + b.low, a.high + b.high}; }
+inline Row operator-(const Row& a, const Row& b) { return {a.low - b.low, a.high - b.high}; }
 inline Row operator*(const Row& a, const Row& b) { return {a.low * b.low, a.high * b.high}; }
 inline Row operator*(double s, const Row& a) { return {s * a.low, s * a.high}; }
 inline Row pair_sums(const Row& r) {
@@ -120,8 +121,13 @@ inline Row larger(const Row& a, const Row& b) {
 }
 #endif
 
-/// Adds four doubles to memory.
+/// Adds four doubles to memory, takes them away; takes two away.
 inline void add_row(double* p, const Row& row) { store_row(p, load_row(p) + row); }
+inline void subtract_row(double* p, const Row& row) { store_row(p, load_row(p) - row); }
+inline void subtract_pair(double* p, detail::Two pair) {
+  pair = detail::load_vector<detail::Two>(p) - pair;
+  __builtin_memcpy(p, &pair, sizeof pair);
+}
 
 /// Four consecutive doubles of each of `lanes` records, one record per lane.
 /// \param at  where lane k's four doubles stand
@@ -157,6 +163,46 @@ std::array<Lanes, 4> gather_four(At at) {
   const Row a = load_row(at(0)), b = load_row(at(1));
   return {std::bit_cast<Lanes>(evens(a.low, b.low)), std::bit_cast<Lanes>(odds(a.low, b.low)),
           std::bit_cast<Lanes>(evens(a.high, b.high)), std::bit_cast<Lanes>(odds(a.high, b.high))};
+#endif
+}
+
+/// Numbers of a lane side by side, as the way back to records begins: (a, b) of lane k is pair k /
+/// 2 of the even lanes' register, or of the odd ones'.
+struct Pairs {
+  Lanes even, odd;
+  Pairs(const Lanes& a, const Lanes& b)
+      : even(std::bit_cast<Lanes>(detail::evens(vector(a), vector(b)))),
+        odd(std::bit_cast<Lanes>(detail::odds(vector(a), vector(b)))) {}
+
+#if defined(__AVX512F__)
+  using Vector = detail::Eight;
+#elif defined(__AVX__)
+  using Vector = detail::Four;
+#else
+  using Vector = detail::Two;
+#endif
+  static Vector vector(const Lanes& x) { return std::bit_cast<Vector>(x); }
+  template <std::size_t lane>
+  Vector of() const {
+    return vector(lane % 2 == 0 ? even : odd);
+  }
+};
+
+/// The pair of a lane.
+template <std::size_t lane>
+detail::Two pair_of(const Pairs& p) {
+  constexpr int k = lane / 2 * 2;
+  return __builtin_shufflevector(p.of<lane>(), p.of<lane>(), k, k + 1);
+}
+
+/// The two pairs of a lane in a row.
+template <std::size_t lane>
+Row row_of(const Pairs& first, const Pairs& second) {
+#if defined(__AVX__)
+  constexpr int k = lane / 2 * 2, n = lanes;
+  return __builtin_shufflevector(first.of<lane>(), second.of<lane>(), k, k + 1, n + k, n + k + 1);
+#else
+  return {first.of<lane>(), second.of<lane>()};
 #endif
 }
 

@@ -5,7 +5,9 @@
 #include <yaml.h>
 
 #include <array>
+#include <map>
 #include <string_view>
+#include <vector>
 
 namespace floe {
 namespace {
@@ -36,13 +38,63 @@ std::string hdf5() {
   return "HDF5 " + numbers(major, minor, patch);
 }
 
+/// By what the compiler may use (the levels of the x86-64 psABI).
+constexpr std::string_view level() {
+#if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && \
+    defined(__AVX512DQ__) && defined(__AVX512VL__)
+  return "x86-64-v4";
+#elif defined(__AVX2__) && defined(__BMI__) && defined(__BMI2__) && defined(__F16C__) && \
+    defined(__FMA__) && defined(__LZCNT__) && defined(__MOVBE__)
+  return "x86-64-v3";
+#elif defined(__SSE4_2__) && defined(__POPCNT__)
+  return "x86-64-v2";
+#elif defined(__x86_64__)
+  return "x86-64";
+#elif defined(__aarch64__)
+  return "aarch64";
+#else
+  return "this architecture";
+#endif
+}
+
 }  // namespace
 
 std::string version() { return FLOE_VERSION; }
 
+std::string built_for() {
+  constexpr std::string_view march = FLOE_MARCH;
+  std::string text(level());
+  if (!march.empty() && march != level()) text += " (-march=" + std::string(march) + ")";
+  return text;
+}
+
+std::string built_for(MPI_Comm comm) {
+  constexpr std::size_t longest = 64;
+  std::string mine = built_for();
+  mine.resize(longest, ' ');
+  std::string first = mine;
+  MPI_Bcast(first.data(), longest, MPI_CHAR, 0, comm);
+  int alike = first == mine ? 1 : 0, ranks = 0;
+  MPI_Allreduce(MPI_IN_PLACE, &alike, 1, MPI_INT, MPI_MIN, comm);
+  if (alike == 1) return built_for();
+  MPI_Comm_size(comm, &ranks);
+  std::vector<char> all(static_cast<std::size_t>(ranks) * longest);
+  MPI_Allgather(mine.data(), longest, MPI_CHAR, all.data(), longest, MPI_CHAR, comm);
+  std::map<std::string, int> counts;
+  for (auto from = all.begin(); from != all.end(); from += longest) {
+    const std::string one(from, from + longest);
+    ++counts[one.substr(0, one.find_last_not_of(' ') + 1)];
+  }
+  std::string text;
+  for (const auto& [name, count] : counts)
+    text += (text.empty() ? "" : ", ") + name + " on " + std::to_string(count) +
+            (count == 1 ? " rank" : " ranks");
+  return text;
+}
+
 std::string version_text() {
-  return "floe " + version() + "\n" + petsc() + "\n" + mpi() + "\n" + hdf5() + "\nlibyaml " +
-         yaml_get_version_string() + "\n";
+  return "floe " + version() + "\nbuilt for " + built_for() + "\n" + petsc() + "\n" + mpi() + "\n" +
+         hdf5() + "\nlibyaml " + yaml_get_version_string() + "\n";
 }
 
 }  // namespace floe

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "base/simd.h"
@@ -105,24 +106,24 @@ LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& 
   return b;
 }
 
-/// Adds a block's shares to its bodies' wrenches, in the order of the lanes.
+/// Adds a block's shares to its bodies' wrenches, in the order of the lanes. Of a wrench's eight
+/// doubles the last two are padding and stay as they are.
 inline void scatter(const std::array<std::int32_t, lanes>& i,
                     const std::array<std::int32_t, lanes>& j, const BeamGradient<Lanes>& g,
                     double* wrenches) {
-  const Lanes zero(0.0);
-  std::array<Row, lanes> fi, mi, fj, mj;
-  scatter_four({g.force.x, g.force.y, g.force.z, -g.moment_i.x}, fi);
-  scatter_four({-g.moment_i.y, -g.moment_i.z, zero, zero}, mi);
-  scatter_four({-g.force.x, -g.force.y, -g.force.z, -g.moment_j.x}, fj);
-  scatter_four({-g.moment_j.y, -g.moment_j.z, zero, zero}, mj);
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
+  const Pairs force(g.force.x, g.force.y), force_i(g.force.z, -g.moment_i.x),
+      force_j(g.force.z, g.moment_j.x), moment_i(g.moment_i.y, g.moment_i.z),
+      moment_j(g.moment_j.y, g.moment_j.z);
+  const auto add = [&]<std::size_t lane>() {
     double* wi = wrenches + static_cast<std::size_t>(i[lane]) * Spatial::wrench;
-    add_row(wi, fi[lane]);
-    add_row(wi + 4, mi[lane]);
+    add_row(wi, row_of<lane>(force, force_i));
+    subtract_pair(wi + 4, pair_of<lane>(moment_i));
     double* wj = wrenches + static_cast<std::size_t>(j[lane]) * Spatial::wrench;
-    add_row(wj, fj[lane]);
-    add_row(wj + 4, mj[lane]);
-  }
+    subtract_row(wj, row_of<lane>(force, force_j));
+    subtract_pair(wj + 4, pair_of<lane>(moment_j));
+  };
+  [&]<std::size_t... lane>(std::index_sequence<lane...>) { (add.template operator()<lane>(), ...); }
+  (std::make_index_sequence<lanes>{});
 }
 
 /// Of stresses on strains at their rates.

@@ -23,9 +23,9 @@
 #include <array>
 #include <cmath>
 
-#include "floe/base/rotation.h"
 #include "base/simd.h"
-#include "floe/forces/beam.h"
+#include "floe/base/rotation.h"
+#include "floe/forces/beam_types.h"
 
 namespace floe {
 
@@ -97,24 +97,22 @@ struct HalfAngle {
 };
 template <class T>
 HalfAngle<T> half_angle_series(const T& s2) {
+  // By halves (Estrin's scheme): a block waits for these, and Horner's would be twice as long.
+  const T x2 = T(s2 * s2), x4 = T(x2 * x2);
+  const auto sum = [&](double c0, double c1, double c2, double c3, double c4, double c5, double c6,
+                       double c7) {
+    const T low = T(T(c1 * s2) + c0) + T(x2 * T(T(c3 * s2) + c2)),
+            high = T(T(c5 * s2) + c4) + T(x2 * T(T(c7 * s2) + c6));
+    return T(low + T(x4 * high));
+  };
   // asin(s)/s = sum c_k s^2k, c_k = (2k)!/(4^k k!^2 (2k+1)) (Abramowitz & Stegun 4.4.40)
-  T sum = T(6435.0 / 557056.0) * s2 + T(143.0 / 10240.0);
-  sum = T(sum * s2) + 231.0 / 13312.0;
-  sum = T(sum * s2) + 63.0 / 2816.0;
-  sum = T(sum * s2) + 35.0 / 1152.0;
-  sum = T(sum * s2) + 5.0 / 112.0;
-  sum = T(sum * s2) + 3.0 / 40.0;
-  sum = T(sum * s2) + 1.0 / 6.0;
+  const T arc = sum(1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0, 35.0 / 1152.0, 63.0 / 2816.0,
+                    231.0 / 13312.0, 143.0 / 10240.0, 6435.0 / 557056.0);
   // 1/sqrt(2 (1 + sqrt(1 - s2))) = 1/2 C(s2/4)^(1/2), C the Catalan numbers' function: terms
   // binomial(2k + 1/2, k)/(4k + 1) (s2/4)^k/2 (Graham, Knuth & Patashnik, (5.60))
-  T inverse = T(334305.0 / 67108864.0) * s2 + T(52003.0 / 8388608.0);
-  inverse = T(inverse * s2) + 4199.0 / 524288.0;
-  inverse = T(inverse * s2) + 715.0 / 65536.0;
-  inverse = T(inverse * s2) + 33.0 / 2048.0;
-  inverse = T(inverse * s2) + 7.0 / 256.0;
-  inverse = T(inverse * s2) + 1.0 / 16.0;
-  inverse = T(inverse * s2) + 0.5;
-  return {T(-sum), inverse};
+  const T inverse = sum(0.5, 1.0 / 16.0, 7.0 / 256.0, 33.0 / 2048.0, 715.0 / 65536.0,
+                        4199.0 / 524288.0, 52003.0 / 8388608.0, 334305.0 / 67108864.0);
+  return {T(-arc), inverse};
 }
 inline constexpr double series_limit = 0.01;
 /// \param w  cosine of half the relative rotation, >= 0

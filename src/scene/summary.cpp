@@ -6,6 +6,7 @@
 
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
+#include "floe/base/version.h"
 #include "floe/build.h"
 #include "floe/forces/moduli.h"
 
@@ -264,7 +265,8 @@ Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& mo
   double memory = 0;
   MPI_Allreduce(&mine, &memory, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
   json["peak_memory_mb"] = memory;
-  json["version"] = FLOE_VERSION;
+  json["version"] = version();
+  json["built_for"] = built_for(model.part().comm);
   text += line(
       "wall %.2f s (mesh %.2f, tangent %.2f, solve %.2f, output %.2f), %.0f MB on %d rank%s", wall,
       wall_seconds(Event::mesh), wall_seconds(Event::tangent), wall_seconds(Event::solve),

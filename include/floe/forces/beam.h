@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "floe/forces/beam_types.h"
 #include "floe/forces/force.h"
 
 namespace floe {
@@ -16,11 +17,6 @@ enum class Shear {
   one_point,  ///< kappa G A / l: linear Timoshenko element with one-point quadrature; the paper's
   exact,      ///< 12 E I / (l^3 (1 + Phi)): locking-free Timoshenko
   none,       ///< 12 E I / l^3: Euler-Bernoulli
-};
-
-enum class Kinematics {
-  corotational,  ///< any rotation (Crisfield 1990, 1997)
-  linear,        ///< small displacements and rotations: strains are linear in the unknowns
 };
 
 enum class DampingModes {
@@ -35,12 +31,6 @@ struct BeamOptions {
   DampingModes damping_modes = DampingModes::all;
 };
 
-/// The six stiffnesses of a beam: axial, shear (from I_z, from I_y), torsion, bending about axes 2
-/// and 3.
-struct BeamStiffness {
-  double kn, ksz, ksy;  ///< [N/m]
-  double kt, kby, kbz;  ///< [N m]
-};
 /// Stiffness of beam m of `beams` (model.md section 2).
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear);
 
