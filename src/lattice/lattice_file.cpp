@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
+#include <utility>
 
 #include "floe/base/hdf5.h"
 #include "floe/base/petsc.h"
@@ -117,6 +119,23 @@ void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
   }
 }
 
+/// A beam given twice would be twice as stiff in silence.
+void check_given_once(const Reader& in, const Beams& beams) {
+  std::vector<std::size_t> order(beams.bodies.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(beams.bodies[a], a) < std::pair(beams.bodies[b], b);
+  });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const std::size_t first = order[k - 1], second = order[k];
+    if (beams.bodies[first] != beams.bodies[second]) continue;
+    in.refuse("/beams/bodies", "row " + std::to_string(second) + " joins bodies " +
+                                   std::to_string(beams.bodies[second][0]) + " and " +
+                                   std::to_string(beams.bodies[second][1]) + ", as row " +
+                                   std::to_string(first) + " does: two bodies have one beam");
+  }
+}
+
 Beams read_beams(const Reader& in, const Bodies& bodies) {
   Beams beams;
   const auto n = static_cast<std::size_t>(bodies.size());
@@ -131,6 +150,7 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
       in.refuse("/beams/bodies", "row " + std::to_string(k) + " must have the smaller index first");
     beams.bodies.push_back({pairs[2 * k], pairs[2 * k + 1]});
   }
+  check_given_once(in, beams);
   beams.area = in.scalars("/beams/area", m);
   beams.inertia_y = in.scalars("/beams/inertia_y", m);
   beams.inertia_z = in.scalars("/beams/inertia_z", m);
