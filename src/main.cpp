@@ -184,6 +184,7 @@ int run(const std::string& path, const floe::UserOptions& options,
   if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
   start.skips = skips_of(scene, start.lattice);
   for (const std::string& remark : scene.remarks) say(remark + "\n");
+  for (const std::string& warning : scene.warnings) say("floe: warning: " + warning + "\n", stderr);
   const std::string& why = start.skips.needs_space;
   say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
   const std::string processors = built_for(PETSC_COMM_WORLD);

@@ -109,6 +109,7 @@ struct Scene {
   bool check_only = false;
   std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
   std::vector<std::string> remarks;      ///< for the first lines of a run
+  std::vector<std::string> warnings;  ///< numbers that look as if units were mistaken
   std::set<std::string> unused_options;  ///< PETSc's that no error says if nothing asks for them
 };
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "floe/base/hdf5.h"
 #include "floe/base/petsc.h"

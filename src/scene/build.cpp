@@ -11,7 +11,9 @@
 #include "floe/forces/contact.h"
 #include "floe/forces/drag.h"
 #include "floe/forces/gravity.h"
+#include "lattice_command.h"
 #include "mesh_file.h"
+#include "reading.h"
 
 namespace floe {
 namespace {
@@ -23,7 +25,7 @@ double mid_plane(const Scene& scene) {
   if (!scene.forces.buoyancy) return 0;
   const double relative_density = scene.ice.density / scene.water_density;
   if (relative_density >= 1)
-    throw InputError("ice: density: " + std::to_string(scene.ice.density) +
+    throw InputError("ice: density: " + text_of(scene.ice.density) +
                      " must be < water: density, or the sheet sinks");
   return scene.thickness * (0.5 - relative_density);
 }
@@ -75,6 +77,7 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
 }  // namespace
 
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
+  if (!scene.has_sheet) require_lattice_file(scene, comm);
   Lattice lattice =
       scene.has_sheet ? mesh_sheet(scene, comm, report) : read_lattice(scene.lattice_file);
   const Timed timed(Event::lattice);
@@ -104,10 +107,17 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
 
 void set_initial(const Scene& scene, Lattice& lattice) {
   Bodies& bodies = lattice.bodies;
+  std::vector<const Initial*> of_body(scene.initials.empty() ? 0 : bodies.position.size());
   for (const Initial& initial : scene.initials) {
     bodies.velocity.resize(bodies.position.size(), Point3{});
     bodies.angular_velocity.resize(bodies.position.size(), Point3{});
     for (const std::int32_t body : lattice.set(initial.set, "initial: " + initial.name + ": set")) {
+      const Initial*& other = of_body[static_cast<std::size_t>(body)];
+      if (other != nullptr)
+        throw InputError("initial: " + initial.name + ": set: body " + std::to_string(body) +
+                         " has its motion from 'initial: " + other->name +
+                         "' already; sets of two sections must not overlap");
+      other = &initial;
       bodies.velocity[static_cast<std::size_t>(body)] = initial.velocity;
       bodies.angular_velocity[static_cast<std::size_t>(body)] = initial.angular_velocity;
     }
@@ -150,6 +160,31 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
   return run_explicit(model, options, observer);
 }
 
+namespace {
+
+/// A body carries what acts at a point on it or on its beams, not far away: where a lattice has no
+/// outline, a point is refused that is farther than any body of its inertia and beams may reach.
+void check_point(const PlacedLoad& placed, const Lattice& lattice) {
+  const auto body = static_cast<std::size_t>(placed.bodies.front());
+  const Bodies& bodies = lattice.bodies;
+  const auto& inertia = bodies.inertia[body];
+  constexpr double widest = 4;  // farthest point over radius of gyration: a rod has 1.7, a cone 2.5
+  double reach =
+      widest * std::sqrt(*std::max_element(inertia.begin(), inertia.end()) / bodies.mass[body]);
+  for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
+    const auto& [a, b] = lattice.beams.bodies[m];
+    if (a == placed.bodies.front() || b == placed.bodies.front())
+      reach = std::max(reach, lattice.beams.length[m]);
+  }
+  const double distance = std::hypot(placed.arm[0], placed.arm[1]);
+  if (distance > reach)
+    throw InputError("load: " + placed.load.name + ": point: lies " + text_of(distance) +
+                     " m from the nearest body (" + std::to_string(placed.bodies.front()) +
+                     "), which reaches no farther than " + text_of(reach) + " m");
+}
+
+}  // namespace
+
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) {
   std::vector<PlacedLoad> placed;
   for (const Load& load : scene.loads) {
@@ -158,6 +193,7 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
                          2 * std::abs((*load.point)[1]) > scene.sheet.width);
     if (beside) throw InputError("load: " + load.name + ": point: lies outside the sheet");
     placed.push_back(place(load, lattice));
+    if (load.point && !scene.has_sheet) check_point(placed.back(), lattice);
   }
   return placed;
 }

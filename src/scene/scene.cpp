@@ -14,6 +14,7 @@
 #include "floe/output/run_folder.h"
 #include "keys.h"
 #include "reading.h"
+#include "units.h"
 
 namespace floe {
 
@@ -106,11 +107,18 @@ void read_output(Options& options, Scene& scene) {
   throw_verdict(rank() == 0 ? output_problem(scene.output.dir) : "", PETSC_COMM_WORLD);
 }
 
+/// The water's density may have been meant in another unit.
+std::string density_question(const Scene& scene) {
+  const std::string question = unit_question(scene.water_density, "kg/m^3", 500, 2000);
+  return question.empty() ? "" : "; water: density:" + question;
+}
+
 /// A floating sheet needs a draft within its thickness.
 void check_floats(const Scene& scene) {
   if (scene.has_sheet && scene.forces.buoyancy && scene.ice.density >= scene.water_density)
     throw InputError("ice: density: " + text_of(scene.ice.density) + " must be < water: density " +
-                     text_of(scene.water_density) + " [kg/m^3], or the sheet sinks");
+                     text_of(scene.water_density) + " [kg/m^3], or the sheet sinks" +
+                     density_question(scene));
 }
 
 /// Solver options that nothing in this run could ask for.
@@ -195,6 +203,7 @@ Scene read_scene(const std::string& path, const UserOptions& user) {
   Scene scene = read_all(options, path);
   judge_idle_keys(options, path, user, scene);
   scene.unused_options = options.may_stay_unused();
+  scene.warnings = unusual_numbers(scene);
   if (std::string remark = options.environment_remark(); !remark.empty())
     scene.remarks.insert(scene.remarks.begin(), remark);
   return scene;
