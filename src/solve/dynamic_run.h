@@ -149,6 +149,7 @@ class DynamicRun {
   bool finish();
   std::string step_text() const;
   bool within_limits();
+  void take_remarks();
   std::string where() const;
   void remember(Memory& memory);
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace floe {
@@ -33,6 +34,9 @@ double wall_seconds(Event event);
 
 /// Largest resident memory of this process so far [MB].
 double peak_memory_mb();
+
+/// A line for the user that does not end the run, on standard error; called on rank 0 only.
+void warn(const std::string& text);
 
 /// Progress of long work on rank 0's standard error: a bar with the time left on a terminal, a
 /// plain line every few seconds otherwise, nothing for work that ends within a second.
