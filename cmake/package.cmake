@@ -13,11 +13,13 @@ set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME floe)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "floating sea ice as rigid bodies joined by beams
-A floating ice sheet is meshed by a centroidal Voronoi tessellation; every cell is a rigid prism,
-every facet between two cells a co-rotational Timoshenko beam, so that a sheet bends, stretches
-and sinks as ice does, breaks into blocks, and its blocks collide, float and pile up. On one core
+A floating ice sheet is meshed by a centroidal Voronoi tessellation; every
+cell is a rigid prism, every facet between two cells a co-rotational
+Timoshenko beam, so that a sheet bends, stretches and sinks as ice does,
+breaks into blocks, and its blocks collide, float and pile up. On one core
 or many (MPI), with PETSc.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "python3:any, python3-h5py, python3-matplotlib, python3-numpy, python3-pil")
 # Without mpiexec there are runs on one process; on the reference BLAS they are about five times slower.
@@ -31,9 +33,18 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfloe-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "floe as a library: headers and examples
-For programs in C++ that make, read, cut and measure lattices of floating ice, or solve with
-them: headers, what find_package(floe) looks for in CMake, and examples.")
+For programs in C++ that make, read, cut and measure lattices of floating ice,
+or solve with them: headers, what find_package(floe) looks for in CMake, and
+examples.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "floe (= ${PROJECT_VERSION}), petsc-dev, libpetsc-real-dev, libopenmpi-dev, pkg-config, g++")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake")
+# What Debian asks of each package, and of no other installation.
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  foreach(package program:floe development:libfloe-dev)
+    string(REGEX MATCH "(.*):(.*)" _ ${package})
+    install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian/copyright COMPONENT ${CMAKE_MATCH_1}
+            DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_2})
+  endforeach()
+endif()
 include(CPack)
