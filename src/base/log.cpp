@@ -70,6 +70,13 @@ Progress::Progress(std::string_view what, double total)
   terminal_ = isatty(STDERR_FILENO) != 0;
 }
 
+void warn(const std::string& text) {
+  // A progress bar may stand in the line.
+  std::fprintf(stderr, "%sfloe: warning: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "",
+               text.c_str());
+  std::fflush(stderr);
+}
+
 Progress::~Progress() {
   if (shown_ && terminal_) std::fprintf(stderr, "\r\033[K");
 }

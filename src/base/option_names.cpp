@@ -22,7 +22,8 @@ constexpr std::array petsc_families{
     "petscpartitioner_", "psubcomm_", "matmult_", "blas_",
     // inner solvers
     "mg_", "sub_", "npc_", "fieldsplit_", "redundant_", "telescope_", "esteig_", "inner_", "fas_",
-    "pc_gamg_", "gamg_", "adapt_", "schur_", "bjkokkos_",
+    "pc_gamg_", "gamg_", "adapt_", "schur_", "bjkokkos_", "deflation_", "exotic_", "fetidp_",
+    "galerkin_", "hmg_", "lsc_", "nn_", "pseudo_", "qn_", "redistribute_",
     // the session
     "log_", "options_", "viewer_", "malloc", "malloc_", "info", "info_", "on_error_", "fp_trap",
     "memory_view", "citations", "version", "skip_petscrc", "nox", "nox_warning",

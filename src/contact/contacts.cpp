@@ -103,8 +103,15 @@ void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
   touches_.push_back(
       {index, centre,
        contact_force(options_, constants(pair.a, pair.b), met.overlap, met.depth, motion,
-                     memory != nullptr ? *memory : PairMemory{}, pair.fresh, stored)});
+                     memory != nullptr ? *memory : PairMemory{}, pair.fresh, stored),
+       false});
   const ContactForce& contact = touches_.back().contact;
+  // The mean depth V/|S| of what is elastic.
+  constexpr double holds = 0.25;
+  const double elastic = met.overlap.volume - contact.memory.plastic;
+  const double most = holds * std::min(width_of(pair.a), width_of(pair.b));
+  touches_.back().deep =
+      elastic > 0 && elastic * elastic > most * most * dot(met.overlap.area, met.overlap.area);
   if (pair.counted) {
     ++touching_;
     totals_.stored.normal += stored.normal;
@@ -222,7 +229,10 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     const Placed b =
         pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)] : moving(pair.slot_b);
     const RelativeMotion motion = relative(a, b, t.centre);
-    if (pair.counted) add_power(t, motion, power);
+    if (pair.counted) {
+      add_power(t, motion, power);
+      note_events(t);
+    }
     if (pair.b < 0) power[3] += power_of_obstacle(t, a, b);
     memories_.push_back(
         {pair.a, pair.b, t.pair, slid(t.contact, motion, 0.5 * (a.spin + b.spin), dt)});
@@ -232,7 +242,7 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
   if (fresh_) {
     for (Pair& pair : pairs_) pair.fresh = false;
   }
-  fresh_ = false;
+  fresh_ = at_rest_ = false;
   touches_.clear();
   totals_ = {};
   sums_[4] = dt;

@@ -13,6 +13,18 @@ namespace {
 
 double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
+/// The least extent of a polyhedron along the normals of its faces [m]; infinite without vertices.
+double least_width(std::span<const Vec3<double>> vertices, std::span<const HalfSpace> planes) {
+  double least = std::numeric_limits<double>::infinity();
+  if (vertices.empty()) return least;
+  for (const HalfSpace& plane : planes) {
+    double low = plane.offset;
+    for (const Vec3<double>& r : vertices) low = std::min(low, dot(plane.normal, r));
+    least = std::min(least, plane.offset - low);
+  }
+  return least;
+}
+
 /// Area of all faces of a body and of the largest one [m^2].
 std::array<double, 2> face_areas(const Shapes& shapes, std::int32_t body) {
   const auto b = static_cast<std::size_t>(body);
@@ -43,6 +55,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       joined_(std::move(joined)),
       options_(options),
       obstacles_(std::move(obstacles)),
+      at_rest_(options.initial_overlap == InitialOverlap::stress_free),
       obstacles_at_(obstacles_.size()),
       on_obstacle_(obstacles_.size()) {
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
@@ -58,7 +71,12 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
   double mean = 0;
   for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
   reach_ = part_of_radius * mean;
-  for (const Obstacle& o : obstacles_) obstacle_radius_.push_back(o.radius());
+  for (const Solid& s : solids_) thinnest_ = std::min(thinnest_, s.width);
+  for (const Obstacle& o : obstacles_) {
+    obstacle_radius_.push_back(o.radius());
+    obstacle_width_.push_back(least_width(o.vertices, o.planes));
+    thinnest_ = std::min(thinnest_, obstacle_width_.back());
+  }
   find_pieces();
 }
 
@@ -76,7 +94,8 @@ void Contacts::add_solid(std::int32_t body, double mass) {
   append_half_spaces(shapes_, body, planes_);
   solids_.push_back({first_vertex, static_cast<std::int32_t>(vertices_.size()) - first_vertex,
                      first_plane, static_cast<std::int32_t>(planes_.size()) - first_plane,
-                     std::cbrt(volume_properties(shapes_, body).volume), mass, radius});
+                     std::cbrt(volume_properties(shapes_, body).volume), mass, radius, 0});
+  solids_.back().width = least_width(vertices(body), planes(body));
 }
 
 std::span<const Vec3<double>> Contacts::vertices(std::int32_t body) const {
@@ -249,7 +268,8 @@ bool Contacts::obstacle_listed() const {
 /// Lists a pair unless there is a wide gap.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
-  Pair pair{a, b, -1, -1, counted, changed_ && !first_, false, at_a.x - at_b.x, 0};
+  const bool fresh = at_rest_ || (changed_ && !first_);
+  Pair pair{a, b, -1, -1, counted, fresh, false, at_a.x - at_b.x, 0};
   const double size = length(pair.axis);
   pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
   if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;
@@ -289,6 +309,7 @@ void Contacts::restore(std::span<const double> rows, bool changed) {
   memories_.clear();
   changed_ = true;
   first_ = !changed;
+  at_rest_ = false;
   for (std::size_t k = 0; k + width <= rows.size(); k += width) {
     const auto r = rows.subspan(k, width);
     memories_.push_back({static_cast<std::int32_t>(r[0]),

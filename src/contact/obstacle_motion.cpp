@@ -42,7 +42,8 @@ bool ObstacleMotion::at_rest() const {
 
 double ObstacleMotion::largest_speed(double radius) const {
   // While the amplitude rises, sin(2 pi f t)/t <= 2 pi f: at most as much again.
-  return length(velocity) + 4 * std::numbers::pi * frequency * length(amplitude) +
+  const double rising = ramp.seconds > 0 ? 2 : 1;
+  return length(velocity) + rising * 2 * std::numbers::pi * frequency * length(amplitude) +
          (is_zero(angular_velocity) ? 0.0 : radius * length(angular_velocity));
 }
 

@@ -6,6 +6,7 @@
 
 #include "floe/base/petsc.h"
 #include "forces/all_gathered.h"
+#include "forces/contact_checks.h"
 #include "forces/contact_exchange.h"
 #include "forces/contact_sharing.h"
 #include "forces/contact_watch.h"
@@ -64,25 +65,26 @@ class ContactOfModel final : public Contact {
     return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
   }
 
+  const std::string& overlap_at_start() const override { return overlap_at_start_; }
+  StepLimit step_limit(const State<Spatial>& state) const override {
+    return travel_limit(contacts_, part_, state);
+  }
+  std::vector<Remark> take_remarks() override {
+    std::vector<Remark> remarks = remarks_.take(contacts_);
+    if (!overlap_told_ && !overlap_at_start_.empty() && rank(part_.comm) == 0)
+      remarks.push_back({0, overlap_at_start_});
+    overlap_told_ = true;
+    return remarks;
+  }
+
   /// At rest; the run makes its own list. Collective.
-  void refuse_enclosed() {
+  void check_start() {
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
     add(rest, none);
     watch_ = ContactWatch(contacts_, part_.global_bodies);
-    std::vector<std::int32_t> mine;
-    for (const auto& pair : contacts_.enclosed()) mine.insert(mine.end(), pair.begin(), pair.end());
-    const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
-    if (all.empty()) return;
-    std::array<std::int32_t, 2> first{all[0], all[1]};  // whatever the ranks
-    for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
-    const std::string body = "body " + std::to_string(first[0]);
-    if (first[1] >= 0)
-      throw InputError("forces: contact: " + body + " and body " + std::to_string(first[1]) +
-                       ": one lies wholly inside the other, they would feel nothing");
-    const Obstacle& o = contacts_.obstacles()[static_cast<std::size_t>(-1 - first[1])];
-    throw InputError("obstacle: " + o.name + ": " + body +
-                     " lies wholly inside it: obstacles are solid, it would feel nothing");
+    refuse_enclosed(contacts_, part_.comm);
+    overlap_at_start_ = check_overlaps(contacts_, part_.comm);
   }
 
   void commit(const State<Spatial>& state, double dt) override {
@@ -182,6 +184,9 @@ class ContactOfModel final : public Contact {
   mutable bool possible_;
   mutable bool near_ = false;  ///< pairs are listed, on some rank
   double dt_ = 0, time_ = 0;
+  std::string overlap_at_start_;
+  bool overlap_told_ = false;
+  ContactRemarks remarks_;
 };
 
 /// The list of pairs is made anew, from the state once contacts are possible: then it does not show
@@ -225,6 +230,7 @@ void ContactOfModel::remember(Memory& memory) {
     }
   }
   if (!memory.loading()) return;
+  overlap_told_ = true;  // when the run began
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
@@ -254,7 +260,7 @@ std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       std::vector<Obstacle> obstacles) {
   check_shapes(lattice);
   auto contact = std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
-  contact->refuse_enclosed();
+  contact->check_start();
   return contact;
 }
 

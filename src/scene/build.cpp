@@ -184,8 +184,11 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
 template <class Space>
 void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
   if constexpr (std::is_same_v<Space, Spatial>) {
-    if (scene.forces.contact)
-      model.add_force(make_contact(model.part(), lattice, scene.contact, scene.obstacles));
+    if (!scene.forces.contact) return;
+    auto contact = make_contact(model.part(), lattice, scene.contact, scene.obstacles);
+    const std::string& overlap = contact->overlap_at_start();
+    if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
+    model.add_force(std::move(contact));
   }
 }
 

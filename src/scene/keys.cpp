@@ -118,6 +118,9 @@ constexpr std::array table{
                "Coulomb's coefficient between bodies"},
     OptionSpec{"contact: plastic_limit", number, "(none)", "Pa", "> 0",
                "most normal force over the contact's area; what is crushed is remembered"},
+    OptionSpec{"contact: initial_overlap", choice, "press", "", "press | stress_free",
+               "what overlaps at the start presses apart (refused above a tenth of the smaller "
+               "one's size), or is taken as rest"},
     OptionSpec{
         "contact: restitution", number, "1", "", "> 0",
         "part of the speed that a central impact of a face on a plane gives back, at most 1"},

@@ -174,6 +174,7 @@ void read_contact(Options& options, Scene& scene) {
   contact.friction = options.number("contact: friction");
   if (options.given("contact: plastic_limit"))
     contact.plastic_limit = options.number("contact: plastic_limit");
+  contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
   const double restitution = options.number("contact: restitution");
   if (restitution > 1)
     throw InputError("contact: restitution: " + text_of(restitution) + " must be <= 1");
@@ -370,6 +371,12 @@ void read_dynamics(Options& options, Scene& scene) {
   scene.checkpoint.at_end = options.given_section("checkpoint");
   scene.limit.velocity = options.number("limit: velocity");
   scene.limit.energy_error = options.number("limit: energy_error");
+  for (const Obstacle& o : scene.obstacles) {
+    const double speed = o.motion.largest_speed(o.radius());
+    if (speed > scene.limit.velocity)
+      throw InputError("obstacle: " + o.name + ": moves at up to " + text_of(speed) +
+                       " m/s, limit: velocity allows " + text_of(scene.limit.velocity));
+  }
   if (scene.forces.beam) {
     scene.beam.damping_ratio = options.number("beam: damping_ratio");
     scene.beam.damping_modes = options.choice<DampingModes>("beam: damping_modes");

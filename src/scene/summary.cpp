@@ -182,6 +182,7 @@ Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& mo
   std::string text;
   json["status"] = result.done ? "done" : result.stopped ? "stopped" : "failed";
   json["message"] = result.message;
+  if (!result.warnings.empty()) json["warnings"] = result.warnings;
   json["bodies"] = model.part().global_bodies;
   json["beams"] = model.part().global_beams;
   json["ranks"] = size();

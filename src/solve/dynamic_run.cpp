@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
+#include "base/format.h"
 #include "floe/base/ranks.h"
+#include "forces/all_gathered.h"
 #include "solve/numbers.h"
-#include "solve/text.h"
 #include "solve/ts_options.h"
 
 namespace floe {
@@ -182,6 +184,7 @@ RunResult DynamicRun<Space>::solve(TS ts) {
   }
   if (result_.done && options_.checkpoint.at_end)
     checkpoints_.save([&](Memory& memory) { remember(memory); });
+  take_remarks();
   result_.steps = done_;
   result_.steps_now = done_ - before_;
   result_.message = why_;
@@ -273,6 +276,38 @@ bool DynamicRun<Space>::finish() {
   return sample(true);
 }
 
+/// What forces have to say since the last look, in order of time, goes to the user. Collective.
+template <class Space>
+void DynamicRun<Space>::take_remarks() {
+  using Remark = typename Force<Space>::Remark;
+  std::vector<double> times;
+  std::vector<char> texts;  // each ended by a zero
+  for (const auto& force : model_.forces()) {
+    for (const Remark& remark : force->take_remarks()) {
+      times.push_back(remark.time);
+      texts.insert(texts.end(), remark.text.c_str(), remark.text.c_str() + remark.text.size() + 1);
+    }
+  }
+  const MPI_Comm comm = model_.part().comm;
+  times = all_gathered(times, MPI_DOUBLE, comm);
+  if (times.empty()) return;
+  texts = all_gathered(texts, MPI_CHAR, comm);
+  if (rank(comm) != 0) return;
+  std::vector<Remark> all;
+  const char* next = texts.data();
+  for (const double time : times) {
+    all.push_back({time, next});
+    next += all.back().text.size() + 1;
+  }
+  std::sort(all.begin(), all.end(), [](const Remark& a, const Remark& b) {
+    return std::tie(a.time, a.text) < std::tie(b.time, b.text);
+  });
+  for (const Remark& remark : all) {
+    warn(remark.text);
+    result_.warnings.push_back(remark.text);
+  }
+}
+
 /// Collective: all ranks agree.
 template <class Space>
 bool DynamicRun<Space>::within_limits() {
@@ -304,6 +339,7 @@ bool DynamicRun<Space>::sample(bool last) {
   const std::array<double, 2> mine{kinetic, boundary};
   std::array<double, 2> all{};
   MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+  take_remarks();
   auto reported = model_.report(state_);
   const Columns own = own_columns();
   for (const auto& [name, value] : own.values()) {

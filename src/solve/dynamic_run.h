@@ -159,6 +159,7 @@ class DynamicRun {
   bool finish();
   std::string step_text() const;
   bool within_limits();
+  void take_remarks();
   std::string where() const;
   void remember(Memory& memory);
 

@@ -5,11 +5,11 @@
 #include <cstring>
 #include <limits>
 
+#include "base/format.h"
 #include "floe/base/audit.h"
 #include "floe/base/log.h"
 #include "floe/base/ranks.h"
 #include "solve/newton.h"
-#include "solve/text.h"
 
 namespace floe {
 namespace {

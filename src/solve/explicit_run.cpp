@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "base/format.h"
 #include "floe/base/ranks.h"
-#include "solve/text.h"
 
 namespace floe {
 namespace {
@@ -26,8 +26,12 @@ ExplicitRun<Space>::ExplicitRun(std::string_view type, Model<Space>& model,
 template <class Space>
 StableStep ExplicitRun<Space>::look() {
   const double began = MPI_Wtime();
-  const StableStep stable = find_stable_step();
+  StableStep stable = find_stable_step();
   seconds_an_evaluation_ = (MPI_Wtime() - began) / std::max(stable.evaluations, 1);
+  if (const auto limit = step_limit(); limit.dt < stable.dt) {
+    stable.dt = limit.dt;
+    stable.limit = limit.reason;
+  }
   evaluations_ = stable.evaluations;
   last_look_ = this->done();
   last_stable_ = stable.dt;
@@ -64,6 +68,27 @@ double ExplicitRun<Space>::fastest_rate() {
   return std::accumulate(rates.begin(), rates.end(), 0.0);
 }
 
+/// The shortest of the steps that forces limit for other reasons than stability. Collective.
+template <class Space>
+typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
+  typename Force<Space>::StepLimit least;
+  for (const auto& force : this->model().forces()) {
+    if (auto limit = force->step_limit(this->state()); limit.dt < least.dt) least = limit;
+  }
+  const MPI_Comm comm = this->model().part().comm;
+  struct {
+    double dt;
+    int rank;
+  } mine{least.dt, rank(comm)}, all{};
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
+  auto length = static_cast<int>(least.reason.size());
+  MPI_Bcast(&length, 1, MPI_INT, all.rank, comm);
+  least.dt = all.dt;
+  least.reason.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(least.reason.data(), length, MPI_CHAR, all.rank, comm);
+  return least;
+}
+
 /// Sum of the bounds that forces give themselves [1/s^2].
 template <class Space>
 double ExplicitRun<Space>::own_stiffness() {
@@ -86,6 +111,7 @@ bool ExplicitRun<Space>::look_is_due() {
   constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
   if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
   if (!this->sampled() && this->done() % now_and_then != 0) return false;
+  if (step_limit().dt < needed()) return true;
   const double rate = fastest_rate();
   return rate > last_rate_ && !(last_stable_ * (last_rate_ / rate) >= needed());
 }

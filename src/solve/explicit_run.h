@@ -41,6 +41,7 @@ class ExplicitRun : public DynamicRun<Space> {
   StableStep look();
   bool look_is_due();
   double fastest_rate();
+  typename Force<Space>::StepLimit step_limit();
   double own_stiffness();
   double needed() const;
 

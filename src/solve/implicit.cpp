@@ -13,7 +13,7 @@
 #include "solve/newton.h"
 #include "solve/numbers.h"
 #include "solve/step_plan.h"
-#include "solve/text.h"
+#include "base/format.h"
 #include "solve/ts_options.h"
 
 namespace floe {

@@ -6,7 +6,7 @@
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
-#include "solve/text.h"
+#include "base/format.h"
 
 namespace floe {
 namespace {

@@ -14,7 +14,7 @@
 #include "solve/explicit_run.h"
 #include "solve/numbers.h"
 #include "solve/rk_stability.h"
-#include "solve/text.h"
+#include "base/format.h"
 
 namespace floe {
 namespace {

@@ -65,6 +65,11 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.run_it(str(SCENES / "tension.yaml"), "-check", "--help")[0], usage)
         self.assertTrue(self.run_it("help")[0].startswith(usage))
         self.assertEqual(self.run_it("help", "options")[0], self.run_it("-help")[0])
+        scenes = self.run_it("help", "scenes")[0]
+        self.assertRegex(scenes, r"(?m)^  tension +Tension test of a square sheet$")
+        for scene in SCENES.glob("*.yaml"):
+            self.assertRegex(scenes, rf"(?m)^  {scene.stem} +\S")
+        self.assertLess(max(map(len, scenes.splitlines()[1:])), 105)
         self.assertIn("the nearest one is 'plot_load'", self.refused("help", "plotload"))
 
     def test_every_tool_answers(self):

@@ -97,6 +97,22 @@ class Installed(unittest.TestCase):
         error = run(build / "measure_lattice", "none.h5", cwd=self.folder, code=2)
         self.assertIn("none.h5", error)
 
+    def test_headers(self):
+        """They need nothing but floe::floe, on the oldest processor and without a warning."""
+        project = self.folder / "project"
+        project.mkdir()
+        headers = sorted((self.prefix / "include").rglob("*.h"))
+        self.assertGreater(len(headers), 40)
+        lines = [f'#include "{header.relative_to(self.prefix / "include")}"\n' for header in headers]
+        for name, order in (("forward", lines), ("backward", reversed(lines))):
+            (project / f"{name}.cpp").write_text("".join(order))
+        (project / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(headers LANGUAGES CXX)\nfind_package(floe REQUIRED)\n"
+            "add_library(headers OBJECT forward.cpp backward.cpp)\ntarget_link_libraries(headers PRIVATE floe::floe)\n"
+            "target_compile_options(headers PRIVATE -march=x86-64 -Wall -Wextra -Wpedantic -Wshadow -Werror)\n")
+        run(CMAKE, "-S", project, "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=self.folder)
+        run(CMAKE, "--build", "build", cwd=self.folder)
+
     def test_wrong_petsc(self):
         config = next(self.prefix.rglob("floe-config.cmake"))
         config.write_text(config.read_text().replace('MATCHES "^3', 'MATCHES "^2'))

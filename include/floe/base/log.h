@@ -6,6 +6,7 @@
 #include <mpi.h>
 
 #include <array>
+#include <string>
 #include <string_view>
 
 namespace floe {
@@ -38,6 +39,9 @@ double peak_memory_mb();
 
 /// Resident memory of all ranks' processes at present [MB]. Collective.
 double resident_memory_mb(MPI_Comm comm);
+
+/// A line for the user that does not end the run, on standard error; called on rank 0 only.
+void warn(const std::string& text);
 
 /// Progress of long work on rank 0's standard error: a bar with the time left on a terminal, a
 /// plain line every few seconds otherwise, nothing for work that ends within a second.

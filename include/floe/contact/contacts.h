@@ -91,6 +91,7 @@ class Contacts {
   /// The beam between two bodies is broken: they may touch from now on, without an energy.
   void release(std::array<std::int32_t, 2> pair);
 
+  const ContactOptions& options() const { return options_; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
   /// Distance of obstacle k's farthest vertex from the origin of its frame [m].
   double obstacle_radius(std::size_t k) const { return obstacle_radius_[k]; }
@@ -104,6 +105,34 @@ class Contacts {
   /// Counted pairs of the last evaluation, A and B, of which one lies wholly inside the other:
   /// they press on each other nowhere.
   std::vector<std::array<std::int32_t, 2>> enclosed() const;
+
+  /// How far the bodies of a pair lie in each other.
+  struct Penetration {
+    std::int32_t a = 0, b = 0;
+    double depth = 0;  ///< common part of both extents along the contact's normal [m]
+    double share =
+        0;  ///< of the smaller size: a body's cube root of its volume, an obstacle's width
+  };
+  /// Of the counted pairs of the last evaluation that press on each other, by pair.
+  std::vector<Penetration> penetrations() const;
+
+  /// What no contact should meet, at its first time.
+  struct Event {
+    bool happened = false;
+    double time = 0;  ///< [s]
+    std::int32_t a = 0, b = 0;
+  };
+  /// The first committed counted pair of which one lies wholly inside the other; and whose elastic
+  /// term gave way by more than a quarter of the thinner one's width: beyond the middle of a plate,
+  /// an overlap presses towards its other side.
+  const Event& first_enclosed() const { return enclosed_; }
+  const Event& first_pressed_through() const { return pressed_through_; }
+
+  /// The least width of body or obstacle (-1 - k), between planes along its faces [m]; infinite
+  /// for a half-space.
+  double width_of(std::int32_t body) const;
+  /// The least width of all bodies and obstacles [m].
+  double thinnest() const { return thinnest_; }
   /// Pieces joined by beams, as of the last build, or at first.
   std::int32_t pieces() const { return pieces_; }
   ContactEnergies energies() const;
@@ -134,6 +163,7 @@ class Contacts {
     double size;    ///< cube root of the volume [m]
     double mass;    ///< [kg]
     double radius;  ///< of the farthest vertex [m]
+    double width;   ///< the least, between planes along its faces [m]
   };
   struct Pair {
     std::int32_t a, b;            ///< bodies; b < 0: obstacle -1 - b
@@ -147,6 +177,7 @@ class Contacts {
     std::int32_t pair;
     Vec3<double> centre;  ///< from A's centroid
     ContactForce contact;
+    bool deep;  ///< its elastic term gives way by more than a quarter of the thinner one's width
   };
   struct Remembered {
     std::int32_t a, b;
@@ -167,6 +198,7 @@ class Contacts {
   };
 
   void add_solid(std::int32_t body, double mass);
+  void note_events(const Touch& touch);
   bool on_surface(std::int32_t body) const { return outer_[static_cast<std::size_t>(body)] != 0; }
   bool may_touch(std::int32_t a, std::int32_t b) const;
   void find_pieces();
@@ -208,6 +240,10 @@ class Contacts {
   std::vector<Obstacle> obstacles_;
   double reach_ = 0;
   bool changed_ = true, first_ = true;
+  bool at_rest_;  ///< until the first commit: what overlaps is stress-free
+  Event enclosed_, pressed_through_;
+  double thinnest_ = std::numeric_limits<double>::infinity();
+  std::vector<double> obstacle_width_;
   bool fresh_ = false;  ///< some pair is
 
   std::vector<Pair> pairs_, borrowed_;

@@ -13,12 +13,19 @@ enum class ContactLaw {
   potential,  ///< the gradient of k_v (V - V_p)^2/(2 A_r) (Feng 2021)
 };
 
+/// What bodies that overlap at the start do.
+enum class InitialOverlap {
+  press,        ///< press apart; deep overlaps are refused
+  stress_free,  ///< what overlaps at the start is taken as rest
+};
+
 struct ContactOptions {
   ContactLaw law = ContactLaw::overlap;
   double young = 1e8;                                              ///< E_c [Pa]
   double friction = 0.1;                                           ///< mu between bodies
   double damping_ratio = 0;                                        ///< zeta of the viscous term
   double plastic_limit = std::numeric_limits<double>::infinity();  ///< sigma_p [Pa]
+  InitialOverlap initial_overlap = InitialOverlap::press;
 };
 
 /// zeta with which a central impact of a face returns the part e of its speed: without tension

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -58,6 +59,13 @@ class Force {
     double stiffness = 0, damping = 0;
   };
   virtual Rates own_rates() const { return {}; }
+  /// The longest step for a reason that is no stability of a mode (ways of bodies against their
+  /// widths) [s], and that reason, for this rank's bodies. Default: none.
+  struct StepLimit {
+    double dt = std::numeric_limits<double>::infinity();
+    std::string reason;
+  };
+  virtual StepLimit step_limit(const State<Space>& /*state*/) const { return {}; }
   /// Takes over what an accepted step changes (damage, slip, dissipated energy; the latter as for
   /// leapfrog, whose velocities lag half a step). \param dt step [s]
   virtual void commit(const State<Space>& /*state*/, double /*dt*/) {}
@@ -79,6 +87,13 @@ class Force {
   /// Takes over the integral of power() over a step, from integrators that find it themselves
   /// instead of calling commit() [J].
   virtual void take_work(double /*work*/) {}
+  /// Something that a user must hear of once, as a body that passes through another.
+  struct Remark {
+    double time = 0;  ///< [s]
+    std::string text;
+  };
+  /// What came since the last call, on this rank.
+  virtual std::vector<Remark> take_remarks() { return {}; }
   /// Energies and counts of this rank's share.
   virtual void report(const State<Space>& state, Columns& columns) const = 0;
   /// History to and from a checkpoint; a force without history has nothing to keep.

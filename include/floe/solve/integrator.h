@@ -42,6 +42,7 @@ struct RunResult {
   double stable_dt = 0;              ///< explicit: the largest stable step
   std::string limited_by;            ///< explicit: what limits it
   std::int64_t unstable_modes = -1;  ///< of the last equilibrium; -1: not known
+  std::vector<std::string> warnings;  ///< what forces had to say, in order of time; on rank 0
 };
 
 /// What a run is going to do, known before its first step.
