@@ -35,9 +35,9 @@ std::string bytes(double value) {
 
 std::string duration(double seconds) {
   constexpr double minute = 60, hour = 60 * minute, day = 24 * hour, year = 365.25 * day;
-  if (seconds < 2 * minute) return text("%.2g s", seconds);
-  if (seconds < 2 * hour) return text("%.2g min", seconds / minute);
-  if (seconds < 3 * day) return text("%.2g h", seconds / hour);
+  if (seconds < 2 * minute) return text("%.3g s", seconds);
+  if (seconds < 2 * hour) return text("%.3g min", seconds / minute);
+  if (seconds < 3 * day) return text("%.3g h", seconds / hour);
   if (seconds < 2 * year) return text("%.3g days", seconds / day);
   return text("%.3g years", seconds / year);
 }

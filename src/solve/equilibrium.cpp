@@ -5,12 +5,12 @@
 #include <cstring>
 #include <limits>
 
+#include "base/format.h"
 #include "floe/base/audit.h"
 #include "floe/base/log.h"
 #include "floe/base/ranks.h"
 #include "floe/base/signals.h"
 #include "solve/newton.h"
-#include "solve/text.h"
 
 namespace floe {
 namespace {

@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""What a run says it will do and take, before its first step and with -check; and that absurd runs are refused with the
+number, before anything is written."""
+import json
+import re
+import tempfile
+import unittest
+from pathlib import Path
+
+import launch
+
+EXPLICIT = """integrator: explicit
+forces: [beam, gravity, buoyancy]
+sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
+beam: {damping_ratio: 1}
+time: {end: 0.02}
+"""
+IMPLICIT = EXPLICIT.replace("explicit", "implicit") + "load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 0.01}}\n"
+STATIC = """forces: [beam, gravity, buoyancy]
+sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
+load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 1}}
+"""
+PLAN = re.compile(r"plan: (?P<step>.*)\nplan: about (?P<rows>\S+) rows?, (?P<frames>\S+) frames?, (?P<size>\S+) (?P<unit>[kMGT]B) on "
+                  r"disk; \S+ [kMG]B of memory so far(?:; about (?P<time>.+) \(by (?P<by>.*)\))?\n")
+UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
+
+
+class PlanTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def run_scene(self, scene, *options, code=0, ranks=1):
+        (self.folder / "scene.yaml").write_text(scene)
+        done = launch.run("scene.yaml", *options, ranks=ranks, cwd=self.folder)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done
+
+    def plan(self, scene, *options, **how):
+        said = self.run_scene(scene, *options, **how).stdout
+        found = PLAN.search(said)
+        self.assertIsNotNone(found, said)
+        return found
+
+    def summary(self):
+        return json.loads((self.folder / "out/scene/summary.json").read_text())
+
+    def written(self):
+        """Rows, frames and bytes in the output folder."""
+        folder = self.folder / "out/scene"
+        rows = len((folder / "history.csv").read_text().splitlines()) - 1
+        frames = (folder / "fields.xmf").read_text().count("<Time ")
+        return rows, frames, sum(f.stat().st_size for f in folder.rglob("*") if f.is_file())
+
+
+class Said(PlanTest):
+    def test_explicit(self):
+        for options in ((), ("-output_history", "0.001", "-output_fields", "0.0005"), ("-output_fields", "1e-9"),
+                        ("-ts_type", "rk", "-ts_rk_type", "4")):
+            with self.subTest(options):
+                plan = self.plan(EXPLICIT, *options)
+                summary = self.summary()
+                self.assertIn(f"step {summary['dt']:.4g} s, 0.", plan["step"])
+                self.assertIn("of the stable step, limited by the " + summary["dt_limited_by"], plan["step"])
+                self.assertIn(f"; {summary['steps']} steps", plan["step"])
+                self.assertIn("evaluations of the forces", plan["by"])
+                self.assertRegex(plan["time"], r"^\S+ s$")
+                rows, frames, size = self.written()
+                self.assertEqual(int(plan["frames"]), frames)
+                self.assertLessEqual(abs(int(plan["rows"]) - rows), 2 + 0.1 * rows)
+                self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
+
+    def test_implicit(self):
+        plan = self.plan(IMPLICIT, "-time_dt", "0.001", "-output_history", "0.002", "-output_fields", "0.005")
+        self.assertIn("step 0.001 s; 20 steps", plan["step"])
+        rows, frames, size = self.written()
+        self.assertEqual((int(plan["rows"]), int(plan["frames"])), (rows, frames))
+        self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
+        plan = self.plan(IMPLICIT)
+        self.assertIn("steps as long as their error allows, the first 0.0005 s", plan["step"])
+
+    def test_static(self):
+        plan = self.plan(STATIC, "-time_dt", "0.1", "-output_fields", "0.2")
+        self.assertIn("load step 0.1; 10 load steps", plan["step"])
+        rows, frames, size = self.written()
+        self.assertEqual((int(plan["rows"]), int(plan["frames"])), (rows, frames))
+        self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
+
+    def test_check_says_it_too_and_writes_nothing(self):
+        for scene in (EXPLICIT, IMPLICIT, STATIC):
+            for ranks in (1, 2):
+                plan = self.plan(scene, "-check", ranks=ranks)
+                self.assertTrue(plan["step"])
+                self.assertEqual([f.name for f in self.folder.iterdir()], ["scene.yaml"])
+
+    def test_a_restart_says_what_is_left(self):
+        scene = EXPLICIT + "checkpoint: {every: 1000}\n"
+        self.run_scene(scene)
+        steps = self.summary()["steps"]
+        restart = ("-checkpoint_restart", "out/scene/checkpoint.h5", "-time_end", "0.04")
+        before = {f.name: f.stat().st_mtime_ns for f in (self.folder / "out/scene").iterdir()}
+        plan = self.plan(scene, *restart, "-check")
+        self.assertEqual({f.name: f.stat().st_mtime_ns for f in (self.folder / "out/scene").iterdir()}, before)
+        self.assertIn(f"; {2 * steps} steps, {steps} of them made", plan["step"])
+        plan = self.plan(scene, *restart)
+        self.assertIn(f"; {2 * steps} steps, {steps} of them made", plan["step"])
+        self.assertEqual(self.summary()["steps"], 2 * steps)
+
+
+class Refused(PlanTest):
+    def refuse(self, scene, *options, said, ranks=1):
+        done = self.run_scene(scene, *options, code=2, ranks=ranks)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for words in said:
+            self.assertIn(words, done.stderr)
+        self.assertEqual([f.name for f in self.folder.iterdir()], ["scene.yaml"])
+
+    def test_steps(self):
+        for scene, what in ((EXPLICIT, "2e+10"), (IMPLICIT, "2e+10"), (STATIC, "1e+12")):
+            for ranks in (1, 2):
+                options = ("-time_dt", "1e-12", "-limit_steps", "1e10")
+                self.refuse(scene, *options, said=("time: dt: 1e-12", f"would take {what}", "at most 1e+10", "limit: steps"),
+                            ranks=ranks)
+        self.refuse(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20", said=("2e+13 steps", "at most 1e+11"))
+        self.plan(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20", "-limit_steps", "1e14", "-check")
+
+    def test_steps_of_the_own_choice(self):
+        self.refuse(EXPLICIT, "-time_end", "1e9", said=("time: dt: ", "stable: ", "limited by the", "limit: steps"))
+
+    def test_frames(self):
+        self.refuse(EXPLICIT, "-output_fields", "1e-9", "-limit_frames", "10",
+                    said=("output: fields: 1e-09 s would make ", "at most 10 are made (limit: frames)"))
+        self.refuse(IMPLICIT, "-output_fields", "1e-9", said=("would make 20000001 frames", "TB", "at most 100000"))
+        plan = self.plan(IMPLICIT, "-output_fields", "1e-9", "-limit_frames", "1e8", "-check")
+        self.assertEqual(plan["frames"], "20000001")
+
+    def test_room(self):
+        options = ("-output_history", "1e-12")
+        self.refuse(IMPLICIT, *options, said=("output: would be about 2e+10 rows", "TB on disk", "at most 1 TB", "limit: disk"))
+        self.plan(IMPLICIT, *options, "-limit_disk", "1e5", "-check")
+        self.refuse(EXPLICIT, "-limit_disk", "1e-6", said=("on disk, at most 1 kB are taken",))
+
+
+if __name__ == "__main__":
+    unittest.main()
