@@ -220,10 +220,12 @@ constexpr std::array table{
         "dynamics: an error of the energy balance above this part of the energies that moved "
         "stops the run"},
 
-    OptionSpec{"limit: steps", number, "1e11", "", "> 0",
+    OptionSpec{"limit: steps", number, "1e11", "", ">= 1, <= 1e18",
                "a run that would take more steps is refused before the first"},
-    OptionSpec{"limit: frames", number, "1e5", "", "> 0", "the same for frames of fields.h5"},
-    OptionSpec{"limit: disk", number, "1000", "GB", "> 0", "the same for the room on disk"},
+    OptionSpec{"limit: frames", number, "1e5", "", ">= 1, <= 1e12",
+               "the same for frames of fields.h5"},
+    OptionSpec{"limit: disk", number, "1000", "GB", ">= 1e-6, <= 1e9",
+               "the same for the room on disk"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
     OptionSpec{"output: overwrite", flag, "false", "", "",
