@@ -21,7 +21,7 @@ constexpr std::array table{
     OptionSpec{"forces", choices, "(required)", "",
                "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},
-    OptionSpec{"gravity", number, "9.81", "m/s^2", ">= 1e-6, <= 1e6",
+    OptionSpec{"gravity", number, "9.81", "m/s^2", ">= 1e-12, <= 1e6",
                "acceleration of gravity, along -z"},
     OptionSpec{"lattice_file", text, "(none: the sheet is meshed)", "", "",
                "HDF5 file with bodies and beams (docs/model.md), instead of sheet:"},

@@ -164,7 +164,8 @@ class Readers(FramesTest):
 
     def test_nothing_is_torn(self):
         """What is newest is read again and again while a run writes as fast as it can."""
-        process = self.begin("-output_fields", "0.001", "-output_history", "0.1", "-time_end", "1000")
+        process = self.begin("-output_fields", "0.001", "-output_history", "0.1", "-time_end", "1000",
+                             "-limit_frames", "1e9", "-limit_disk", "1e9")
         folder, reads, seen = self.folder / "b", 0, -1
         while reads < (3000 if FULL else 50):
             self.assertIsNone(process.poll())
