@@ -9,7 +9,6 @@ from pathlib import Path
 
 import h5py
 
-from launch import FLOE
 from running import AFLOAT, BAD_INPUT, FAILED, LOADED, RunningTest
 
 SHORT = ["-time_end", "0.5"]
