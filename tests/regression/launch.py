@@ -9,6 +9,9 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+# Of a run that is to be interrupted: it does not end by itself, however late that comes, and is not refused for that. The
+# straight run that it is compared with ends by -ts_max_steps, and has this end as well: the step divides it.
+ENDLESS = ("-time_end", "1e5", "-limit_frames", "1e12", "-limit_disk", "1e12")
 FULL = os.environ.get("FLOE_FULL", "0") not in ("", "0")  # the long forms
 
 # What tools/env exports.

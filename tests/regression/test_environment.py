@@ -31,7 +31,7 @@ class Case(unittest.TestCase):
         (self.folder / "s.yaml").write_text(scene)
         launcher = ["mpiexec", "-n", str(ranks)] if ranks > 1 else []
         run = subprocess.run([*launcher, str(FLOE), "s.yaml", *words], cwd=self.folder, capture_output=True, text=True,
-                             timeout=600, env={**os.environ, "HOME": str(self.folder / "home"), **variables})
+                             env={**os.environ, "HOME": str(self.folder / "home"), **variables})
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run
 

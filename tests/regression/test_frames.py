@@ -5,10 +5,10 @@ is ever lost.
 While a run writes, after kill -9 at random moments, after a file size limit in the middle of a frame, over an older run.
 FLOE_FULL=1 kills 40 times instead of 4.
 """
-import json
 import os
 import random
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,7 +20,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, FLOE, FULL, REPOSITORY, own_words, run
+from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, own_words, run
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import Output, frames_of, rows_of  # noqa: E402
@@ -34,6 +34,7 @@ time: {end: 2}
 output: {history: 0.01, fields: 0.01}
 checkpoint: {every: 0.05}
 """
+MANY = ("-output_fields", "0.002", *ENDLESS)
 XI = "{http://www.w3.org/2001/XInclude}"
 
 
@@ -94,6 +95,13 @@ class FramesTest(unittest.TestCase):
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
         return process
+
+    def wait_for(self, process, what):
+        """Until what() is true, as long as it takes."""
+        while not what():
+            if process.poll() is not None:
+                self.fail("the run ended by itself: " + process.stderr.read())
+            time.sleep(0.002)
 
     def assert_same(self, a, b):
         """The frames of two runs are the same to the last bit, and so is what tells of them."""
@@ -164,8 +172,7 @@ class Readers(FramesTest):
 
     def test_nothing_is_torn(self):
         """What is newest is read again and again while a run writes as fast as it can."""
-        process = self.begin("-output_fields", "0.001", "-output_history", "0.1", "-time_end", "1000",
-                             "-limit_frames", "1e9", "-limit_disk", "1e9")
+        process = self.begin("-output_fields", "0.001", "-output_history", "0.1", *ENDLESS)
         folder, reads, seen = self.folder / "b", 0, -1
         while reads < (3000 if FULL else 50):
             self.assertIsNone(process.poll())
@@ -195,11 +202,9 @@ class Readers(FramesTest):
         self.assertGreater(len(check_names(folder, 10)), 100)
 
     def test_tools_on_a_run_under_way_and_on_a_killed_one(self):
-        process = self.begin("-output_fields", "0.002", "-time_end", "1e4", "-limit_frames", "1e9", "-limit_disk", "1e9")
-        folder = self.folder / "b"
-        while process.poll() is None and len(grids(folder)) < 3:
-            time.sleep(0.01)
-        self.assertIsNone(process.poll())
+        process, folder = self.begin(*MANY), self.folder / "b"
+        self.wait_for(process, lambda: len(grids(folder)) >= 3)
+        process.send_signal(signal.SIGSTOP)  # else it fills the disk while pictures are drawn
         for state in ("under way", "killed"):
             output = Output(folder)
             self.assertEqual(output.summary, {})
@@ -223,31 +228,39 @@ class Readers(FramesTest):
 class Interrupted(FramesTest):
     def go_on(self, *options):
         resume = ["-checkpoint_restart", "b/checkpoint.h5"] if (self.folder / "b/checkpoint.h5").exists() else []
-        return self.begin(*options, *resume)
+        return self.begin(*MANY, *options, *resume)
+
+    def check_end(self):
+        """The interrupted run goes on, and ends as a straight one of as many steps."""
+        with h5py.File(self.folder / "b/checkpoint.h5") as file:
+            end = ("-ts_max_steps", str(int(file["run/step"][()]) + 2000))
+        process = self.go_on(*end)
+        _, said = process.communicate()
+        self.assertEqual(process.returncode, 0, said)
+        self.assert_same(self.whole(*MANY, *end), self.folder / "b")
 
     def test_killed_at_random_moments(self):
-        straight = self.whole("-output_fields", "0.002")
-        duration = json.loads((straight / "summary.json").read_text())["wall_s"]
-        chance = random.Random(14)
-        for _ in range(40 if FULL else 4):
-            process = self.go_on("-output_fields", "0.002")
-            time.sleep(chance.uniform(0.1, 0.9) * duration)
+        chance, folder = random.Random(14), self.folder / "b"
+        for kill in range(40 if FULL else 4):
+            frames = len(grids(folder))
+            process = self.go_on()
+            more = frames + chance.randrange(1, 100)
+            self.wait_for(process, lambda more=more: len(grids(folder)) > more)
+            if kill > 0:  # else there may be none yet, and the run begins again
+                self.wait_for(process, (folder / "checkpoint.h5").exists)
+            time.sleep(chance.uniform(0, 0.05))  # anywhere in a frame or between two
             process.kill()
             process.wait()
             named, frames = check_names(self.folder / "b"), frames_of(self.folder / "b")
             self.assertIn(len(frames) - len(named), (0, 1))
             self.assertEqual([moment for moment, _, _ in frames][:len(named)], named)
-        process = self.go_on("-output_fields", "0.002")
-        self.assertEqual(process.wait(), 0, process.stderr.read())
-        self.assert_same(straight, self.folder / "b")
+        self.check_end()
         self.assertEqual([*self.folder.glob("b/fields*.part"), *self.folder.glob("b/fields/*.part")], [])
 
     def test_a_file_size_limit_in_a_frame(self):
         """The frame is dropped, all before it can be read, and the run goes on from its checkpoint."""
-        straight = self.whole("-output_fields", "0.002")
-        process, folder = self.begin("-output_fields", "0.002"), self.folder / "b"
-        while process.poll() is None and not (folder / "checkpoint.h5").exists():
-            time.sleep(0.002)
+        process, folder = self.begin(*MANY), self.folder / "b"
+        self.wait_for(process, (folder / "checkpoint.h5").exists)
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (100_000, 100_000))
         said = own_words(process.stderr.read())
         self.assertEqual(process.wait(), 1)
@@ -256,9 +269,7 @@ class Interrupted(FramesTest):
         self.assertIn(len(frames) - len(named), (0, 1))
         self.assertGreater(len(frames), 1)
         self.assertTrue(all(np.isfinite(values).all() for values in contents(folder).values()))
-        process = self.go_on("-output_fields", "0.002")
-        self.assertEqual(process.wait(), 0, process.stderr.read())
-        self.assert_same(straight, folder)
+        self.check_end()
 
     def test_a_restart_needs_the_frames(self):
         folder = self.whole("-time_end", "1")

@@ -20,7 +20,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, FLOE, FULL, REPOSITORY, on_ranks, own_words
+from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, on_ranks, own_words
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import frames_of  # noqa: E402
@@ -45,9 +45,6 @@ checkpoint: {every: 1000}
 PLANAR = (SCENE.replace("forces: [beam, gravity, buoyancy, drag]", "forces: [beam, drag]\nmodel: {planar: true}")
           .replace("force: [0, 0, -1e5], moment: [0, 1e4, 0]", "force: [1e4, 1e5, 0], moment: [0, 0, 1e4]"))
 INTERRUPTED = 3
-# Of a run that is to be interrupted: it does not end by itself, however late that comes. The straight run that it is
-# compared with ends by -ts_max_steps, and has this end as well: the step divides it.
-ENDLESS = ("-time_end", "1e5", "-limit_frames", "1e9", "-limit_disk", "1e9")
 TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s", "output_s",
          "peak_memory_mb", "ns_per_beam_step"}
 
