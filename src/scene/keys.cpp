@@ -223,9 +223,9 @@ constexpr std::array table{
 
     OptionSpec{"limit: steps", number, "1e11", "", ">= 1, <= 1e18",
                "a run that would take more steps is refused before the first"},
-    OptionSpec{"limit: frames", number, "1e5", "", ">= 1, <= 1e12",
+    OptionSpec{"limit: frames", number, "1e5", "", ">= 1, <= 1e15",
                "the same for frames of fields.h5"},
-    OptionSpec{"limit: disk", number, "1000", "GB", ">= 1e-6, <= 1e9",
+    OptionSpec{"limit: disk", number, "1000", "GB", ">= 1e-6, <= 1e15",
                "the same for the room on disk"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},

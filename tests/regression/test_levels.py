@@ -3,7 +3,6 @@
 for each, of which the loader takes the best that the processor can run. Levels that this processor does not have are left
 out; with qemu-user older processors are tried as well."""
 import json
-import os
 import re
 import shlex
 import shutil
