@@ -352,8 +352,15 @@ def elastica(elements):
     return straight_frame(10.0, elements, Section(0.01, 0.01, young=2.1e11, poisson=0.3, density=7850.0))
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with a command line in one line."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {' '.join(message.split())} ({self.prog} --help)\n")
+
+
 def _arguments():
-    parser = argparse.ArgumentParser(prog="floe make_lattice", description="Writes a lattice.h5 file for floe.")
+    parser = _Parser(prog="floe make_lattice", description="Writes a lattice.h5 file for floe.")
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
 
     def kind(name, text, **options):
@@ -403,8 +410,8 @@ def main():
         else:
             lattice = makers[kind](**options)
         lattice.write(file)
-    except (ValueError, OSError) as error:
-        parser.error(str(error))
+    except (ValueError, OSError, OverflowError, ZeroDivisionError, MemoryError) as error:
+        parser.error(str(error) or "too large for the memory")
     print(f"{file}: {len(lattice.position)} bodies, {len(lattice.bodies)} beams")
 
 
