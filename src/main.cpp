@@ -126,7 +126,11 @@ int run(const floe::Scene& scene, Start& start) {
       OutputMemory(output->memory()).remember(checkpoint);
     }
   };
+  // Bad input ends with one line: what may be meant so is said once the run is known to be
+  // possible.
   const auto on_plan = [&](const RunPlan& plan) {
+    for (const std::string& warning : scene.warnings)
+      say("floe: warning: " + warning + "\n", stderr);
     say(plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD)));
     return !scene.check_only;
   };
@@ -147,9 +151,9 @@ int run(const floe::Scene& scene, Start& start) {
   folder->finish(summary.json);
   say(summary.text);
   say("results: " + scene.output.dir + "/ (summary.json, history.csv; fields.xmf for ParaView)\n");
-  const std::string how =
-      goes_on ? "; go on with: floe " + scene.path + " -checkpoint_restart " + checkpoint_file(scene)
-              : "";
+  const std::string how = goes_on ? "; go on with: floe " + scene.path + " -checkpoint_restart " +
+                                        checkpoint_file(scene)
+                                  : "";
   if (!result.done) say("floe: " + result.message + how + "\n", stderr);
   if (result.unstable_modes > 0)
     say("floe: warning: the equilibrium is unstable (" + std::to_string(result.unstable_modes) +
@@ -184,7 +188,6 @@ int run(const std::string& path, const floe::UserOptions& options,
   if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
   start.skips = skips_of(scene, start.lattice);
   for (const std::string& remark : scene.remarks) say(remark + "\n");
-  for (const std::string& warning : scene.warnings) say("floe: warning: " + warning + "\n", stderr);
   const std::string& why = start.skips.needs_space;
   say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
   const std::string processors = built_for(PETSC_COMM_WORLD);

@@ -30,7 +30,8 @@ struct MeshReport {
   std::int64_t degenerate = 0;
   std::optional<Calibration> calibration;
   std::optional<StrengthCalibration> strength;
-  std::function<void()> keep = [] {};  ///< writes the mesh's file, if it is to be written. Collective
+  std::function<void()> keep = [] {
+  };  ///< writes the mesh's file, if it is to be written. Collective
 };
 
 /// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective;

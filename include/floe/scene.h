@@ -96,8 +96,8 @@ struct Scene {
   struct {
     std::string dir;         ///< default out/NAME
     bool overwrite = false;  ///< take a folder that would be refused
-    double history = 0;  ///< 0: every load step; explicit: 200 rows
-    double fields = 0;   ///< 0: first and last state only
+    double history = 0;      ///< 0: every load step; explicit: 200 rows
+    double fields = 0;       ///< 0: first and last state only
   } output;
   struct {
     double every = 600;   ///< wall time between two [s]
@@ -109,7 +109,7 @@ struct Scene {
   bool check_only = false;
   std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
   std::vector<std::string> remarks;      ///< for the first lines of a run
-  std::vector<std::string> warnings;  ///< numbers that look as if units were mistaken
+  std::vector<std::string> warnings;     ///< numbers that look as if units were mistaken
   std::set<std::string> unused_options;  ///< PETSc's that no error says if nothing asks for them
 };
 

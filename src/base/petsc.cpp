@@ -7,7 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "floe/base/options.h"
 #include "option_names.h"
+#include "solver_options.h"
 
 namespace floe {
 namespace {
@@ -153,14 +155,17 @@ class Without {
 void put_petsc_options(const UserOptions& user) {
   constexpr int most = 400;  // PETSc 3.18 has room for 512
   int count = 0;
+  std::string problem;
   for (const auto& [name, given] : user.merged()) {
     if (!is_petsc_option(name)) continue;
     if (given.source == Source::environment && !is_environment_option(name)) continue;
+    if (problem.empty()) problem = solver_option_problem(name, given.value);
     if (++count > most)
       throw InputError(name + ": more than " + std::to_string(most) + " options of PETSc's");
     check(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
                                given.value.empty() ? nullptr : given.value.c_str()));
   }
+  throw_verdict(problem, MPI_COMM_WORLD);
   check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
 }
 

@@ -124,7 +124,8 @@ void Output<Space>::Impl::open_files(const std::string& options_yaml, bool resta
   history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
   keep_what_frames_need();
   fields.emplace(dir, lattice, restarted ? memory.frames : -1);
-  if (restarted) std::filesystem::remove(dir + "/summary.json");  // it says how an earlier part ended
+  if (restarted)
+    std::filesystem::remove(dir + "/summary.json");  // it says how an earlier part ended
   write_whole(dir + "/options.yaml", options_yaml);
 }
 

@@ -25,8 +25,8 @@ using Json = nlohmann::ordered_json;
 
 /// What a run writes, beside temporary files.
 constexpr std::array<std::string_view, 9> results{
-    "lattice.h5", "options.yaml", "history.csv",   "fields.h5",
-    "fields.xmf", "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
+    "lattice.h5",  "options.yaml", "history.csv",   "fields.h5",
+    "fields.xmf",  "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
     "summary.json"};
 /// Removed when a run begins: what would contradict it until its own is written.
 constexpr std::array<std::string_view, 5> contradicting{
@@ -57,8 +57,8 @@ bool is_never_a_folder(const fs::path& dir) {
 }
 
 bool is_folder_of_a_run(const fs::path& dir) {
-  return is_there(dir / ".lock") ||
-         (is_there(dir / "options.yaml") && is_there(dir / "lattice.h5") && is_there(dir / "history.csv"));
+  return is_there(dir / ".lock") || (is_there(dir / "options.yaml") &&
+                                     is_there(dir / "lattice.h5") && is_there(dir / "history.csv"));
 }
 
 /// Something in the folder that is not there to be overlooked; empty: it is as good as empty.
@@ -77,9 +77,9 @@ std::string first_entry(const fs::path& dir) {
 /// Whether a path names a file in `dir` that a run writes, by whatever way it leads there.
 std::string result_named(const fs::path& path, const fs::path& dir) {
   const fs::path folder = whole_path(dir);
-  for (const fs::path& way : {whole_path(path.parent_path().empty() ? "." : path.parent_path()) /
-                                  path.filename(),
-                              whole_path(path)}) {
+  for (const fs::path& way :
+       {whole_path(path.parent_path().empty() ? "." : path.parent_path()) / path.filename(),
+        whole_path(path)}) {
     const std::string name = way.filename().string();
     if (way.parent_path() == folder &&
         std::find(results.begin(), results.end(), name) != results.end())
@@ -148,8 +148,8 @@ std::string new_run() {
   std::random_device chance;
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%08x%08x%08x", chance(), chance(),
-                static_cast<unsigned>(
-                    std::chrono::system_clock::now().time_since_epoch().count() & 0xffffffff));
+                static_cast<unsigned>(std::chrono::system_clock::now().time_since_epoch().count() &
+                                      0xffffffff));
   return text.data();
 }
 
@@ -245,8 +245,8 @@ void RunFolder::finish(const std::string& summary) {
 void RunFolder::fail(const std::string& why) noexcept {
   if (!begun_) return;
   try {
-    const Json json{{"status", "failed"}, {"message", why},        {"time", time_},
-                    {"steps", step_},     {"ranks", size(comm_)},  {"host", host_name()},
+    const Json json{{"status", "failed"},  {"message", why},           {"time", time_},
+                    {"steps", step_},      {"ranks", size(comm_)},     {"host", host_name()},
                     {"started", started_}, {"ended", date_and_time()}, {"version", FLOE_VERSION}};
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     try {

@@ -88,10 +88,7 @@ std::string first_missing(const fs::path& dir) {
 }  // namespace
 
 RunLock::RunLock(const std::string& dir)
-    : dir_(dir),
-      path_(dir + "/.lock"),
-      held_path_(dir + "/.lock.held"),
-      made_(first_missing(dir)) {
+    : dir_(dir), path_(dir + "/.lock"), held_path_(dir + "/.lock.held"), made_(first_missing(dir)) {
   // A run that gives up may remove the folder that it made at any moment.
   constexpr int enough = 100;
   for (int attempt = 0; file_ < 0; ++attempt) {
@@ -142,7 +139,8 @@ void RunLock::lock() {
     }
     lock_without_flock(why);
   }
-  struct stat mine {}, there {};
+  struct stat mine {
+  }, there{};
   const bool same = ::fstat(file_, &mine) == 0 && ::stat(path_.c_str(), &there) == 0 &&
                     mine.st_ino == there.st_ino && mine.st_dev == there.st_dev;
   if (!same) ::close(std::exchange(file_, -1));

@@ -57,7 +57,8 @@ std::string help() {
     text += line + std::string(tool.line) + "\n";
   }
   return text +
-         "\nTopics: scenes (those that come with floe), options (all of them), a section or key of\n"
+         "\nTopics: scenes (those that come with floe), options (all of them), a section or key "
+         "of\n"
          "options (floe help sheet), version.\n";
 }
 

@@ -21,7 +21,7 @@ constexpr std::array table{
     OptionSpec{"forces", choices, "(required)", "",
                "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},
-    OptionSpec{"gravity", number, "9.81", "m/s^2", ">= 1e-6, <= 1e6",
+    OptionSpec{"gravity", number, "9.81", "m/s^2", ">= 1e-12, <= 1e6",
                "acceleration of gravity, along -z"},
     OptionSpec{"lattice_file", text, "(none: the sheet is meshed)", "", "",
                "HDF5 file with bodies and beams (docs/model.md), instead of sheet:"},
@@ -30,11 +30,11 @@ constexpr std::array table{
     OptionSpec{"check", flag, "false", "", "",
                "read, mesh and build everything, write nothing, stop before the run"},
 
-    OptionSpec{"sheet: length", number, "40", "m", ">= 1e-6, <= 1e7",
+    OptionSpec{"sheet: length", number, "40", "m", ">= 1e-9, <= 1e9",
                "extent in x; the plan is centred on the origin"},
-    OptionSpec{"sheet: width", number, "(sheet: length)", "m", ">= 1e-6, <= 1e7", "extent in y"},
-    OptionSpec{"sheet: thickness", number, "1", "m", ">= 1e-6, <= 1e5", "extent in z"},
-    OptionSpec{"sheet: element_size", number, "2", "m", ">= 1e-6, <= 1e7",
+    OptionSpec{"sheet: width", number, "(sheet: length)", "m", ">= 1e-9, <= 1e9", "extent in y"},
+    OptionSpec{"sheet: thickness", number, "1", "m", ">= 1e-9, <= 1e9", "extent in z"},
+    OptionSpec{"sheet: element_size", number, "2", "m", ">= 1e-9, <= 1e9",
                "flat-to-flat size of the regular hexagon of the mean cell area"},
     OptionSpec{"sheet: seed", integer, "1", "", ">= 0, <= 9223372036854775807",
                "of the random generators: same seed, same mesh, on any number of ranks"},
@@ -59,9 +59,10 @@ constexpr std::array table{
     OptionSpec{"cut: NAME: to", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x, y of the other end", 2},
 
-    OptionSpec{"ice: young", number, "4e9", "Pa", ">= 1, <= 1e15", "Young's modulus of the beams"},
+    OptionSpec{"ice: young", number, "4e9", "Pa", ">= 1, <= 1e18", "Young's modulus of the beams"},
     OptionSpec{"ice: poisson", number, "0.3", "", "> -1, < 0.5", "Poisson's ratio of the beams"},
-    OptionSpec{"ice: density", number, "920", "kg/m^3", ">= 1e-3, <= 1e6", "density of the bodies"},
+    OptionSpec{"ice: density", number, "920", "kg/m^3", ">= 1e-6, <= 1e12",
+               "density of the bodies"},
 
     OptionSpec{
         "beam: shear", choice, "one_point", "", "one_point | exact | none",
@@ -220,10 +221,12 @@ constexpr std::array table{
         "dynamics: an error of the energy balance above this part of the energies that moved "
         "stops the run"},
 
-    OptionSpec{"limit: steps", number, "1e11", "", "> 0",
+    OptionSpec{"limit: steps", number, "1e11", "", ">= 1, <= 1e18",
                "a run that would take more steps is refused before the first"},
-    OptionSpec{"limit: frames", number, "1e5", "", "> 0", "the same for frames of fields.h5"},
-    OptionSpec{"limit: disk", number, "1000", "GB", "> 0", "the same for the room on disk"},
+    OptionSpec{"limit: frames", number, "1e5", "", ">= 1, <= 1e12",
+               "the same for frames of fields.h5"},
+    OptionSpec{"limit: disk", number, "1000", "GB", ">= 1e-6, <= 1e9",
+               "the same for the room on disk"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
     OptionSpec{"output: overwrite", flag, "false", "", "",

@@ -30,7 +30,7 @@ std::string command_that_makes(const std::string& file, const std::string& scene
 void require_lattice_file(const Scene& scene, MPI_Comm comm) {
   std::string verdict;
   std::error_code error;
-  if (rank(comm) == 0 && !std::filesystem::exists(scene.lattice_file, error)) {
+  if (rank(comm) == 0 && !std::filesystem::exists(scene.lattice_file, error) && !error) {
     std::ifstream file(scene.path);
     std::ostringstream text;
     text << file.rdbuf();

@@ -99,9 +99,7 @@ Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file
   } else {
     Tessellation made = tessellate(plan, comm, on_iteration);
     relaxed = {std::move(made.generators), made.iterations};
-    keep = [plan, file, comm, relaxed] {
-      on_root(comm, [&] { write(plan, file, relaxed); });
-    };
+    keep = [plan, file, comm, relaxed] { on_root(comm, [&] { write(plan, file, relaxed); }); };
   }
   Tessellation cells = tessellate(plan, std::move(relaxed.generators));
   cells.iterations = relaxed.iterations;

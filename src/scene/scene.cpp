@@ -41,8 +41,9 @@ void read_time(Options& options, Scene& scene) {
 void read_dynamics(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::quasistatic) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
-    for (const auto* key : {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "time: safety",
-                            "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
+    for (const auto* key :
+         {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "time: safety",
+          "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
       options.refuse(key, why);
     return;
   }

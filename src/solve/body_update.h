@@ -13,8 +13,8 @@
 
 #include <cmath>
 
-#include "floe/base/rotation.h"
 #include "base/simd.h"
+#include "floe/base/rotation.h"
 
 namespace floe {
 

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <string>
 
+#include "base/format.h"
 #include "solve/dynamic_run.h"
 #include "solve/liealpha.h"
 #include "solve/motion_equations.h"
 #include "solve/newton.h"
 #include "solve/numbers.h"
 #include "solve/step_plan.h"
-#include "base/format.h"
 #include "solve/ts_options.h"
 
 namespace floe {

@@ -3,10 +3,10 @@
 #include <limits>
 #include <sstream>
 
+#include "base/format.h"
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
-#include "base/format.h"
 
 namespace floe {
 namespace {

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <string>
 
+#include "base/format.h"
 #include "solve/body_equations.h"
 #include "solve/dynamic_run.h"
 #include "solve/explicit_run.h"
 #include "solve/numbers.h"
 #include "solve/rk_stability.h"
-#include "base/format.h"
 
 namespace floe {
 namespace {

@@ -257,7 +257,7 @@ TEST(OnOneRank, AnObstacle) {
     scene.integrator = Integrator::leapfrog;
     scene.forces.contact = true;
     scene.contact.young = 1e8;
-    Obstacle hammer = box({at[0], at[1], at[2] + 0.3}, {0.2, 0.2, 0.06}, {10, 20, 30});
+    Obstacle hammer = box({at[0], at[1], at[2] + 0.36}, {0.2, 0.2, 0.06}, {10, 20, 30});
     hammer.name = "hammer";
     hammer.motion.velocity = {0, 0, -20};
     scene.obstacles = {hammer};

@@ -15,7 +15,8 @@ namespace {
 using test::Random;
 using Real = long double;
 
-/// A block of beams between few bodies, so that each has several.
+/// A block of beams between few bodies, so that each has several. No chord is shorter than half its
+/// length at rest: forces of a beam that is squeezed to a point grow without bound.
 template <template <class> class Frame>
 struct Case {
   static constexpr std::size_t bodies = 5;
@@ -26,7 +27,7 @@ struct Case {
 
   Case(Random& random, double turn) {
     for (std::size_t b = 0; b < bodies; ++b) {
-      const Vec3<double> u = random.vector(0.3), v = random.vector(1), w = random.vector(1);
+      const Vec3<double> u = random.vector(0.05), v = random.vector(1), w = random.vector(1);
       const Quat<double> q = random.rotation(random.uniform(0, turn));
       const std::array<double, 13> all{u.x, u.y, u.z, q.w, q.x, q.y, q.z,
                                        v.x, v.y, v.z, w.x, w.y, w.z};

@@ -91,8 +91,8 @@ class ExplicitLimits(unittest.TestCase):
         self.assertIn("limit: velocity 0.05 m/s", run.error)
 
     def test_options_of_solvers_are_refused(self):
-        for option in ("-snes_rtol", "-ksp_type", "-pc_type", "-mat_type"):
-            run = Run(PULL, option, "1")
+        for option, value in (("-snes_rtol", "0.1"), ("-ksp_type", "cg"), ("-pc_type", "lu"), ("-mat_type", "aij")):
+            run = Run(PULL, option, value)
             self.assertEqual(run.code, 2, option + run.error)
             self.assertIn(option[1:], run.error)
             self.assertIn("explicit", run.error)

@@ -4,12 +4,12 @@ import os
 import resource
 import shutil
 import subprocess
+import time
 import unittest
 from pathlib import Path
 
 import h5py
 
-from launch import FLOE
 from running import AFLOAT, BAD_INPUT, FAILED, LOADED, RunningTest
 
 SHORT = ["-time_end", "0.5"]
@@ -42,9 +42,14 @@ class Lock(RunningTest):
         self.check_locked(environment={"HDF5_USE_FILE_LOCKING": "FALSE"})
 
     def test_two_that_begin_together(self):
-        codes = sorted(p.wait() for p in [self.begin("-ts_max_steps", "20000") for _ in range(2)])
-        self.assertEqual(codes, [0, 2])
-        self.assertEqual(self.summary()["status"], "done")
+        both = [self.begin() for _ in range(2)]  # of which neither ends by itself
+        while all(process.poll() is None for process in both):
+            time.sleep(0.01)
+        refused, running = sorted(both, key=lambda process: process.poll() is None)
+        self.finish(refused, BAD_INPUT)
+        history = self.folder / "out/scene/history.csv"
+        self.wait(running, lambda: history.exists() and history.read_text().count("\n") > 2)
+        self.stop(running)
 
     def test_a_check_beside_a_run(self):
         first = self.running()

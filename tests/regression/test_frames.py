@@ -164,7 +164,8 @@ class Readers(FramesTest):
 
     def test_nothing_is_torn(self):
         """What is newest is read again and again while a run writes as fast as it can."""
-        process = self.begin("-output_fields", "0.001", "-output_history", "0.1", "-time_end", "1000")
+        process = self.begin("-output_fields", "0.001", "-output_history", "0.1", "-time_end", "1000",
+                             "-limit_frames", "1e9", "-limit_disk", "1e9")
         folder, reads, seen = self.folder / "b", 0, -1
         while reads < (3000 if FULL else 50):
             self.assertIsNone(process.poll())
@@ -194,7 +195,7 @@ class Readers(FramesTest):
         self.assertGreater(len(check_names(folder, 10)), 100)
 
     def test_tools_on_a_run_under_way_and_on_a_killed_one(self):
-        process = self.begin("-output_fields", "0.002")
+        process = self.begin("-output_fields", "0.002", "-time_end", "1e4", "-limit_frames", "1e9", "-limit_disk", "1e9")
         folder = self.folder / "b"
         while process.poll() is None and len(grids(folder)) < 3:
             time.sleep(0.01)
@@ -214,9 +215,9 @@ class Readers(FramesTest):
                 self.assertIsNone(process.poll())
                 process.kill()
                 process.wait()
-        late = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--time", "99"], capture_output=True, text=True)
+        late = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--time", "99999"], capture_output=True, text=True)
         self.assertEqual(late.returncode, 2)
-        self.assertIn("--time 99: the frames of", late.stderr)
+        self.assertIn("--time 99999: the frames of", late.stderr)
 
 
 class Interrupted(FramesTest):

@@ -81,7 +81,7 @@ class Pipes(RunningTest):
     def test_a_reader_that_leaves(self):
         """floe SCENE | head -1: the run goes on to its end."""
         for ranks in (1, 2):
-            command = " ".join(map(str, on_ranks(ranks, [FLOE, "scene.yaml", "-time_end", "20"])))
+            command = " ".join(map(str, on_ranks(ranks, [FLOE, "scene.yaml", "-time_end", "2"])))
             done = subprocess.run(["bash", "-c", f"{command} | head -1; exit ${{PIPESTATUS[0]}}"], cwd=self.folder,
                                   capture_output=True, text=True, env=ENVIRONMENT)
             self.assertEqual(done.stdout.count("\n"), 1)

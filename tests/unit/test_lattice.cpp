@@ -276,7 +276,7 @@ TEST(LatticeFile, WrongValuesAreRefused) {
     return [=](LatticeFile& file) { file.change(name, columns, edit); };
   };
   expect_refused("/bodies/mass", "> 0", spoil("/bodies/mass", 1, first(-1)));
-  expect_refused("/bodies/mass", "> 0", spoil("/bodies/mass", 1, first(std::nan(""))));
+  expect_refused("/bodies/mass", "finite", spoil("/bodies/mass", 1, first(std::nan(""))));
   expect_refused("/bodies/inertia", "> 0", spoil("/bodies/inertia", 3, first(0)));
   expect_refused("/bodies/position", "finite", spoil("/bodies/position", 3, first(INFINITY)));
   expect_refused("/bodies/orientation", "unit quaternion",

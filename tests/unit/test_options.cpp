@@ -161,7 +161,7 @@ TEST(SceneKeys, HelpOfATopicIsASectionOrAKey) {
   EXPECT_EQ(lines("cut_mine"), 2);
   EXPECT_EQ(options_topic("shet"), "");
   EXPECT_EQ(options_topic(""), "");
-  EXPECT_TRUE(contains(options_topic("sheet_thickness"), "a number >= 1e-6, <= 1e5 [m]"));
+  EXPECT_TRUE(contains(options_topic("sheet_thickness"), "a number >= 1e-9, <= 1e9 [m]"));
 }
 
 TEST_F(SceneOptions, DefaultsOfTheTableAreThoseOfTheStructs) {
@@ -278,7 +278,7 @@ TEST_F(SceneOptions, AnUnknownOptionNamesTheNearest) {
 
 TEST_F(SceneOptions, ErrorsNameKeyValueAndWhatIsAllowed) {
   EXPECT_EQ(error_with("sheet_thickness: -3\n"),
-            "sheet: thickness: -3 must be a number >= 1e-6, <= 1e5 [m] (story.yaml, line 3)");
+            "sheet: thickness: -3 must be a number >= 1e-9, <= 1e9 [m] (story.yaml, line 3)");
   EXPECT_EQ(error_with("ice:\n  young: nan\n"),
             "ice: young: nan must be a number >= 1, <= 1e15 [Pa] (story.yaml, line 4)");
   for (const auto* nothing : {"", "~", "null"})

@@ -25,8 +25,8 @@ enum class Place {
   swapped,  ///< for what changes often; sync_to_disk() brings it to the disk
 };
 
-/// Puts a finished temporary file in the place of `path`; who has the old one open keeps it. Without
-/// success neither the temporary file nor a change of `path` is left. \throws FileError
+/// Puts a finished temporary file in the place of `path`; who has the old one open keeps it.
+/// Without success neither the temporary file nor a change of `path` is left. \throws FileError
 void put_in_place(const std::string& temporary, const std::string& path,
                   Place place = Place::renamed);
 

@@ -19,8 +19,8 @@ std::string built_for();
 /// loader takes on each machine the best library that its processor can run). Collective.
 std::string built_for(MPI_Comm comm);
 
-/// Version of floe, what it is built for, then one line per library, as it is found at run time. Needs neither MPI nor
-/// PETSc to have begun.
+/// Version of floe, what it is built for, then one line per library, as it is found at run time.
+/// Needs neither MPI nor PETSc to have begun.
 std::string version_text();
 
 }  // namespace floe

@@ -15,7 +15,8 @@ namespace floe {
 struct FolderWish {
   std::string dir;
   std::string scene;  ///< the scene file; may be the folder's own options.yaml
-  std::vector<std::pair<std::string, std::string>> inputs;  ///< key and path of other files it reads
+  std::vector<std::pair<std::string, std::string>>
+      inputs;              ///< key and path of other files it reads
   bool overwrite = false;  ///< what an interrupted run, or somebody else, left may be lost
   bool goes_on = false;    ///< a restart: the folder's files are needed
 };

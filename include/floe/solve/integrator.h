@@ -36,12 +36,12 @@ struct RunResult {
   std::int64_t steps = 0;      ///< since time 0
   std::int64_t steps_now = 0;  ///< explicit: since the start or restart
   std::int64_t newton_iterations = 0;
-  std::int64_t factorisations = 0;   ///< quasistatic: of tangents
-  std::string stepper;               ///< explicit: the type that stepped
-  double dt = 0;                     ///< last step taken
-  double stable_dt = 0;              ///< explicit: the largest stable step
-  std::string limited_by;            ///< explicit: what limits it
-  std::int64_t unstable_modes = -1;  ///< of the last equilibrium; -1: not known
+  std::int64_t factorisations = 0;    ///< quasistatic: of tangents
+  std::string stepper;                ///< explicit: the type that stepped
+  double dt = 0;                      ///< last step taken
+  double stable_dt = 0;               ///< explicit: the largest stable step
+  std::string limited_by;             ///< explicit: what limits it
+  std::int64_t unstable_modes = -1;   ///< of the last equilibrium; -1: not known
   std::vector<std::string> warnings;  ///< what forces had to say, in order of time; on rank 0
 };
 

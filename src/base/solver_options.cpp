@@ -1,0 +1,281 @@
+#include "solver_options.h"
+
+#include <petsc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "option_values.h"
+
+namespace floe {
+namespace {
+
+using enum Kind;
+
+/// What floe relies on, beside what PETSc asks of itself (3.18 to 3.22); of some, PETSc asks only
+/// after it has begun to compute, or not at all. Without a prefix of its solver's.
+constexpr std::array table{
+    // time steps
+    OptionSpec{"ts_dt", number, "", "s", "> 0", ""},
+    OptionSpec{"ts_max_time", number, "", "s", "> 0", ""},
+    OptionSpec{"ts_max_steps", integer, "", "", ">= 0", ""},
+    OptionSpec{"ts_max_reject", integer, "", "", ">= -1", ""},
+    OptionSpec{"ts_max_snes_failures", integer, "", "", ">= -1", ""},
+    OptionSpec{"ts_rtol", number, "", "", ">= 0", ""},
+    OptionSpec{"ts_atol", number, "", "", ">= 0", ""},
+    OptionSpec{"ts_monitor_frequency", integer, "", "", ">= -1", ""},
+    OptionSpec{"ts_adapt_safety", number, "", "", "> 0, <= 1", ""},
+    OptionSpec{"ts_adapt_reject_safety", number, "", "", "> 0, <= 1", ""},
+    OptionSpec{"ts_adapt_dt_min", number, "", "s", ">= 0", ""},
+    OptionSpec{"ts_adapt_dt_max", number, "", "s", "> 0", ""},
+    OptionSpec{"ts_adapt_max_ignore", number, "", "", ">= 0", ""},
+    OptionSpec{"ts_adapt_scale_solve_failed", number, "", "", "> 0, < 1", ""},
+    OptionSpec{"ts_adapt_time_step_increase_delay", integer, "", "", ">= 0", ""},
+    OptionSpec{"ts_adapt_wnormtype", choice, "", "", "2 | infinity", ""},
+    OptionSpec{"ts_liealpha_radius", number, "", "", ">= 0, <= 1", ""},
+    OptionSpec{"ts_liealpha_hold", number, "", "", ">= 1", ""},
+    // Newton's method
+    OptionSpec{"snes_rtol", number, "", "", ">= 0, < 1", ""},
+    OptionSpec{"snes_atol", number, "", "N", ">= 0", ""},
+    OptionSpec{"snes_stol", number, "", "", ">= 0", ""},
+    OptionSpec{"snes_max_it", integer, "", "", ">= 1", ""},
+    OptionSpec{"snes_max_funcs", integer, "", "", ">= -1", ""},
+    OptionSpec{"snes_max_fail", integer, "", "", ">= -1", ""},
+    OptionSpec{"snes_max_linear_solve_fail", integer, "", "", ">= -1", ""},
+    OptionSpec{"snes_divergence_tolerance", number, "", "", ">= -1", ""},
+    OptionSpec{"snes_linesearch_max_it", integer, "", "", ">= 1", ""},
+    OptionSpec{"snes_linesearch_order", integer, "", "", ">= 1, <= 3", ""},
+    OptionSpec{"snes_linesearch_alpha", number, "", "", "> 0, < 1", ""},
+    OptionSpec{"snes_linesearch_damping", number, "", "", "> 0, <= 1", ""},
+    OptionSpec{"snes_linesearch_maxstep", number, "", "", "> 0", ""},
+    OptionSpec{"snes_linesearch_minlambda", number, "", "", ">= 0, < 1", ""},
+    OptionSpec{"snes_linesearch_rtol", number, "", "", ">= 0, < 1", ""},
+    OptionSpec{"snes_linesearch_atol", number, "", "", ">= 0", ""},
+    OptionSpec{"snes_linesearch_ltol", number, "", "", ">= 0", ""},
+    OptionSpec{"ksp_ew_version", integer, "", "", ">= 1, <= 4", ""},
+    OptionSpec{"ksp_ew_rtol0", number, "", "", ">= 0, < 1", ""},
+    OptionSpec{"ksp_ew_rtolmax", number, "", "", ">= 0, < 1", ""},
+    OptionSpec{"ksp_ew_gamma", number, "", "", ">= 0, <= 1", ""},
+    OptionSpec{"ksp_ew_alpha", number, "", "", "> 1, <= 2", ""},
+    OptionSpec{"ksp_ew_threshold", number, "", "", "> 0, < 1", ""},
+    // linear solvers
+    OptionSpec{"ksp_rtol", number, "", "", ">= 0, < 1", ""},
+    OptionSpec{"ksp_atol", number, "", "", ">= 0", ""},
+    OptionSpec{"ksp_divtol", number, "", "", "> 1", ""},
+    OptionSpec{"ksp_max_it", integer, "", "", ">= 1", ""},
+    OptionSpec{"ksp_gmres_restart", integer, "", "", ">= 1", ""},
+    OptionSpec{"ksp_gmres_haptol", number, "", "", ">= 0", ""},
+    OptionSpec{"ksp_gmres_breakdown_tolerance", number, "", "", ">= 0", ""},
+    OptionSpec{"ksp_richardson_scale", number, "", "", "> 0", ""},
+    OptionSpec{"ksp_chebyshev_esteig_steps", integer, "", "", ">= 0", ""},
+    OptionSpec{"pc_factor_fill", number, "", "", ">= 1", ""},
+    OptionSpec{"pc_factor_levels", integer, "", "", ">= 0", ""},
+    OptionSpec{"pc_factor_zeropivot", number, "", "", ">= 0", ""},
+    OptionSpec{"pc_factor_shift_amount", number, "", "", ">= 0", ""},
+    OptionSpec{"pc_factor_column_pivot", number, "", "", ">= 0, <= 1", ""},
+    OptionSpec{"pc_sor_omega", number, "", "", "> 0, < 2", ""},
+    OptionSpec{"pc_sor_its", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_sor_lits", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_asm_overlap", integer, "", "", ">= 0", ""},
+    OptionSpec{"pc_asm_blocks", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_asm_local_blocks", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_bjacobi_blocks", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_bjacobi_local_blocks", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_mg_levels", integer, "", "", ">= 1, <= 100", ""},
+    OptionSpec{"pc_mg_multiplicative_cycles", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_gamg_process_eq_limit", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_gamg_coarse_eq_limit", integer, "", "", ">= 1", ""},
+    OptionSpec{"pc_gamg_threshold_scale", number, "", "", ">= 0", ""},
+    OptionSpec{"pc_gamg_agg_nsmooths", integer, "", "", ">= 0, <= 1", ""},
+    OptionSpec{"pc_gamg_square_graph", integer, "", "", ">= 0", ""},
+    OptionSpec{"pc_gamg_aggressive_coarsening", integer, "", "", ">= 0", ""},
+    // matrices and MUMPS (the numbers of its users' guide; PETSc sets those that are not here)
+    OptionSpec{"mat_type", choice, "", "",
+               "sbaij | seqsbaij | mpisbaij | baij | seqbaij | mpibaij | aij | seqaij | mpiaij",
+               ""},
+    OptionSpec{"mat_inode_limit", integer, "", "", ">= 1", ""},
+    OptionSpec{"mat_mumps_icntl_4", integer, "", "", ">= 0, <= 4", ""},
+    OptionSpec{"mat_mumps_icntl_6", integer, "", "", ">= 0, <= 7", ""},
+    OptionSpec{"mat_mumps_icntl_7", choice, "", "", "0 | 2 | 3 | 4 | 5 | 6 | 7", ""},
+    OptionSpec{"mat_mumps_icntl_8", choice, "", "",
+               "-2 | -1 | 0 | 1 | 2 | 3 | 4 | 5 | 6 | 7 | 8 | 77", ""},
+    OptionSpec{"mat_mumps_icntl_10", integer, "", "", ">= -100, <= 100", ""},
+    OptionSpec{"mat_mumps_icntl_11", integer, "", "", ">= 0, <= 2", ""},
+    OptionSpec{"mat_mumps_icntl_12", integer, "", "", ">= 0, <= 3", ""},
+    OptionSpec{"mat_mumps_icntl_13", integer, "", "", ">= -1", ""},
+    OptionSpec{"mat_mumps_icntl_14", integer, "", "%", ">= 0, <= 10000", ""},
+    OptionSpec{"mat_mumps_icntl_15", choice, "", "", "0", ""},
+    OptionSpec{"mat_mumps_icntl_19", choice, "", "", "0", ""},
+    OptionSpec{"mat_mumps_icntl_20", choice, "", "", "0 | 10", ""},
+    OptionSpec{"mat_mumps_icntl_22", choice, "", "", "0 | 1", ""},
+    OptionSpec{"mat_mumps_icntl_23", integer, "", "MB", ">= 0", ""},
+    OptionSpec{"mat_mumps_icntl_24", choice, "", "", "0 | 1", ""},
+    OptionSpec{"mat_mumps_icntl_25", choice, "", "", "0", ""},
+    OptionSpec{"mat_mumps_icntl_26", choice, "", "", "0", ""},
+    OptionSpec{"mat_mumps_icntl_28", integer, "", "", ">= 0, <= 2", ""},
+    OptionSpec{"mat_mumps_icntl_29", integer, "", "", ">= 0, <= 2", ""},
+    OptionSpec{"mat_mumps_icntl_31", choice, "", "", "0", ""},
+    OptionSpec{"mat_mumps_icntl_33", choice, "", "", "0 | 1", ""},
+    OptionSpec{"mat_mumps_icntl_35", integer, "", "", ">= 0, <= 3", ""},
+    OptionSpec{"mat_mumps_icntl_36", choice, "", "", "0 | 1", ""},
+    OptionSpec{"mat_mumps_icntl_38", integer, "", "", ">= 0, <= 1000", ""},
+    OptionSpec{"mat_mumps_cntl_1", number, "", "", ">= -1, <= 1", ""},
+    OptionSpec{"mat_mumps_cntl_2", number, "", "", ">= 0", ""},
+    OptionSpec{"mat_mumps_cntl_7", number, "", "", ">= 0", ""},
+    OptionSpec{"vecstash_initial_size", integer, "", "", ">= 0", ""},
+    // the session
+    OptionSpec{"check_pointer_intensity", integer, "", "", ">= 0, <= 2", ""},
+    OptionSpec{"log_threshold", number, "", "%", ">= 0", ""},
+    OptionSpec{"malloc_view_threshold", number, "", "", ">= 0", ""},
+};
+
+struct Useless {
+  std::string_view name, why;
+};
+constexpr auto no_mesh = "needs a mesh of PETSc's own, which floe has none of";
+constexpr auto no_adjoint = "floe solves no adjoint equations";
+/// PETSc would crash or make files that nobody reads.
+constexpr std::array useless{Useless{"ksp_view_diagonal_scale", "PETSc crashes on it"},
+                             Useless{"snes_convergence_estimate", no_mesh},
+                             Useless{"ts_convergence_estimate", no_mesh},
+                             Useless{"snes_adapt_initial", no_mesh},
+                             Useless{"snes_adapt_sequence", no_mesh},
+                             Useless{"snes_grid_sequence", no_mesh},
+                             Useless{"ts_adjoint_solve", no_adjoint},
+                             Useless{"ts_save_trajectory", no_adjoint},
+                             Useless{"pc_factor_in_place", "the matrix is needed again"}};
+
+bool is_called(std::string_view name, std::string_view known) {
+  return name == known || (name.size() > known.size() && name.ends_with(known) &&
+                           name[name.size() - known.size() - 1] == '_');
+}
+
+/// Of a range like "> 0, <= 1".
+bool within(double value, std::string_view allowed) {
+  while (!allowed.empty()) {
+    const auto comma = allowed.find(", ");
+    const std::string_view term = allowed.substr(0, comma);
+    const auto blank = term.find(' ');
+    const std::string_view sign = term.substr(0, blank);
+    const double bound = to_number(term.substr(blank + 1)).value();
+    if (sign == ">"    ? !(value > bound)
+        : sign == ">=" ? !(value >= bound)
+        : sign == "<"  ? !(value < bound)
+                       : !(value <= bound))
+      return false;
+    allowed = comma == std::string_view::npos ? std::string_view() : allowed.substr(comma + 2);
+  }
+  return true;
+}
+
+std::string refused(std::string_view name, std::string_view value, const std::string& allowed) {
+  return std::string(name) + ": " + (value.empty() ? "no value given," : shown(value)) +
+         " must be " + allowed;
+}
+
+/// Whether PETSc's 32-bit numbers hold it; -ts_max_steps is floe's own.
+bool fits(std::string_view name, double value) {
+  return name == "ts_max_steps" || std::abs(value) <= std::numeric_limits<PetscInt>::max();
+}
+
+bool is_good(const OptionSpec& spec, std::string_view value) {
+  if (spec.kind == integer) {
+    const auto n = to_integer(value);
+    return n && within(static_cast<double>(*n), spec.allowed) &&
+           fits(spec.key, static_cast<double>(*n));
+  }
+  if (spec.kind == number) {
+    const auto x = to_number(value);
+    return x && within(*x, spec.allowed);
+  }
+  const auto words = choices_of(spec.allowed);
+  return std::find(words.begin(), words.end(), value) != words.end();
+}
+
+std::string clip_problem(std::string_view name, std::string_view value) {
+  const auto list = to_list(value);
+  const auto at = [&](std::size_t k) { return list ? to_number(list->at(k)) : std::nullopt; };
+  if (list && list->size() == 2 && at(0) && at(1) && within(*at(0), "> 0, <= 1") &&
+      within(*at(1), ">= 1"))
+    return {};
+  return refused(name, value, "2 numbers: how much a step may shrink (> 0, <= 1), grow (>= 1)");
+}
+
+std::string lag_problem(std::string_view name, std::string_view value) {
+  const auto n = to_integer(value);
+  if (n && (*n == -2 || *n >= 1) && fits(name, static_cast<double>(*n))) return {};
+  return refused(name, value, "an integer >= 1, or -2 (only once)");
+}
+
+/// nan and infinities in any spelling that C's readers know.
+bool is_no_number(std::string_view word) {
+  std::string text;
+  for (const char c : word) {
+    if (c != '+' && c != '-')
+      text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return text == "inf" || text == "infinity" || text == "nan" || text.starts_with("nan(");
+}
+
+/// Why a file cannot be written, or nothing.
+std::string file_problem(std::string_view name, const std::string& file) {
+  std::error_code error;
+  const std::filesystem::path path(file);
+  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const std::string begin = std::string(name) + ": '" + file + "' cannot be written: ";
+  if (!std::filesystem::is_directory(folder, error))
+    return begin + "there is no folder '" + folder.string() + "'";
+  if (std::filesystem::is_directory(path, error)) return begin + "it is a folder";
+  const bool there = std::filesystem::exists(path, error);
+  if (access(there ? path.c_str() : folder.c_str(), W_OK) != 0) return begin + "no permission";
+  return {};
+}
+
+/// Of a viewer's value, TYPE:FILE:FORMAT:MODE, or FILE:... of a log.
+std::string viewer_problem(std::string_view name, std::string_view value) {
+  const auto has = [&](std::string_view word) { return name.find(word) != std::string_view::npos; };
+  const auto colon = value.find(':');
+  if (name == "info" || name == "log_trace") {
+    const std::string file(value.substr(0, colon));
+    return file.empty() || to_flag(file) ? "" : file_problem(name, file);
+  }
+  if (colon == std::string_view::npos) return {};
+  if (!has("view") && !has("monitor") && !has("reason")) return {};
+  const std::string_view type = value.substr(0, colon);
+  constexpr std::array on_file{"", "ascii", "binary", "hdf5", "vtk", "matlab", "glvis", "exodusii"};
+  if (std::find(on_file.begin(), on_file.end(), type) == on_file.end()) return {};
+  std::string_view file = value.substr(colon + 1);
+  file = file.substr(0, file.find(':'));
+  return file.empty() || file == "stdout" || file == "stderr"
+             ? ""
+             : file_problem(name, std::string(file));
+}
+
+}  // namespace
+
+std::string solver_option_problem(std::string_view name, std::string_view value) {
+  for (const Useless& u : useless) {
+    if (is_called(name, u.name) && to_flag(value).value_or(true))
+      return std::string(name) + ": would have no use here: " + std::string(u.why);
+  }
+  if (is_called(name, "ts_adapt_clip")) return clip_problem(name, value);
+  if (is_called(name, "snes_lag_jacobian") || is_called(name, "snes_lag_preconditioner"))
+    return lag_problem(name, value);
+  const OptionSpec* best = nullptr;
+  for (const OptionSpec& spec : table) {
+    if (is_called(name, spec.key) && (best == nullptr || spec.key.size() > best->key.size()))
+      best = &spec;
+  }
+  if (best != nullptr && !is_good(*best, value)) return refused(name, value, allowed_text(*best));
+  for (const std::string& word : to_list(value).value_or(std::vector<std::string>{})) {
+    if (is_no_number(word)) return refused(name, value, "finite");
+  }
+  return viewer_problem(name, value);
+}
+
+}  // namespace floe

@@ -1,0 +1,62 @@
+#!/usr/bin/python3
+"""Values of PETSc's own options that floe cannot use end with one line that names the option and what is allowed, with exit
+code 2 and before anything is made, at 1 and at 2 ranks, on the command line and in the environment."""
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from launch import ENVIRONMENT, FLOE, on_ranks, own_words
+
+STATIC = """forces: [beam]
+sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}
+boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
+load: {names: [p], p: {set: right, force: [1e5, 0, 0]}}
+"""
+MOVING = "integrator: implicit\n" + STATIC + "time: {end: 0.01}\n"
+
+CASES = [(STATIC, "snes_lag_jacobian", "0", "-2"), (STATIC, "snes_max_it", "-1", ">= 1"),
+         (STATIC, "snes_rtol", "nan", "< 1"), (STATIC, "snes_rtol", "-1", ">= 0"), (STATIC, "snes_atol", "-1", ">= 0"),
+         (STATIC, "mat_mumps_icntl_7", "99", "one of 0 | 2 | 3"), (STATIC, "mat_type", "dense", "sbaij"),
+         (STATIC, "snes_view", "ascii:/nonexist/x", "no folder '/nonexist'"), (STATIC, "ksp_rtol", "inf", "< 1"),
+         (STATIC, "check_pointer_intensity", "3", "<= 2"), (MOVING, "ts_max_steps", "-5", ">= 0"),
+         (MOVING, "ts_adapt_clip", "3,2", "shrink"), (MOVING, "ts_adapt_safety", "9", "<= 1"),
+         (MOVING, "ts_max_time", "-1", "> 0"), (MOVING, "ts_atol", "nan", ">= 0"), (MOVING, "ts_dt", "nan", "> 0")]
+
+
+class Values(unittest.TestCase):
+    def run_with(self, scene, words, environment, ranks):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "s.yaml").write_text(scene)
+            done = subprocess.run(on_ranks(ranks, [str(FLOE), "s.yaml", *words]), cwd=folder, capture_output=True, text=True,
+                                  timeout=600, env={**ENVIRONMENT, **environment})
+            return done.returncode, own_words(done.stderr).strip().splitlines(), Path(folder, "out").exists()
+
+    def check(self, ranks):
+        for scene, option, value, allowed in CASES:
+            with self.subTest(option=option, value=value):
+                code, lines, made = self.run_with(scene, ["-" + option, value], {}, ranks)
+                self.assertEqual((code, len(lines), made), (2, 1, False), lines)
+                for word in (option, value.removeprefix("ascii:"), allowed):
+                    self.assertIn(word, lines[0])
+
+    def test_on_one_rank(self):
+        self.check(1)
+
+    def test_on_two_ranks(self):
+        self.check(2)
+
+    def test_in_the_environment(self):
+        code, lines, made = self.run_with(STATIC, [], {"PETSC_OPTIONS": "-snes_rtol nan"}, 1)
+        self.assertEqual((code, len(lines), made), (2, 1, False), lines)
+        self.assertIn("snes_rtol", lines[0])
+
+    def test_good_values_are_taken(self):
+        for words in (["-snes_rtol", "1e-11"], ["-mat_type", "aij", "-pc_type", "lu"], ["-snes_lag_jacobian", "-2"],
+                      ["-mat_mumps_icntl_7", "0"]):
+            code, lines, _ = self.run_with(STATIC, words, {}, 1)
+            self.assertEqual(code, 0, lines)
+
+
+if __name__ == "__main__":
+    unittest.main()
