@@ -352,6 +352,17 @@ def elastica(elements):
     return straight_frame(10.0, elements, Section(0.01, 0.01, young=2.1e11, poisson=0.3, density=7850.0))
 
 
+def _count(text):
+    """A whole number of at least 1, as argparse's type."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{number} is not at least 1")
+    return number
+
+
+_count.__name__ = "whole number"
+
+
 class _Parser(argparse.ArgumentParser):
     """Says what is wrong with a command line in one line."""
 
@@ -368,7 +379,8 @@ def _arguments():
                                formatter_class=argparse.ArgumentDefaultsHelpFormatter)
         for option, (default, unit) in options.items():
             many = isinstance(default, tuple)
-            sub.add_argument(f"--{option}", type=type(default[0] if many else default), default=default,
+            sub.add_argument(f"--{option}", default=default,
+                             type=_count if unit == "n" else type(default[0] if many else default),
                              nargs=len(default) if many else None, metavar=unit.upper(), help=f"[{unit}]")
         sub.add_argument("file", metavar="FILE.h5")
         return sub
