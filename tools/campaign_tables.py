@@ -9,6 +9,7 @@ import numpy as np
 import campaign_figures as figures
 from campaign_cases import SHEETS, TESTS
 from floe_plate import simple_shear
+from floe_program import reading
 
 # E/Eb of one_point beams by independent static solutions: L/l: (mean, standard deviation, meshes) (docs/model.md)
 YOUNG = {2.22: (1.446, .198, 200), 3.33: (1.175, .043, 200), 4.44: (1.095, .022, 200), 6.67: (.966, .026, 120), 10: (.904, .014, 100),
@@ -23,9 +24,10 @@ class Campaign:
 
     def __init__(self, folder, label=""):
         self.folder, self.label = Path(folder), label
-        made_with = json.loads((self.folder / "campaign.json").read_text())
-        self.integrator, self.start, self.options = (made_with[key] for key in ("integrator", "start", "options"))
-        with h5py.File(self.folder / "results.h5") as file:
+        with reading(self.folder / "campaign.json"):
+            made_with = json.loads((self.folder / "campaign.json").read_text())
+            self.integrator, self.start, self.options = (made_with[key] for key in ("integrator", "start", "options"))
+        with reading(self.folder / "results.h5"), h5py.File(self.folder / "results.h5") as file:
             self.tables = {test: file[test][:] for test in TESTS if test in file}
             self.profiles = {name: data[:] for name, data in file.get("profiles", {}).items()}
 

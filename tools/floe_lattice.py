@@ -352,8 +352,26 @@ def elastica(elements):
     return straight_frame(10.0, elements, Section(0.01, 0.01, young=2.1e11, poisson=0.3, density=7850.0))
 
 
+def _count(text):
+    """A whole number of at least 1, as argparse's type."""
+    number = int(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{number} is not at least 1")
+    return number
+
+
+_count.__name__ = "whole number"
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with a command line in one line."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {' '.join(message.split())} ({self.prog} --help)\n")
+
+
 def _arguments():
-    parser = argparse.ArgumentParser(prog="floe make_lattice", description="Writes a lattice.h5 file for floe.")
+    parser = _Parser(prog="floe make_lattice", description="Writes a lattice.h5 file for floe.")
     kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
 
     def kind(name, text, **options):
@@ -361,7 +379,8 @@ def _arguments():
                                formatter_class=argparse.ArgumentDefaultsHelpFormatter)
         for option, (default, unit) in options.items():
             many = isinstance(default, tuple)
-            sub.add_argument(f"--{option}", type=type(default[0] if many else default), default=default,
+            sub.add_argument(f"--{option}", default=default,
+                             type=_count if unit == "n" else type(default[0] if many else default),
                              nargs=len(default) if many else None, metavar=unit.upper(), help=f"[{unit}]")
         sub.add_argument("file", metavar="FILE.h5")
         return sub
@@ -403,8 +422,8 @@ def main():
         else:
             lattice = makers[kind](**options)
         lattice.write(file)
-    except (ValueError, OSError) as error:
-        parser.error(str(error))
+    except (ValueError, OSError, OverflowError, ZeroDivisionError, MemoryError) as error:
+        parser.error(str(error) or "too large for the memory")
     print(f"{file}: {len(lattice.position)} bodies, {len(lattice.bodies)} beams")
 
 

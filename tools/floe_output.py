@@ -11,6 +11,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from floe_program import BadInput, reading
+
 # name: dataset of a time group of fields.h5, its column (None: length of the vector), unit, label
 BODY_QUANTITIES = {
     "ux": ("bodies_displacement", 0, "m", "displacement in x"),
@@ -41,7 +43,7 @@ class Lattice:
     """A lattice.h5."""
 
     def __init__(self, path):
-        with h5py.File(path) as file:
+        with reading(path), h5py.File(path) as file:
             self.position = file["bodies/position"][:]      # n x 3 [m]
             self.orientation = file["bodies/orientation"][:]  # n x 4
             self.beams = {name: data[:] for name, data in file.get("beams", {}).items()}
@@ -72,15 +74,23 @@ def frames_of(folder):
         files = [folder / "fields.h5"]
     frames = []
     for path in files:
-        with h5py.File(path) as file:
+        with reading(path), h5py.File(path) as file:
             frames += [(float(group.attrs["time"]), path, name) for name, group in file.items() if "time" in group.attrs]
     return sorted(frames)
 
 
 def rows_of(folder):
     """Rows of history.csv as {column: text}; of a run that is under way without a last one that is not whole yet."""
-    with open(Path(folder) / "history.csv", newline="") as file:
-        return list(csv.DictReader(line for line in file if line.endswith("\n")))
+    path = Path(folder) / "history.csv"
+    with reading(path), open(path, newline="") as file:
+        rows = list(csv.DictReader(line for line in file if line.endswith("\n")))
+        for number, row in enumerate(rows, 2):
+            for column, text in row.items():
+                try:
+                    float(text)
+                except (TypeError, ValueError):
+                    raise ValueError(f"line {number}: {column} is no number: {text!r}") from None
+        return rows
 
 
 class Output(Lattice):
@@ -89,7 +99,8 @@ class Output(Lattice):
     def __init__(self, folder):
         self.folder = Path(folder)
         summary = self.folder / "summary.json"
-        self.summary = json.loads(summary.read_text()) if summary.exists() else {}  # empty until the run has ended
+        with reading(summary):  # empty until the run has ended
+            self.summary = json.loads(summary.read_text()) if summary.exists() else {}
         super().__init__(self.folder / "lattice.h5")
         self._frames = frames_of(self.folder)
         self.times = np.array([time for time, _, _ in self._frames])
@@ -106,9 +117,9 @@ class Output(Lattice):
     def field(self, name, time):
         """Dataset `name` of the sample nearest to `time`."""
         if not self._frames:
-            raise KeyError(f"{self.folder} has no frame yet")
+            raise BadInput(f"{self.folder} has no frame yet")
         _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
-        with h5py.File(path) as file:
+        with reading(path), h5py.File(path) as file:
             return file[group][name][:]
 
     def body_quantity(self, name, time):
@@ -125,12 +136,18 @@ class Output(Lattice):
 
     def history(self, name):
         """One column of history.csv."""
-        return np.array([float(row[name]) for row in rows_of(self.folder)])
+        rows = rows_of(self.folder)
+        if rows and name not in rows[0]:
+            raise BadInput(f"{self.folder / 'history.csv'}: has no column {name}")
+        return np.array([float(row[name]) for row in rows])
 
     def options(self):
         """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""
         options, sections = {}, []
-        for line in (self.folder / "options.yaml").read_text().splitlines():
+        path = self.folder / "options.yaml"
+        with reading(path):
+            lines = path.read_text().splitlines()
+        for line in lines:
             match = re.match(r"( *)([^\s#:][^:]*):(?: (.*))?$", line)
             if not match:
                 continue

@@ -1,11 +1,16 @@
 """What the tools have in common: where floe and its scenes are, how a tool reads its command line and how it ends."""
 import argparse
+import contextlib
+import csv
+import errno
 import os
 import shutil
 import sys
 from pathlib import Path
 
 TOOLS = Path(__file__).resolve().parent
+# A path that the user can put right; others, as a full disk, are failures.
+NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG)
 HOME = TOOLS.parent  # the source tree, or share/floe of an installation: both hold tools/ and input/
 
 
@@ -30,10 +35,42 @@ def name():
     return Path(sys.argv[0]).name
 
 
+class BadInput(Exception):
+    """What the user can put right: a folder, a file, an argument. The text is one line; the exit code is 2."""
+
+
+class Parser(argparse.ArgumentParser):
+    """Says what is wrong with a command line in one line."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {' '.join(message.split())} ({self.prog} --help)\n")
+
+
 def parser(description, **options):
-    """An argparse.ArgumentParser that calls the tool as its users do."""
-    return argparse.ArgumentParser(prog=f"floe {name()}", description=description,
-                                   formatter_class=argparse.RawDescriptionHelpFormatter, **options)
+    """A parser that calls the tool as its users do."""
+    return Parser(prog=f"floe {name()}", description=description, formatter_class=argparse.RawDescriptionHelpFormatter,
+                  **options)
+
+
+@contextlib.contextmanager
+def reading(path):
+    """Whatever is wrong with a file while it is read becomes BadInput, which names it."""
+    try:
+        yield
+    except (OSError, LookupError, ValueError, TypeError, RuntimeError, csv.Error) as error:
+        why = error.strerror if isinstance(error, OSError) and error.strerror else " ".join(str(error).split())
+        raise BadInput(f"{path}: cannot be read: {why}") from error
+
+
+def picture(text):
+    """An argparse type: a file to draw into, whose ending matplotlib knows and whose folder is there."""
+    path = Path(text)
+    known = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "tif", "tiff", "webp")
+    if path.suffix[1:] not in known:
+        raise argparse.ArgumentTypeError(f"'{text}' must end in one of .{', .'.join(known)}")
+    if not path.parent.is_dir():
+        raise argparse.ArgumentTypeError(f"'{path.parent}' is no folder")
+    return text
 
 
 def count(text):
@@ -65,7 +102,11 @@ def run(main):
     except BrokenPipeError:  # its reader, as head, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
+    except BadInput as error:
+        print(f"floe {name()}: {error}", file=sys.stderr)
+        sys.exit(2)
     except OSError as error:
-        sys.exit(f"floe {name()}: {error}")
+        print(f"floe {name()}: {error}", file=sys.stderr)
+        sys.exit(2 if error.errno in NOT_THERE else 1)
     except KeyboardInterrupt:
         sys.exit(f"floe {name()}: stopped")

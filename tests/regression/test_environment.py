@@ -47,7 +47,7 @@ class Environment(Case):
         (self.folder / "home/.petscrc").write_text("junk that is no option\n-forces\n")
         for ranks in (1, 2):
             run = self.run_floe(SCENE, ranks=ranks, PETSC_OPTIONS="-sheet_thickness 7 stray -ts_type bdf -help")
-            self.assertEqual(run.stderr, "")
+            self.assertNotIn("floe:", run.stderr)  # progress may be there: the machine may be slow
             first = run.stdout.splitlines()[0]
             self.assertIn("options of the environment: none taken; not taken: ", first)
             self.assertIn("-integrator (.petscrc, line 2)", first)
@@ -114,14 +114,14 @@ class ManyOptions(Case):
         for ranks in (1, 2):
             # Cuts that cross no beam any more are no error under another sheet.
             run = self.run_floe(scene, "-sheet_seed", "2", ranks=ranks)
-            self.assertEqual(run.stderr, "")
+            self.assertNotIn("floe:", run.stderr)
             yaml = (self.folder / "out/s/options.yaml").read_text()
             self.assertIn("  o129:\n    shape: box\n", yaml)
 
     def test_too_many_for_petsc(self):
         words = [word for k in range(500) for word in (f"-ksp_a{k}", "1")]
         run = self.run_floe(SCENE, *words, code=2)
-        self.assertEqual(run.stderr.count("\n"), 1)
+        self.assertEqual(len(run.stderr.splitlines()), 1)
         self.assertIn("more than 400 options of PETSc's", run.stderr)
 
 

@@ -1,0 +1,100 @@
+#!/usr/bin/python3
+"""The tools answer bad input with one line and exit code 2: folders that are not there, damaged files, runs without that
+result, times out of range, pictures that cannot be drawn.
+"""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+TOOLS = REPOSITORY / "tools"
+READERS = ("plot_sheet", "plot_fragments", "plot_load", "plot_deflection", "campaign_report")
+SCENE = """forces: [beam]
+sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}
+boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
+"""
+
+
+class ToolsBadInput(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = Path(folder.name)
+        (cls.folder / "s.yaml").write_text(SCENE)
+        subprocess.run([str(FLOE), "s.yaml"], cwd=cls.folder, check=True, capture_output=True, timeout=600)
+
+    def refused(self, tool, *words, part=""):
+        with self.subTest(tool=tool, words=words):
+            run = subprocess.run([sys.executable, str(TOOLS / tool), *words], cwd=self.folder, capture_output=True,
+                                 text=True, timeout=600, env={**os.environ, "FLOE": str(FLOE)})
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)
+            self.assertIn(part, run.stderr)
+
+    def copy(self, name, *spoilt):
+        """A copy of the run with some of its files cut to 2,000 bytes of nonsense."""
+        shutil.copytree(self.folder / "out/s", self.folder / name)
+        for pattern in spoilt:
+            for file in (self.folder / name).glob(pattern):
+                file.write_text("{" * 2000)
+        return name
+
+    def test_no_folder_and_an_empty_one(self):
+        (self.folder / "empty").mkdir()
+        for tool in READERS:
+            for folder in ("none", "empty"):
+                self.refused(tool, folder, part=folder)
+
+    def test_damaged_files(self):
+        for tool in ("plot_sheet", "plot_deflection"):
+            self.refused(tool, self.copy(f"{tool}_summary", "summary.json"), part="summary.json")
+            self.refused(tool, self.copy(f"{tool}_lattice", "lattice.h5"), part="lattice.h5")
+            self.refused(tool, self.copy(f"{tool}_fields", "fields/*.h5"), part="fields")
+        self.refused("plot_load", self.copy("history", "history.csv"))
+        self.refused("plot_fragments", self.copy("breaks"))
+        (self.folder / "breaks/breaks.h5").write_text("no")
+        self.refused("plot_fragments", "breaks", part="breaks.h5")
+        (self.folder / "history/history.csv").write_text("time,wall_peak_force_x\n0,x\n")
+        self.refused("plot_load", "history", part="line 2")
+
+    def test_runs_without_that_result(self):
+        self.refused("plot_fragments", "out/s", part="nothing could break")
+        self.refused("plot_load", "out/s", part="no obstacles")
+        self.refused("plot_deflection", "out/s", part="bending")
+
+    def test_arguments(self):
+        for time in ("99", "-1", "nan"):
+            self.refused("plot_sheet", "out/s", "--time", time, part="--time")
+        self.refused("plot_sheet", "out/s", "--file", "x.zzz", part="must end in one of")
+        self.refused("plot_sheet", "out/s", "--file", "none/x.png", part="no folder")
+        self.refused("plot_sheet", "out/s", "--colour", "red", part="red")
+
+    def test_campaigns(self):
+        self.refused("campaign", "--only", "none", part="none")
+        self.refused("campaign", "--jobs", "0", part="0")
+        self.refused("campaign", "--tests", "foo", part="foo")
+        (self.folder / "c").mkdir()
+        (self.folder / "c/campaign.json").write_text("{")
+        self.refused("campaign", "--dir", "c", "--only", "L10_h1_3h", part="campaign.json")
+        self.refused("campaign_report", "c", part="campaign.json")
+        self.refused("strength", "--sizes", "a", part="a")
+        self.refused("strength", "--only", "none", part="none")
+        (self.folder / "runs.json").write_text("{")
+        self.refused("strength", "--dir", ".", "--only", "L10_1", part="runs.json")
+
+    def test_lattices(self):
+        self.refused("make_lattice", part="KIND")
+        self.refused("make_lattice", "block", "--size", "0", "1", "1", "x.h5")
+        self.refused("make_lattice", "cantilever", "--elements", "0", "x.h5")
+        self.refused("make_lattice", "rubble", "--columns", "0", "1", "1", "x.h5")
+        self.assertFalse((self.folder / "x.h5").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
