@@ -280,11 +280,11 @@ TEST_F(SceneOptions, ErrorsNameKeyValueAndWhatIsAllowed) {
   EXPECT_EQ(error_with("sheet_thickness: -3\n"),
             "sheet: thickness: -3 must be a number >= 1e-9, <= 1e9 [m] (story.yaml, line 3)");
   EXPECT_EQ(error_with("ice:\n  young: nan\n"),
-            "ice: young: nan must be a number >= 1, <= 1e15 [Pa] (story.yaml, line 4)");
+            "ice: young: nan must be a number >= 1, <= 1e18 [Pa] (story.yaml, line 4)");
   for (const auto* nothing : {"", "~", "null"})
     EXPECT_EQ(
         error_with("ice: {young: " + std::string(nothing) + "}\n"),
-        "ice: young: no value given, must be a number >= 1, <= 1e15 [Pa] (story.yaml, line 3)");
+        "ice: young: no value given, must be a number >= 1, <= 1e18 [Pa] (story.yaml, line 3)");
   EXPECT_EQ(error_with("beam: {shear: strong}\n"),
             "beam: shear: strong must be one of one_point | exact | none (story.yaml, line 3)");
   EXPECT_EQ(error_with("load: {names: [p], p: {set: left, force: [1, 2, 3, 4]}}\n"),
