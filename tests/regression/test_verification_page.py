@@ -40,11 +40,11 @@ class Page(unittest.TestCase):
 
     def test_broken_record(self):
         text, run = self.make()
-        self.assertEqual((text, run.returncode), (None, 1))
+        self.assertEqual((text, run.returncode), (None, 2))
         self.assertIn("holds no numbers", run.stderr)
         text, run = self.make(['{"section": "a"'])
         self.assertEqual(text, None)
-        self.assertEqual(run.returncode, 1)
+        self.assertEqual(run.returncode, 2)
         self.assertIn("line 1", run.stderr)
 
 
