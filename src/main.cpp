@@ -75,6 +75,9 @@ std::vector<std::string> names_of(const Columns& forces, const Columns& integrat
 /// The files of another run would be cut back.
 void require_same_run(const floe::Scene& scene, const floe::RunFolder& folder,
                       const std::string& run) {
+  if (run.empty())
+    throw floe::InputError("checkpoint: restart: '" + scene.checkpoint.restart +
+                           "': output/run is empty");
   if (folder.run().empty() || folder.run() == run) return;  // empty: copied without its .lock
   throw floe::InputError("checkpoint: restart: '" + scene.checkpoint.restart +
                          "' is of another run than the files in " + scene.output.dir +
