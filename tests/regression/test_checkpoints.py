@@ -197,7 +197,7 @@ class Order(CheckpointTest):
         log = self.folder / "log"
         log.unlink(missing_ok=True)
         environment = {**library(self.folder), "TEST_LOG": str(log)}
-        process = self.running("-checkpoint_every", "0.3", "-output_fields", "0.01", *ENDLESS, ranks=ranks, rows=1,
+        process = self.running("-checkpoint_every", "0.3", "-output_fields", "0.002", *ENDLESS, ranks=ranks, rows=1,
                                environment=environment)
         self.wait(process, lambda: log.read_text().count("scene/checkpoint.h5\n") >= 4)
         self.stop(process)
