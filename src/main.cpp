@@ -21,6 +21,8 @@
 #include "floe/lattice/folded.h"
 #include "floe/output/output.h"
 #include "floe/output/run_folder.h"
+#include "floe/restart.h"
+#include "program/go_on.h"
 #include "program/program.h"
 
 namespace {
@@ -57,7 +59,30 @@ struct Start {
   floe::MeshReport mesh;
   floe::Lattice lattice;
   floe::Skips skips;
+  std::string go_on;  ///< the command that goes on where this one stops
 };
+
+using Columns = std::vector<std::pair<std::string, double>>;
+
+std::vector<std::string> names_of(const Columns& forces, const Columns& integrator) {
+  std::vector<std::string> names;
+  for (const Columns* columns : {&forces, &integrator}) {
+    for (const auto& [name, value] : *columns) names.push_back(name);
+  }
+  return names;
+}
+
+/// The files of another run would be cut back.
+void require_same_run(const floe::Scene& scene, const floe::RunFolder& folder,
+                      const std::string& run) {
+  if (run.empty())
+    throw floe::InputError("checkpoint: restart: '" + scene.checkpoint.restart +
+                           "': output/run is empty");
+  if (folder.run().empty() || folder.run() == run) return;  // empty: copied without its .lock
+  throw floe::InputError("checkpoint: restart: '" + scene.checkpoint.restart +
+                         "' is of another run than the files in " + scene.output.dir +
+                         "; a run goes on in the folder where it began");
+}
 
 template <class Space>
 int run(const floe::Scene& scene, Start& start) {
@@ -91,10 +116,16 @@ int run(const floe::Scene& scene, Start& start) {
   std::optional<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
-  const auto open = [&] {
+  const auto open = [&](const std::vector<std::string>& columns) {
     reject_unused_options(scene.unused_options);
-    if (restart) require_files(scene.output.dir, *restart, PETSC_COMM_WORLD);
-    folder->begin(restart ? folder->run() : "");
+    if (restart) {
+      require_same_run(scene, *folder, restart->run);
+      require_files(scene.output.dir, *restart,
+                    columns_of(scene.boundaries, scene.loads, columns, scene.forces.fracture),
+                    PETSC_COMM_WORLD);
+    }
+    folder->begin(restart ? restart->run : "");
+    if (restart) make_newest(scene.checkpoint.restart, checkpoint_file(scene), PETSC_COMM_WORLD);
     start.mesh.keep();
     start.mesh.keep = [] {};
     if (rank() == 0) folded.unfold(lattice);  // others need no geometry but places
@@ -107,15 +138,15 @@ int run(const floe::Scene& scene, Start& start) {
   };
 
   // 5. Run
-  const auto prepare = [&] {
-    if (!output) open();
+  const auto prepare = [&](const std::vector<std::string>& columns) {
+    if (!output) open(columns);
   };
   const auto observe = [&](const Accepted<Space>& accepted) {
     if (accepted.step == 0 && scene.integrator != Integrator::leapfrog) {
       first = First<Space>{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
       return;
     }
-    prepare();
+    prepare(names_of(accepted.forces, accepted.columns));
     output->accept(accepted);
     folder->note(accepted.state.time, accepted.step);
   };
@@ -123,8 +154,15 @@ int run(const floe::Scene& scene, Start& start) {
     if (checkpoint.loading()) {
       restart.emplace().remember(checkpoint);
     } else {
-      OutputMemory(output->memory()).remember(checkpoint);
+      OutputMemory files = output->memory();
+      files.run = folder->run();
+      files.remember(checkpoint);
     }
+  };
+  // A checkpoint must not outlive the files that it knows of.
+  const auto before_checkpoint = [&](const std::vector<std::string>& columns) {
+    prepare(columns);
+    output->sync();
   };
   // Bad input ends with one line: what may be meant so is said once the run is known to be
   // possible.
@@ -135,13 +173,13 @@ int run(const floe::Scene& scene, Start& start) {
     return !scene.check_only;
   };
   const RunResult result = integrate(scene, model, rest ? &*rest : nullptr, lattice_id, on_plan,
-                                     observe, prepare, remember);
+                                     observe, before_checkpoint, remember);
   if (scene.check_only) {
     say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
         std::to_string(model.part().global_beams) + " beams\n");
     return done;
   }
-  prepare();  // a run that found not even a first state leaves a summary that says so
+  prepare({});  // a run that found not even a first state leaves a summary that says so
   const bool goes_on = result.stopped && !is_static;  // where it was
   if (!goes_on) output->finish();
 
@@ -151,9 +189,7 @@ int run(const floe::Scene& scene, Start& start) {
   folder->finish(summary.json);
   say(summary.text);
   say("results: " + scene.output.dir + "/ (summary.json, history.csv; fields.xmf for ParaView)\n");
-  const std::string how = goes_on ? "; go on with: floe " + scene.path + " -checkpoint_restart " +
-                                        checkpoint_file(scene)
-                                  : "";
+  const std::string how = goes_on ? "; go on with: " + start.go_on : "";
   if (!result.done) say("floe: " + result.message + how + "\n", stderr);
   if (result.unstable_modes > 0)
     say("floe: warning: the equilibrium is unstable (" + std::to_string(result.unstable_modes) +
@@ -163,15 +199,39 @@ int run(const floe::Scene& scene, Start& start) {
   return result.done ? done : result.stopped ? stopped : failed;
 }
 
+/// What a user has asked for.
+struct Wish {
+  const floe::program::Words& words;  ///< the command
+  const floe::UserOptions& options;
+  const floe::Restart& restart;
+};
+
+/// With `auto` a run that is done is not made again.
+bool is_done(const floe::Scene& scene, const floe::Restart& restart) {
+  constexpr double rounding = 1e-12;
+  const std::string& dir = restart.done_in;
+  if (dir.empty()) return false;
+  if (scene.time.end > (1 + rounding) * restart.done_end) {
+    if (!restart.file.empty()) return false;
+    throw floe::InputError("time: end: the run in " + dir +
+                           " is done and has left no checkpoint to go on from; a section "
+                           "'checkpoint' would have made it leave one");
+  }
+  say("the run in " + dir + " is done already; nothing is touched\n");
+  return true;
+}
+
 /// \param folder  where the results go, for who ends the run; none if the scene is only checked
-int run(const std::string& path, const floe::UserOptions& options,
-        std::optional<floe::RunFolder>& folder) {
+int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
   using namespace floe;
-  Start start{MPI_Wtime(), folder, {}, {}, {}};
+  Start start{MPI_Wtime(), folder, {}, {}, {}, {}};
 
   // 1. The scene, and the lock of its output folder
-  Scene scene = read_scene(path, options);
+  Scene scene = read_scene(user.restart.scene, user.options);
+  if (is_done(scene, user.restart)) return done;
   check_reports(scene);
+  for (const std::string& remark : user.restart.remarks) scene.remarks.push_back(remark);
+  start.go_on = program::command_to_go_on(user.words, checkpoint_file(scene), size());
   const FolderWish wish{scene.output.dir, scene.path, scene.inputs, scene.output.overwrite,
                         !scene.checkpoint.restart.empty()};
   if (!scene.check_only) {
@@ -206,7 +266,7 @@ int run(const std::string& path, const floe::UserOptions& options,
 }
 
 /// The run, and how it ends if something ends it: one line, and what the folder should say.
-int run_to_an_end(const std::string& path, const floe::UserOptions& options) {
+int run_to_an_end(const Wish& user) {
   std::optional<floe::RunFolder> folder;
   const auto end = [&](const floe::Verdict& why, int code) {
     if (folder && floe::rank() == 0) folder->fail(why.what());
@@ -216,7 +276,7 @@ int run_to_an_end(const std::string& path, const floe::UserOptions& options) {
     return code;
   };
   try {
-    const int code = run(path, options, folder);
+    const int code = run(user, folder);
     floe::set_last_words({});
     return code;
   } catch (const floe::InputError& error) {
@@ -234,17 +294,19 @@ int main(int argc, char** argv) {
   if (const auto code = floe::program::answer(argc, argv)) return *code;
   if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
     return floe::program::print_options(help);
+  const floe::program::Words words(argv, argv + argc);
   floe::StopSignals signals;
   floe::Mpi mpi(argc, argv);
   try {
     const floe::CommandLine line = floe::read_command_line(argc, argv);
-    const floe::UserOptions options{
-        floe::read_environment(line.petscrc),
-        floe::read_scene_text(line.scene, MPI_COMM_WORLD, floe::program::near_scene), line.options};
+    floe::UserOptions options{floe::read_environment(line.petscrc), {}, line.options};
+    if (!line.scene.empty())
+      options.scene = floe::read_scene_text(line.scene, MPI_COMM_WORLD, floe::program::near_scene);
+    const floe::Restart restart = floe::find_restart(line.scene, options);
     floe::Session session(argv[0], options);
     signals.arm();
     give_memory_back();
-    return run_to_an_end(line.scene, options);
+    return run_to_an_end({words, options, restart});
   } catch (const floe::InputError& error) {
     int me = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &me);

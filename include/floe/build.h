@@ -68,12 +68,13 @@ std::string checkpoint_file(const Scene& scene);
 /// \param rest  what a planar model leaves out; null for a spatial one
 /// \param lattice_id  its fingerprint, for checkpoints
 /// \param on_plan  is told what the run will do before its first step; false: it is not made
-/// \param prepare  opens the output that a checkpoint goes with, if it is not open
+/// \param prepare  as CheckpointOptions::prepare
 /// \param others  what checkpoints keep beside the integrator's state
 template <class Space>
 RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
                     const std::string& lattice_id, const OnPlan& on_plan,
-                    const ObserverOf<Space>& observer, const std::function<void()>& prepare,
+                    const ObserverOf<Space>& observer,
+                    const std::function<void(const std::vector<std::string>&)>& prepare,
                     const std::function<void(Memory&)>& others);
 
 /// Lines that say what a run is going to do and to take. \param memory  of all ranks, at present

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <set>
 #include <string>
 #include <string_view>
@@ -102,6 +103,8 @@ struct Scene {
   struct {
     double every = 600;   ///< wall time between two [s]
     bool at_end = false;  ///< the scene has the section: one at the end too
+    /// Of the process, by the clock: a stop before it is over [s].
+    double wall_time = std::numeric_limits<double>::infinity();
     std::string restart;  ///< file to go on from; empty: from time 0
   } checkpoint;
   /// Key and path of each file that the scene names.

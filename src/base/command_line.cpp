@@ -47,11 +47,16 @@ Help wants_help(int argc, const char* const* argv) {
 
 CommandLine read_command_line(int argc, const char* const* argv) {
   constexpr auto usage = "usage: floe SCENE.yaml [-key value ...], or floe -help";
-  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0')
+  const auto goes_on = [&] {
+    return std::any_of(argv + 1, argv + argc,
+                       [](std::string_view word) { return word == "-checkpoint_restart"; });
+  };
+  const bool has_scene = argc > 1 && argv[1][0] != '-' && argv[1][0] != '\0';
+  if (!has_scene && (argc < 2 || argv[1][0] == '\0' || !goes_on()))
     throw InputError(std::string("no scene is named; ") + usage);
   CommandLine line;
-  line.scene = argv[1];
-  for (int k = 2; k < argc; ++k) {
+  if (has_scene) line.scene = argv[1];
+  for (int k = has_scene ? 2 : 1; k < argc; ++k) {
     const std::string_view word = argv[k];
     if (!is_option_word(word)) throw InputError(shown(word) + ": belongs to no option; " + usage);
     const bool has_value = k + 1 < argc && !is_option_word(argv[k + 1]);

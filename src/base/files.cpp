@@ -104,6 +104,21 @@ void put_in_place(const std::string& temporary, const std::string& path, Place p
   throw_file_error("write", path, why);
 }
 
+void give_second_name(const std::string& path, const std::string& second) {
+  const std::string temporary = temporary_name(second);
+  ::unlink(temporary.c_str());
+  if (::link(path.c_str(), temporary.c_str()) == 0) {
+    put_in_place(temporary, second);
+    ::unlink(temporary.c_str());  // two names of one file are not renamed
+    return;
+  }
+  const int why = errno;
+  if (why == ENOENT) return;
+  const bool has_no_links = why == EPERM || why == EOPNOTSUPP || why == ENOSYS || why == EMLINK;
+  if (!has_no_links || std::rename(path.c_str(), second.c_str()) != 0)
+    throw_file_error("write", second, why);
+}
+
 void write_whole(const std::string& path, std::string_view text, Place place) {
   const std::string temporary = temporary_name(path);
   Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));

@@ -67,11 +67,13 @@ Hdf5Id unlocked() {
 
 }  // namespace
 
-Hdf5File Hdf5File::create(const std::string& path) {
+Hdf5File Hdf5File::create(const std::string& path, std::size_t user_block) {
   quiet_hdf5();
   const std::string temporary = temporary_name(path);
+  const Hdf5Id plan(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_userblock(plan, user_block);
   errno = 0;
-  const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, unlocked());
+  const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, plan, unlocked());
   require(id >= 0, path);
   return {id, temporary, path};
 }
@@ -113,6 +115,14 @@ void Hdf5File::close(Place place) {
   errno = 0;
   require(H5Fclose(std::exchange(id_, -1)) >= 0, final_path_);
   put_in_place(std::exchange(path_, {}), final_path_, place);
+}
+
+void Hdf5File::close(
+    const std::function<void(const std::string& temporary, const std::string& path)>& put) {
+  errno = 0;
+  require(H5Fclose(std::exchange(id_, -1)) >= 0, final_path_);
+  put(path_, final_path_);
+  path_.clear();
 }
 
 void Hdf5File::link(const std::string& name, const std::string& file, const std::string& object) {

@@ -1,6 +1,7 @@
 #include "option_values.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -83,6 +84,52 @@ std::optional<double> to_number(std::string_view text) {
 
 std::optional<std::int64_t> to_integer(std::string_view text) { return parse<std::int64_t>(text); }
 
+namespace {
+
+/// "01:30:00", "1-12:00:00".
+std::optional<double> of_a_clock(std::string_view text) {
+  constexpr double day = 86400;
+  double seconds = 0;
+  if (const auto dash = text.find('-'); dash != std::string_view::npos) {
+    const auto days = to_integer(text.substr(0, dash));
+    if (!days || *days < 0) return {};
+    seconds = day * static_cast<double>(*days);
+    text.remove_prefix(dash + 1);
+  }
+  constexpr std::array<double, 3> units{3600, 60, 1};
+  for (std::size_t k = 0; k < units.size(); ++k) {
+    const auto colon = text.find(':');
+    if ((colon == std::string_view::npos) != (k + 1 == units.size())) return {};
+    const auto count = to_integer(text.substr(0, colon));
+    if (!count || *count < 0 || (k > 0 && *count >= 60)) return {};
+    seconds += units[k] * static_cast<double>(*count);
+    text.remove_prefix(colon == std::string_view::npos ? text.size() : colon + 1);
+  }
+  return seconds;
+}
+
+}  // namespace
+
+std::optional<double> to_duration(std::string_view text) {
+  text = trimmed(text);
+  if (const auto plain = to_number(text)) return plain;
+  if (text.find(':') != std::string_view::npos) return of_a_clock(text);
+  constexpr std::array<std::pair<char, double>, 4> units{
+      {{'d', 86400}, {'h', 3600}, {'m', 60}, {'s', 1}}};
+  double seconds = 0;
+  auto unit = units.begin();
+  while (!text.empty()) {
+    const auto end = text.find_first_not_of("0123456789.");
+    if (end == std::string_view::npos || end == 0) return {};
+    const auto count = to_number(text.substr(0, end));
+    unit = std::find_if(unit, units.end(), [&](const auto& u) { return u.first == text[end]; });
+    if (!count || unit == units.end()) return {};
+    seconds += *count * unit++->second;
+    text = trimmed(text.substr(end + 1));
+  }
+  return seconds > 0 ? std::optional(seconds) : std::nullopt;
+}
+
 std::optional<bool> to_flag(std::string_view text) {
   const std::string word = lower(trimmed(text));
   if (word.empty() || word == "true" || word == "yes" || word == "on" || word == "1") return true;
@@ -149,6 +196,8 @@ std::string allowed_text(const OptionSpec& spec) {
       return "a number" + range + unit;
     case Kind::integer:
       return "an integer" + range + unit;
+    case Kind::duration:
+      return "a time (3h50m, 90s, 01:30:00 or seconds)" + range + unit;
     case Kind::numbers:
       return std::to_string(spec.count) + " numbers" + range + unit;
     case Kind::choice:

@@ -28,6 +28,9 @@ bool has_name(std::string_view key);
 std::optional<std::vector<std::string>> to_list(std::string_view text);
 std::optional<double> to_number(std::string_view text);  ///< nothing unless finite
 std::optional<std::int64_t> to_integer(std::string_view text);
+/// A time by the clock [s]: numbers with units from the longest on (1d12h, 3h50m, 1.5h, 90s), as
+/// hh:mm:ss or d-hh:mm:ss, or a number of seconds.
+std::optional<double> to_duration(std::string_view text);
 std::optional<bool> to_flag(std::string_view text);
 /// "one | two" -> one, two.
 std::vector<std::string_view> choices_of(std::string_view allowed);

@@ -61,7 +61,7 @@ std::string shortest(double value) {
 
 GivenOptions UserOptions::merged() const {
   GivenOptions all = environment;
-  for (const GivenOptions* stronger : {&scene, &command_line}) {
+  for (const GivenOptions* stronger : {&checkpoint, &scene, &command_line}) {
     for (const auto& [name, given] : *stronger) all[name] = given;
   }
   return all;
@@ -356,6 +356,16 @@ std::int64_t Options::integer(std::string_view key, std::string_view name) {
   return *value;
 }
 
+double Options::duration(std::string_view key, std::string_view name) {
+  const Reading reading = read(key, name);
+  const std::string text = reading.value.value_or("");
+  const auto value = to_duration(text);
+  if (!value || !in_range(*value, reading.spec.allowed))
+    refuse_value(reading.spec, reading.label, text, reading.place);
+  record(reading, text);
+  return *value;
+}
+
 std::string Options::text(std::string_view key, std::string_view name,
                           const std::optional<std::string>& otherwise) {
   const Reading reading = read(key, name);
@@ -417,6 +427,16 @@ void Options::refuse_unread() {
   }
 }
 
+std::vector<std::string> Options::read_and_given() const {
+  std::vector<std::string> names;
+  for (const auto& [option, given] : given_) {
+    const auto found = read_.find(option);
+    const bool is_new = given.source == Source::scene || given.source == Source::command_line;
+    if (is_new && found != read_.end() && !found->second.empty()) names.push_back(option);
+  }
+  return names;
+}
+
 std::string Options::petsc(std::string_view name) const {
   const auto found = petsc_.find(name);
   return found == petsc_.end() ? "" : found->second.value;
@@ -425,8 +445,8 @@ std::string Options::petsc(std::string_view name) const {
 void Options::leave_out(std::string_view family, bool of_scene) {
   std::erase_if(petsc_, [&](const auto& entry) {
     const auto& [name, given] = entry;
-    const bool drop =
-        given.source == Source::environment || (given.source == Source::scene && of_scene);
+    const bool drop = given.source == Source::environment || given.source == Source::checkpoint ||
+                      (given.source == Source::scene && of_scene);
     if (!drop || !name.starts_with(family)) return false;
     check(PetscOptionsClearValue(nullptr, ("-" + name).c_str()));
     if (given.source == Source::environment) {
@@ -444,7 +464,8 @@ std::set<std::string> Options::may_stay_unused() const {
   });
   std::set<std::string> names;
   for (const auto& [name, given] : petsc_) {
-    if (given.source == Source::environment || (given.source == Source::scene && commanded))
+    if (given.source == Source::environment || given.source == Source::checkpoint ||
+        (given.source == Source::scene && commanded))
       names.insert(name);
   }
   return names;

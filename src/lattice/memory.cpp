@@ -1,6 +1,8 @@
 #include "floe/lattice/memory.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <numeric>
 
 #include "floe/base/petsc.h"
@@ -21,40 +23,57 @@ void broadcast(std::vector<double>& values, MPI_Comm comm) {
 }  // namespace
 
 void Memory::refuse(const std::string& why) const {
-  throw InputError("checkpoint: restart: " + why);
+  throw InputError("checkpoint: restart: '" + name_ + "': " + why);
 }
 
-std::vector<double> Memory::read(const std::string& name, int columns) {
+std::vector<double> Memory::read(const std::string& name, Within must, int columns) {
   std::vector<double> values;
   on_root(part_.comm, [&] { values = file_->read(name, columns); });
   broadcast(values, part_.comm);
+  for (const double value : values) {
+    if (value >= must.least && value <= must.most) continue;
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%g", value);
+    refuse(name + " has the value " + text.data() + ", which it cannot have");
+  }
+  return values;
+}
+
+/// A dataset of one number.
+std::vector<double> Memory::one(const std::string& name, Within must) {
+  std::vector<double> values = read(name, must);
+  if (values.size() != 1) refuse(name + " must be one number");
   return values;
 }
 
 void Memory::common(const std::string& name, std::vector<double>& values) {
   if (loading_) {
-    values = read(group_ + name);
+    values = read(group_ + name, finite);
   } else {
     write([&] { file_->write(group_ + name, values); });
   }
 }
 
-void Memory::common(const std::string& name, double& value) {
-  std::vector<double> one{value};
-  common(name, one);
-  if (one.size() != 1) refuse(group_ + name + " must be one number");
-  value = one[0];
+void Memory::common(const std::string& name, double& value, Within must) {
+  if (loading_) {
+    value = one(group_ + name, must)[0];
+  } else {
+    write([&] { file_->write(group_ + name, std::span<const double>(&value, 1)); });
+  }
 }
 
-void Memory::common(const std::string& name, std::int64_t& value) {
-  auto number = static_cast<double>(value);  // exact below 2^53
-  common(name, number);
+void Memory::common(const std::string& name, std::int64_t& value, std::int64_t least) {
+  constexpr double most = 9007199254740992;  // 2^53: exact up to there
+  auto number = static_cast<double>(value);
+  common(name, number, {static_cast<double>(least), most});
   value = static_cast<std::int64_t>(number);
+  if (static_cast<double>(value) != number) refuse(group_ + name + " must be an integer");
 }
 
 void Memory::common(const std::string& name, bool& value) {
-  double number = value ? 1 : 0;
+  std::int64_t number = value ? 1 : 0;
   common(name, number);
+  if (number > 1) refuse(group_ + name + " must be 0 or 1");
   value = number != 0;
 }
 
@@ -78,7 +97,7 @@ void Memory::share(const std::string& name, double& value) {
     write([&] { file_->write(group_ + name, all); });
     return;
   }
-  const std::vector<double> all = read(group_ + name);
+  const std::vector<double> all = read(group_ + name, finite);
   if (all.size() == ranks) {
     value = all[static_cast<std::size_t>(me)];
   } else {
@@ -110,8 +129,8 @@ void Memory::rows(const std::string& name, std::span<const std::int32_t> names,
     return;
   }
   const auto w = static_cast<std::size_t>(width);
-  const std::vector<double> listed = read(group_ + name + "_bodies"),
-                            values = read(group_ + name, width);
+  const std::vector<double> listed = read(group_ + name + "_bodies", not_negative),
+                            values = read(group_ + name, finite, width);
   bool all_there = values.size() == listed.size() * w;
   for (std::size_t k = 0; k < global.size() && all_there; ++k) {
     const auto at = static_cast<std::size_t>(

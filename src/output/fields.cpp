@@ -172,6 +172,7 @@ void Fields::write(const Frame& frame) {
     const std::string full = path(segment_xmf(segments_.back()));
     write_whole(full, xdmf_document(grids_of_last()));
     not_on_disk_.push_back(full);
+    not_on_disk_.push_back(path(segment_file(segments_.back())));  // its last frames
   }
   segment.close(Place::swapped);
   if (is_new) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "floe/base/files.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -46,6 +47,8 @@ void History::write_header(const std::string& line) {
   write(line);
   header_ = line;
 }
+
+void History::sync() { sync_to_disk(path_); }
 
 void History::write(const std::string& line) {
   const auto wanted = static_cast<::ssize_t>(line.size());

@@ -31,6 +31,8 @@ class History {
   void write_header(const std::string& line);
   /// \param line  ends in a newline \throws FileError, with the file as it was before
   void write(const std::string& line);
+  /// All rows so far outlive a crash of the machine. \throws FileError
+  void sync();
 
  private:
   std::string path_, header_;

@@ -54,7 +54,6 @@ struct Output<Space>::Impl {
   std::optional<CrackLog> cracks;     ///< if beams may break
   OutputMemory memory;
   std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
-  bool header_checked = true;
 
   Impl(const OutputOptions& o, const Model<Space>& m)
       : options(o),
@@ -79,7 +78,6 @@ struct Output<Space>::Impl {
   void open_files(const std::string& options_yaml, bool restarted);
   void keep_what_frames_need();
   Sample sample(const Accepted<Space>& accepted);
-  void check_header();
   void write_row(const Sample& sample);
   void put_row(const Sample& sample);
   void write_frame(const State<Space>& state);
@@ -110,10 +108,7 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
   if (rank(model.part().comm) != 0) impl_->lattice = {};
   if (model.fracture() != nullptr)
     impl_->cracks.emplace(options.dir, impl_->lattice, *model.fracture(), model.part());
-  if (restart != nullptr) {
-    impl_->memory = *restart;
-    impl_->header_checked = false;
-  }
+  if (restart != nullptr) impl_->memory = *restart;
   on_root(model.part().comm, [&] { impl_->open_files(options_yaml, restart != nullptr); });
 }
 
@@ -211,13 +206,6 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
   return s;
 }
 
-void require_files(const std::string& dir, const OutputMemory& memory, MPI_Comm comm) {
-  on_root(comm, [&] {
-    (void)history_start(dir + "/history.csv", memory.rows);
-    Fields::require(dir, memory.frames);
-  });
-}
-
 /// The first line of history.csv: what the columns of a sample are.
 std::string header_of(const Sample& s) {
   constexpr const char* axes[] = {"x", "y", "z"};
@@ -234,16 +222,27 @@ std::string header_of(const Sample& s) {
   return line + "\n";
 }
 
-/// After a restart: the rows go on in the same columns. Collective.
-template <class Space>
-void Output<Space>::Impl::check_header() {
-  header_checked = true;
-  const bool differs =
-      history && !history->header().empty() && history->header() != header_of(memory.last);
-  throw_verdict(differs ? "checkpoint: restart: this scene's boundaries, loads or forces differ "
-                          "from those of the run that it goes on with"
-                        : "",
-                part.comm);
+Sample columns_of(const std::vector<Boundary>& boundaries, const std::vector<Load>& loads,
+                  const std::vector<std::string>& names, bool breakable) {
+  Sample sample;
+  for (const Boundary& boundary : boundaries) sample.boundaries[boundary.name] = {};
+  for (const Load& load : loads) sample.loads[load.name] = {};
+  for (const std::string& name : names) sample.forces.emplace_back(name, 0.0);
+  if (breakable) sample.forces.emplace_back("fragments", 0.0);
+  return sample;
+}
+
+void require_files(const std::string& dir, const OutputMemory& memory, const Sample& columns,
+                   MPI_Comm comm) {
+  on_root(comm, [&] {
+    const std::string path = dir + "/history.csv";
+    const HistoryStart history = history_start(path, memory.rows);
+    if (!history.header.empty() && history.header != header_of(columns))
+      throw InputError("checkpoint: restart: '" + path +
+                       "' has other columns than this run writes: it is of another run, or of "
+                       "another version of floe");
+    Fields::require(dir, memory.frames);
+  });
 }
 
 template <class Space>
@@ -317,7 +316,6 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   OutputMemory& m = me.memory;
   m.last = me.sample(accepted);
   if (accepted.step == 0) m.first = m.last;
-  if (!me.header_checked) me.check_header();
   m.row_pending = !accepted.last && me.options.history > 0 &&
                   time < m.next_history - early * me.options.history;
   if (!m.row_pending) {
@@ -345,6 +343,16 @@ void Output<Space>::finish() {
   if (impl_->pending) impl_->write_frame(*impl_->pending);
   impl_->pending.reset();
   if (impl_->fields) impl_->fields->finish();
+}
+
+template <class Space>
+void Output<Space>::sync() {
+  const Timed timed(Event::output);
+  on_root(impl_->part.comm, [&] {
+    impl_->history->sync();
+    impl_->fields->sync();
+    sync_to_disk(impl_->options.dir);
+  });
 }
 
 template class Output<Spatial>;

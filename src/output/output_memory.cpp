@@ -64,8 +64,9 @@ void OutputMemory::remember(Memory& memory) {
   memory.common("row_pending", row_pending);
   memory.common("history_rows", rows);
   memory.common("fields_frames", frames);
-  memory.common("next_history", next_history);
-  memory.common("next_fields", next_fields);
+  memory.common("next_history", next_history, not_negative);
+  memory.common("next_fields", next_fields, not_negative);
+  memory.common("run", run);
 }
 
 }  // namespace floe

@@ -109,15 +109,23 @@ void check_inputs(const FolderWish& wish) {
                    wish.scene + "; give another -output_dir");
 }
 
+constexpr std::string_view unknown = "unknown";
+
+std::string status_in(const fs::path& dir) {
+  std::ifstream file(dir / "summary.json");
+  if (!file) return {};
+  const Json summary = Json::parse(file, nullptr, false);
+  if (!summary.is_object() || !summary.contains("status") || !summary["status"].is_string())
+    return std::string(unknown);
+  return summary["status"].get<std::string>();
+}
+
 /// How the run ended whose checkpoint is in the folder: empty if it came to its end, or left none.
 std::string interrupted(const fs::path& dir) {
   if (!is_there(dir / "checkpoint.h5") && !is_there(dir / "checkpoint_previous.h5")) return {};
-  std::ifstream file(dir / "summary.json");
-  if (!file) return "it was interrupted";
-  const Json summary = Json::parse(file, nullptr, false);
-  if (!summary.is_object() || !summary.contains("status") || !summary["status"].is_string())
-    return "its summary cannot be read";
-  const auto status = summary["status"].get<std::string>();
+  const std::string status = status_in(dir);
+  if (status.empty()) return "it was interrupted";
+  if (status == unknown) return "its summary cannot be read";
   return status == "done" ? "" : "its status is " + status;
 }
 
@@ -202,6 +210,9 @@ RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
 }
 
 RunFolder::~RunFolder() = default;
+
+std::string RunFolder::status(const std::string& dir) { return status_in(dir); }
+std::string RunFolder::run_in(const std::string& dir) { return RunLock::run_in(dir); }
 
 std::string RunFolder::problem(const FolderWish& wish, MPI_Comm comm) {
   std::string why;

@@ -201,6 +201,14 @@ RunLock::~RunLock() {
   ::close(file_);
 }
 
+std::string RunLock::run_in(const std::string& dir) {
+  const int file = ::open((dir + "/.lock").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return {};
+  const std::string text = contents(file);
+  ::close(file);
+  return text.starts_with(first_word) ? value_of(text, "floe run") : "";
+}
+
 std::string RunLock::holder(const std::string& dir) {
   const int file = ::open((dir + "/.lock").c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return {};

@@ -27,6 +27,8 @@ class RunLock {
   /// What the user should know of the lock; empty: nothing.
   const std::string& warning() const { return warning_; }
 
+  /// What identifies the run whose files are in a folder; empty if nobody knows.
+  static std::string run_in(const std::string& dir);
   /// Who holds the lock of a folder, as one line; empty if nobody does. Changes nothing.
   static std::string holder(const std::string& dir);
 

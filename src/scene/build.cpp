@@ -129,7 +129,8 @@ std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/ch
 template <class Space>
 RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
                     const std::string& lattice_id, const OnPlan& on_plan,
-                    const ObserverOf<Space>& observer, const std::function<void()>& prepare,
+                    const ObserverOf<Space>& observer,
+                    const std::function<void(const std::vector<std::string>&)>& prepare,
                     const std::function<void(Memory&)>& others) {
   if (scene.integrator == Integrator::quasistatic)
     return run_quasistatic(model, {scene.time.end, scene.time.dt, scene.limit.steps, on_plan},
@@ -150,6 +151,8 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
                         scene.checkpoint.restart,
                         lattice_id,
                         scene.options_yaml,
+                        scene.path,
+                        scene.checkpoint.wall_time,
                         prepare,
                         others};
   if constexpr (std::is_same_v<Space, Spatial>) {
@@ -273,10 +276,12 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
 }
 
 template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane*, const std::string&,
-                             const OnPlan&, const Observer<Spatial>&, const std::function<void()>&,
+                             const OnPlan&, const Observer<Spatial>&,
+                             const std::function<void(const std::vector<std::string>&)>&,
                              const std::function<void(Memory&)>&);
 template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane*, const std::string&,
-                             const OnPlan&, const Observer<Planar>&, const std::function<void()>&,
+                             const OnPlan&, const Observer<Planar>&,
+                             const std::function<void(const std::vector<std::string>&)>&,
                              const std::function<void(Memory&)>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);

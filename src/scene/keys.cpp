@@ -243,10 +243,15 @@ constexpr std::array table{
                "dynamics: run time (by the clock) between checkpoints; with a section checkpoint "
                "there is one at the end of the run too"},
     OptionSpec{
+        "checkpoint: wall_time", duration, "(none)", "s", ">= 1, <= 1e9",
+        "dynamics: the run ends with a checkpoint and exit code 3 before its process is that "
+        "old by the clock; never part of options.yaml"},
+    OptionSpec{
         "checkpoint: restart", text, "(none: from t = 0)", "", "",
-        "dynamics: the checkpoint.h5 to go on from, in the same output folder; its step dt is "
-        "kept, time: end may be later; the same to the last bit on as many ranks, but for implicit "
-        "runs on several, which MUMPS rounds differently each time (1e-14)"},
+        "dynamics: the checkpoint.h5 to go on from, in the same output folder, or auto: the newest "
+        "good one of the output folder, if there is one; options that are not given anew are the "
+        "checkpoint's (docs/restarts.md); the same to the last bit on as many ranks, but for "
+        "implicit runs on several, which MUMPS rounds differently each time (1e-14)"},
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "floe/output/run_folder.h"
 #include "keys.h"
 #include "reading.h"
+#include "restart_changes.h"
 #include "units.h"
 
 namespace floe {
@@ -158,11 +159,14 @@ Scene read_all(Options& options, const std::string& path) {
   read_report(options, scene);
   read_output(options, scene);
   scene.check_only = options.flag("check");
-  // Without overwrite and restart: it repeats the whole run, and no more.
+  // Without what is of this part of the run only: it repeats the whole run, and no more.
   scene.options_yaml = options_heading() + options.yaml();
   scene.output.overwrite = options.flag("output: overwrite");
   if (options.given("checkpoint: restart"))
     scene.checkpoint.restart = options.text("checkpoint: restart");
+  if (scene.checkpoint.restart == "auto") scene.checkpoint.restart.clear();  // there was none
+  if (options.given("checkpoint: wall_time"))
+    scene.checkpoint.wall_time = options.duration("checkpoint: wall_time");
   options.refuse_unread();
   return scene;
 }
@@ -200,8 +204,10 @@ void judge_idle_keys(const Options& options, const std::string& path, const User
 }  // namespace
 
 Scene read_scene(const std::string& path, const UserOptions& user) {
+  refuse_changes(user);
   Options options(scene_keys(), user);
   Scene scene = read_all(options, path);
+  refuse_additions(options, user);
   judge_idle_keys(options, path, user, scene);
   scene.unused_options = options.may_stay_unused();
   scene.warnings = unusual_numbers(scene);

@@ -3,17 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
+#include "floe/base/clock.h"
+#include "floe/base/files.h"
 #include "floe/base/log.h"
-#include "floe/base/options.h"
+#include "floe/base/on_root.h"
+#include "floe/base/seal.h"
 #include "floe/base/signals.h"
+#include "floe/base/version.h"
 
 namespace floe {
 namespace {
 
-constexpr std::int64_t layout = 2;  // of the file; another one is refused
+constexpr std::int64_t layout = 3;  // of the file; another one is refused
 
 /// FNV-1a over 64-bit words.
 class Hash {
@@ -39,6 +45,24 @@ class Hash {
  private:
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
+
+/// How messages begin.
+std::string named(const std::string& file) { return "checkpoint: restart: '" + file + "' "; }
+
+/// Opens a checkpoint that is as it was written. \throws InputError
+Hdf5File open_whole(const std::string& path) {
+  if (const std::string problem = seal_problem(path); !problem.empty())
+    throw InputError(named(path) + problem);
+  return Hdf5File::open(path, "checkpoint: restart");
+}
+
+/// Puts a file that is on the disk in its place, for good.
+void put_on_disk(const std::string& temporary, const std::string& path) {
+  sync_to_disk(temporary);
+  put_in_place(temporary, path);
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  sync_to_disk(folder.empty() ? "." : folder);
+}
 
 }  // namespace
 
@@ -70,21 +94,23 @@ Checkpoints::Checkpoints(const CheckpointOptions& options, const Part& part)
 }
 
 /// The next look is about a quarter of a second away by the slowest rank's clock; the maximum over
-/// ranks makes it the same step on all.
+/// ranks makes it the same step on all. The wall time counts what comes before the next look.
 Checkpoints::Wish Checkpoints::look(std::int64_t step) {
   constexpr double look_seconds = 0.25;
   constexpr double most_steps = 1000;
   const double now = MPI_Wtime();
   const double steps = static_cast<double>(std::max<std::int64_t>(step - last_look_, 1));
-  std::array<double, 4> mine{(now - last_look_time_) / steps, StopSignals::came() ? 1.0 : 0.0, 0,
-                             0};
+  const double a_step = (now - last_look_time_) / steps;
+  std::array<double, 5> mine{a_step, StopSignals::came() ? 1.0 : 0.0, 0, 0, 0};
   if (rank(part_.comm) == 0) {
     std::error_code ignored;
     mine[2] = std::filesystem::exists(options_.stop_file, ignored) ? 1 : 0;
     mine[3] = now - last_save_ >= options_.every ? 1 : 0;
+    const double to_come = std::max(look_seconds, a_step) + save_seconds_;
+    mine[4] = seconds_of_process() + to_come >= options_.wall_time ? 1 : 0;
   }
-  std::array<double, 4> all{};
-  MPI_Allreduce(mine.data(), all.data(), 4, MPI_DOUBLE, MPI_MAX, part_.comm);
+  std::array<double, 5> all{};
+  MPI_Allreduce(mine.data(), all.data(), 5, MPI_DOUBLE, MPI_MAX, part_.comm);
   last_look_ = step;
   last_look_time_ = now;
   next_look_ = step + static_cast<std::int64_t>(
@@ -94,49 +120,123 @@ Checkpoints::Wish Checkpoints::look(std::int64_t step) {
     std::filesystem::remove(options_.stop_file, ignored);
   }
   if (all[1] > 0 || all[2] > 0) return Wish::stop;
+  if (all[4] > 0) return Wish::stop_for_time;
   return all[3] > 0 ? Wish::write : Wish::none;
 }
 
-void Checkpoints::head(Memory& memory) {
-  std::string version = FLOE_VERSION, scene = options_.scene, options = options_.options;
-  std::int64_t number = layout;
-  const auto refuse = [&](const std::string& why) {
-    throw InputError("checkpoint: restart: '" + options_.restart + "' " + why);
-  };
-  memory.enter("");
-  memory.common("layout", number);
-  if (number != layout)
-    refuse("is of another version of floe (layout " + std::to_string(number) + ", must be " +
-           std::to_string(layout) + ")");
-  memory.common("version", version);
-  memory.common("lattice", scene);
-  memory.common("options", options);
-  if (scene != options_.scene)
-    refuse("is of another lattice (" + scene + "; this scene's is " + options_.scene + ")");
+std::string previous_checkpoint(const std::string& file) {
+  return (std::filesystem::path(file).parent_path() / "checkpoint_previous.h5").string();
 }
 
-void Checkpoints::save(const std::function<void(Memory&)>& remember) {
+CheckpointHead read_head(const std::string& path) {
+  Hdf5File file = open_whole(path);
+  const auto refuse = [&](const std::string& why) { throw InputError(named(path) + why); };
+  const auto number = [&](const char* name) {
+    const std::vector<double> values = file.read(name);
+    if (values.size() != 1 || !std::isfinite(values[0]) || values[0] < 0)
+      refuse(std::string("has no number that can be its ") + name);
+    return values[0];
+  };
+  if (const double is = number("layout"); is != static_cast<double>(layout))
+    refuse("is of another version of floe (layout " + std::to_string(std::llround(is)) +
+           ", must be " + std::to_string(layout) + ")");
+  CheckpointHead head;
+  head.version = file.read_text("version");
+  head.built_for = file.read_text("built_for");
+  head.lattice = file.read_text("lattice");
+  head.options = file.read_text("options");
+  head.scene = file.read_text("scene");
+  head.run = file.has("output/run") ? file.read_text("output/run") : "";
+  head.ranks = std::llround(number("ranks"));
+  head.time = number("run/time");
+  return head;
+}
+
+std::string older_generation(const std::string& file) {
+  const std::string older = previous_checkpoint(file);
+  std::error_code ignored;
+  if (std::filesystem::equivalent(older, file, ignored)) return {};
+  try {
+    std::array<char, 32> time{};
+    std::snprintf(time.data(), time.size(), "%.9g", read_head(older).time);
+    return "; -checkpoint_restart " + older + " goes on from t = " + time.data() + " s";
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+void make_newest(const std::string& restart, const std::string& file, MPI_Comm comm) {
+  on_root(comm, [&] {
+    std::error_code error;
+    if (std::filesystem::equivalent(restart, file, error)) return;
+    const std::string temporary = temporary_name(file);
+    std::filesystem::copy_file(restart, temporary,
+                               std::filesystem::copy_options::overwrite_existing, error);
+    if (error) {
+      std::remove(temporary.c_str());
+      throw_file_error("write", file, error.value());
+    }
+    put_on_disk(temporary, file);
+  });
+}
+
+/// What every checkpoint says first. \throws OtherRun
+void Checkpoints::head(Memory& memory) {
+  std::string version = FLOE_VERSION, built = built_for(part_.comm), lattice = options_.lattice,
+              options = options_.options, scene = options_.scene;
+  std::int64_t number = layout, ranks = size(part_.comm);
+  memory.enter("");
+  memory.common("layout", number);
+  memory.common("version", version);
+  memory.common("built_for", built);
+  memory.common("ranks", ranks, 1);
+  memory.common("lattice", lattice);
+  memory.common("options", options);
+  memory.common("scene", scene);
+  if (number != layout) throw OtherRun(named(options_.restart) + "is of another version of floe");
+  if (lattice != options_.lattice)
+    throw OtherRun(named(options_.restart) + "is of another lattice (" + lattice +
+                   "; this scene's is " + options_.lattice + ")");
+}
+
+void Checkpoints::save(const std::function<void(Memory&)>& remember,
+                       const std::vector<std::string>& columns) {
   const Timed timed(Event::output);
-  options_.prepare();
+  const double began = MPI_Wtime();
+  options_.prepare(columns);
   std::optional<Hdf5File> file;
-  on_root(part_.comm, [&] { file.emplace(Hdf5File::create(options_.file)); });
+  on_root(part_.comm, [&] { file.emplace(Hdf5File::create(options_.file, seal_size)); });
   Memory memory(part_, file ? &*file : nullptr, false);
   head(memory);
   remember(memory);
   options_.others(memory);
   share_outcome(memory.outcome(), part_.comm);
-  on_root(part_.comm, [&] { file->close(); });
+  on_root(part_.comm, [&] {
+    file->close([](const std::string& temporary, const std::string& path) {
+      seal(temporary);
+      sync_to_disk(temporary);  // before the one in place gives up its name
+      give_second_name(path, previous_checkpoint(path));
+      put_on_disk(temporary, path);
+    });
+  });
   last_save_ = MPI_Wtime();
+  save_seconds_ = last_save_ - began;
 }
 
 void Checkpoints::load(const std::function<void(Memory&)>& remember) {
   std::optional<Hdf5File> file;
-  on_root(part_.comm,
-          [&] { file.emplace(Hdf5File::open(options_.restart, "checkpoint: restart")); });
-  Memory memory(part_, file ? &*file : nullptr, true);
-  head(memory);
-  remember(memory);
-  options_.others(memory);
+  try {
+    on_root(part_.comm, [&] { file.emplace(open_whole(options_.restart)); });
+    Memory memory(part_, file ? &*file : nullptr, true, options_.restart);
+    head(memory);
+    remember(memory);
+    options_.others(memory);
+  } catch (const OtherRun&) {
+    throw;
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    on_root(part_.comm, [&] { throw InputError(what + older_generation(options_.restart)); });
+  }
 }
 
 }  // namespace floe

@@ -112,26 +112,26 @@ void DynamicRun<Space>::remember(Memory& memory) {
   std::string type = type_;
   memory.common("type", type);
   if (type != type_)
-    throw InputError("checkpoint: restart: '" + options_.checkpoint.restart + "' is of ts_type '" +
-                     type + "', which keeps its state in another way than this run's '" + type_ +
-                     "'");
+    throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of ts_type '" +
+                   type + "', which keeps its state in another way than this run's '" + type_ +
+                   "'");
   const std::string space = std::is_same_v<Space, Planar> ? "planar" : "spatial";
   std::string model = space;
   memory.common("model", model);
   if (model != space)
-    throw InputError("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
-                     " model, this run's is " + space + " (model: planar)");
+    throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
+                   " model, this run's is " + space + " (model: planar)");
   memory.common("step", done_);
   memory.common("steps", steps_);
-  memory.common("time", state_.time);
-  memory.common("dt", dt_);
-  memory.common("time_base", time_base_);
+  memory.common("time", state_.time, not_negative);
+  memory.common("dt", dt_, positive);
+  memory.common("time_base", time_base_, not_negative);
   memory.common("step_base", step_base_);
-  memory.common("stable_dt", result_.stable_dt);
+  memory.common("stable_dt", result_.stable_dt, not_negative_or_infinite);
   memory.common("limited_by", result_.limited_by);
-  memory.common("next_sample", next_sample_);
-  memory.common("sampled_step", sampled_);
-  memory.common("largest_velocity2", largest_);
+  memory.common("next_sample", next_sample_, not_negative_or_infinite);
+  memory.common("sampled_step", sampled_, -1);
+  memory.common("largest_velocity2", largest_, not_negative);
   remember_own(memory);
   memory.enter("ledger");
   ledger_.remember(memory);
@@ -182,14 +182,13 @@ RunResult DynamicRun<Space>::solve(TS ts) {
     const Timed timed(Event::solve);
     result_.done = first() && step(ts) && finish();
   }
-  if (result_.done && options_.checkpoint.at_end)
-    checkpoints_.save([&](Memory& memory) { remember(memory); });
+  if (result_.done && options_.checkpoint.at_end) save();
   take_remarks();
   result_.steps = done_;
   result_.steps_now = done_ - before_;
   result_.message = why_;
   if (result_.stopped)
-    result_.message = "stopped on request at time " + text(state_.time) + " s, " + step_text();
+    result_.message = stopped_by_ + " at time " + text(state_.time) + " s, " + step_text();
   return result_;
 }
 
@@ -258,9 +257,28 @@ bool DynamicRun<Space>::look_around() {
   const auto wish = checkpoints_.wish(done_);
   if (wish == Checkpoints::Wish::none) return true;
   if (!within_limits()) return false;  // no checkpoint of a state that is lost already
-  checkpoints_.save([&](Memory& memory) { remember(memory); });
-  result_.stopped = wish == Checkpoints::Wish::stop;
+  save();
+  result_.stopped = wish != Checkpoints::Wish::write;
+  stopped_by_ = wish == Checkpoints::Wish::stop
+                    ? "stopped on request"
+                    : "stopped, since checkpoint: wall_time is nearly over,";
   return !result_.stopped;
+}
+
+template <class Space>
+void DynamicRun<Space>::save() {
+  checkpoints_.save([&](Memory& memory) { remember(memory); }, column_names());
+}
+
+/// Of what sample() hands out.
+template <class Space>
+std::vector<std::string> DynamicRun<Space>::column_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : model_.report(state_)) names.push_back(name);
+  const Columns own = own_columns();
+  for (const auto& [name, value] : own.values()) names.push_back(name);
+  for (const auto& [name, value] : ledger_.columns()) names.push_back(name);
+  return names;
 }
 
 template <class Space>

@@ -145,6 +145,8 @@ class DynamicRun {
   bool look_around();
 
  private:
+  void save();
+  std::vector<std::string> column_names() const;
   static constexpr std::int64_t check_every = 100;  // steps between looks at the velocity limit
   static constexpr double early = 1e-6;             // of a step
 
@@ -184,7 +186,7 @@ class DynamicRun {
   std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
   std::int64_t show_every_ = 1;
   std::int64_t piece_ = 0;  // the TS's step 0
-  std::string why_;
+  std::string why_, stopped_by_;
 };
 
 }  // namespace floe

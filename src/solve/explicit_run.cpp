@@ -154,11 +154,17 @@ void ExplicitRun<Space>::add_to(RunPlan& plan) const {
 
 template <class Space>
 void ExplicitRun<Space>::remember_own(Memory& memory) {
+  std::string stepper = this->result().stepper;
+  memory.common("stepper", stepper);
+  if (stepper != this->result().stepper)
+    throw OtherRun("checkpoint: restart: '" + this->options().checkpoint.restart +
+                   "' is of steps by '" + stepper + "', this run's are by '" +
+                   this->result().stepper + "'");
   memory.common("last_look", last_look_);
   memory.common("look_evaluations", evaluations_);
-  memory.common("look_stable_dt", last_stable_);
-  memory.common("look_rate", last_rate_);
-  memory.common("look_own_stiffness", last_own_);
+  memory.common("look_stable_dt", last_stable_, not_negative_or_infinite);
+  memory.common("look_rate", last_rate_, not_negative);
+  memory.common("look_own_stiffness", last_own_, not_negative);
 }
 
 template class ExplicitRun<Spatial>;

@@ -371,7 +371,7 @@ void ImplicitRun<Space>::remember_own(Memory& memory) {
   memory.share("numerical_loss", numerical_loss_);
   LieAlphaMemory own = liealpha_memory(ts_);
   std::int64_t delay = own.delay;
-  memory.common("last_step", own.last_step);
+  memory.common("last_step", own.last_step, not_negative);
   memory.common("delay", delay);
   const Part& part = model().part();
   remember(memory, part, "x", x_, Equations::n);

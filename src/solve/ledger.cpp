@@ -50,7 +50,7 @@ void Ledger::remember(Memory& memory) {
                                                               {"boundary", &boundary_},
                                                               {"error", &error_},
                                                               {"largest", &largest_}})
-    memory.common(name, *value);
+    memory.common(name, *value, value == &largest_ ? not_negative : finite);
   std::string names;
   std::vector<double> values;
   for (const auto& [name, value] : first_) {

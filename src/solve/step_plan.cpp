@@ -62,9 +62,9 @@ bool StepPlan::is_hopeless() const {
 }
 
 void StepPlan::remember(Memory& memory) {
-  memory.common("given_step", given_);
-  memory.common("planned_step", planned_);
-  memory.common("step_before", last_);
+  memory.common("given_step", given_, positive);
+  memory.common("planned_step", planned_, positive);
+  memory.common("step_before", last_, positive);
 }
 
 }  // namespace floe

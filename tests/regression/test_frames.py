@@ -93,8 +93,15 @@ class FramesTest(unittest.TestCase):
     def begin(self, *options, dir="b"):
         process = subprocess.Popen([FLOE, "scene.yaml", *options, "-output_dir", dir], cwd=self.folder, env=ENVIRONMENT,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.stderr.close)
+        self.addCleanup(self.end, process)
         return process
+
+    def end(self, process):
+        """What is left of a test that failed."""
+        if process.poll() is None:
+            process.kill()
+        process.wait()
+        process.stderr.close()
 
     def wait_for(self, process, what):
         """Until what() is true, as long as it takes."""

@@ -155,8 +155,10 @@ class Restarts(RestartTest):
         said = self.finish(self.begin(*RK4, "-checkpoint_restart", "b/checkpoint.h5", dir="b"), 2)
         self.assertIn("is of ts_type 'leapfrog'", said)
         self.run_whole(*RK4, "-time_end", "1", dir="c")
-        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", dir="c"), 2)
+        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", "-ts_type", "leapfrog", dir="c"), 2)
         self.assertIn("is of ts_type 'rk'", said)
+        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", "-ts_rk_type", "5dp", dir="c"), 2)
+        self.assertIn("is of steps by 'rk 4', this run's are by 'rk 5dp'", said)
 
 
 # A block under water, pushed faster and faster: the step shrinks with the speed.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -17,21 +18,22 @@
 namespace floe::test {
 namespace {
 
-/// A checkpoint file that is removed when the test ends.
+/// A checkpoint file in a folder that is removed when the test ends.
 class Kept {
  public:
   explicit Kept(const std::string& lattice = "of a lattice") {
-    options.file = options.restart =
-        (std::filesystem::temp_directory_path() /
-         ("floe_checkpoint_" + std::to_string(size()) + std::to_string(first_rank()) + ".h5"))
-            .string();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("floe_checkpoint_" + std::to_string(size()) + "_" + std::to_string(first_rank()));
+    std::filesystem::create_directories(folder_);
+    options.file = options.restart = (folder_ / "checkpoint.h5").string();
     options.stop_file = options.file + ".stop";
-    options.scene = lattice;
+    options.lattice = lattice;
     options.options = "forces: [beam]\n";
   }
   ~Kept() {
     MPI_Barrier(PETSC_COMM_WORLD);
-    if (rank() == 0) std::filesystem::remove(options.file);
+    if (rank() == 0) std::filesystem::remove_all(folder_);
+    MPI_Barrier(PETSC_COMM_WORLD);
   }
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
@@ -43,6 +45,7 @@ class Kept {
     MPI_Bcast(&id, 1, MPI_INT, 0, PETSC_COMM_WORLD);
     return id;
   }
+  std::filesystem::path folder_;
 };
 
 /// Numbers of every kind that something remembers.
@@ -143,11 +146,80 @@ TEST_F(Checkpoint, RefusesWhatIsNotThereAndWhatIsOfAnotherLattice) {
   }),
                InputError);
   CheckpointOptions other = kept.options;
-  other.scene = "of another";
+  other.lattice = "of another";
   EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
   other = kept.options;
   other.restart += ".nowhere";
   EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
+}
+
+TEST_F(Checkpoint, KeepsTheGenerationBefore) {
+  const Kept kept;
+  Checkpoints checkpoints(kept.options, part);
+  const std::string older = previous_checkpoint(kept.options.file);
+  for (const double number : {1.0, 2.0, 3.0}) {
+    Remembered r = some();
+    r.number = number;
+    checkpoints.save([&](Memory& m) { r.remember(m, owned); });
+  }
+  const auto number_in = [&](const std::string& file) {
+    CheckpointOptions options = kept.options;
+    options.restart = file;
+    Remembered r;
+    r.rows.resize(3 * owned.size());
+    Checkpoints(options, part).load([&](Memory& m) { r.remember(m, owned); });
+    return r.number;
+  };
+  EXPECT_EQ(number_in(kept.options.file), 3);
+  EXPECT_EQ(number_in(older), 2);
+  make_newest(older, kept.options.file, PETSC_COMM_WORLD);
+  EXPECT_EQ(number_in(kept.options.file), 2);
+  make_newest(kept.options.file, kept.options.file, PETSC_COMM_WORLD);
+  EXPECT_EQ(number_in(kept.options.file), 2);
+  MPI_Barrier(PETSC_COMM_WORLD);  // nobody reads any more
+}
+
+TEST_F(Checkpoint, RefusesNumbersThatCannotBe) {
+  const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  const auto refused = [&](auto save, auto load) {
+    const Kept kept;
+    Checkpoints(kept.options, part).save(save);
+    EXPECT_THROW(Checkpoints(kept.options, part).load(load), InputError);
+  };
+  for (const auto& [value, must] : {std::pair{nan, finite},
+                                    {infinity, finite},
+                                    {-1.0, not_negative},
+                                    {0.0, positive},
+                                    {nan, not_negative_or_infinite}}) {
+    const auto visit = [&, bounds = must](double number) {
+      return [&, bounds, number](Memory& m) mutable { m.common("a", number, bounds); };
+    };
+    refused(visit(value), visit(1));
+  }
+  for (const std::int64_t count : {-1, -2}) {
+    const auto visit = [&](std::int64_t least) {
+      return [&, least](Memory& m) {
+        std::int64_t number = count;
+        m.common("a", number, least);
+      };
+    };
+    refused(visit(-2), visit(0));
+  }
+  const auto halves = [](Memory& m) {
+    double number = 0.5;
+    m.common("a", number);
+  };
+  refused(halves, [](Memory& m) {
+    std::int64_t number = 0;
+    m.common("a", number);
+  });
+  refused(halves, [](Memory& m) {
+    bool yes = false;
+    m.common("a", yes);
+  });
+  std::vector<double> rows(3 * owned.size(), nan);
+  const auto visit = [&](Memory& m) { m.rows("a", owned, rows, 3); };
+  refused(visit, visit);
 }
 
 TEST_F(Checkpoint, KeepsTheHistoryOfForces) {

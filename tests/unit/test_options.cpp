@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "base/option_names.h"
 #include "base/option_values.h"
@@ -87,6 +88,24 @@ TEST(OptionValues, AreConvertedStrictly) {
     EXPECT_EQ(to_flag(yes), true) << yes;
   for (const auto* no : {"false", "NO", "0", "False", "off"}) EXPECT_EQ(to_flag(no), false) << no;
   EXPECT_FALSE(to_flag("maybe"));
+}
+
+TEST(OptionValues, DurationsAreReadWithUnitsAsOnAClockOrInSeconds) {
+  for (const auto& [text, seconds] : std::map<std::string, double>{{"90", 90},
+                                                                   {"1e3", 1000},
+                                                                   {"90s", 90},
+                                                                   {"2h", 7200},
+                                                                   {"3h50m", 13800},
+                                                                   {"3h 50m", 13800},
+                                                                   {"1.5h", 5400},
+                                                                   {"1d12h0m1s", 129601},
+                                                                   {"01:30:00", 5400},
+                                                                   {"100:00:01", 360001},
+                                                                   {"1-02:03:04", 93784}})
+    EXPECT_EQ(to_duration(text), seconds) << text;
+  for (const char* bad : {"", "h", "3x", "2m3h", "3h3h", "3h5", "5 minutes", "1:2", "1:2:3:4", "::",
+                          "1:60:00", "1:00:60", "-1:00:00", "1--1:00:00", "0h", "nan", "inf", "h3"})
+    EXPECT_FALSE(to_duration(bad)) << bad;
 }
 
 TEST(OptionValues, ListsAreSeparatedByCommasOrBlanks) {

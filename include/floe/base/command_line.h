@@ -21,13 +21,13 @@ Help wants_help(int argc, const char* const* argv);
 
 /// What the words of a command line say.
 struct CommandLine {
-  std::string scene;     ///< path: the first word
+  std::string scene;     ///< path: the first word; empty: -checkpoint_restart says it
   GivenOptions options;  ///< of several values for one name the last
   bool petscrc = true;   ///< petscrc files are read; not with -skip_petscrc
 };
 
-/// \throws InputError if the scene is missing, or for stray words, --key, -key=value, and what
-/// PETSc would take from elsewhere (-options_file and its kin).
+/// \throws InputError if the scene is missing and no -checkpoint_restart is given, or for stray
+/// words, --key, -key=value, and what PETSc would take from elsewhere (-options_file and its kin).
 CommandLine read_command_line(int argc, const char* const* argv);
 
 }  // namespace floe

@@ -30,6 +30,11 @@ enum class Place {
 void put_in_place(const std::string& temporary, const std::string& path,
                   Place place = Place::renamed);
 
+/// The file `path` gets a second name, in the place of what has that name; at any instant each of
+/// the two names a whole file. Where the file system has no second names it loses the first.
+/// Nothing if there is no such file. \throws FileError
+void give_second_name(const std::string& path, const std::string& second);
+
 /// Writes a text whole. \throws FileError
 void write_whole(const std::string& path, std::string_view text, Place place = Place::renamed);
 

@@ -12,6 +12,7 @@ namespace floe {
 /// Where an option was given; what stands further down wins.
 enum class Source {
   environment,   ///< PETSC_OPTIONS or a petscrc file: options of PETSc's only
+  checkpoint,    ///< what the run had that goes on from a checkpoint
   scene,         ///< the scene's file
   command_line,  ///< the words after it
 };
@@ -30,6 +31,7 @@ using GivenOptions = std::map<std::string, Given, std::less<>>;
 /// All options of one run. Nothing of it is global: a process may hold several.
 struct UserOptions {
   GivenOptions environment, scene, command_line;
+  GivenOptions checkpoint = {};  ///< of a run that goes on: all that it had
 
   /// One value per name, the winner's.
   GivenOptions merged() const;

@@ -21,7 +21,8 @@ namespace floe {
 class Hdf5File {
  public:
   /// A new file that will be called `path` once close() has been called.
-  static Hdf5File create(const std::string& path);
+  /// \param user_block  bytes at its beginning that HDF5 leaves alone: 0, or 512 times a power of 2
+  static Hdf5File create(const std::string& path, std::size_t user_block = 0);
   /// A copy of an existing file, to be changed, that takes its place in close().
   static Hdf5File change(const std::string& path);
   /// An existing file, for reading. \param key  the option that named it, for messages
@@ -36,6 +37,9 @@ class Hdf5File {
 
   /// Finishes a file made by create() or change() and puts it in its place.
   void close(Place place = Place::renamed);
+  /// The same, and `put(temporary, path)` puts it in its place; if that raises something the
+  /// temporary file goes.
+  void close(const std::function<void(const std::string& temporary, const std::string& path)>& put);
 
   /// Writes rows x columns values (columns = 1: a vector); groups in `name` are made as needed.
   void write(const std::string& name, std::span<const double> values, int columns = 1);

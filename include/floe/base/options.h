@@ -24,14 +24,15 @@ namespace floe {
 
 /// What an option's text must be.
 enum class Kind {
-  flag,     ///< true or false; the bare word is true
-  number,   ///< one finite number
-  integer,  ///< one integer
-  numbers,  ///< OptionSpec::count finite numbers
-  choice,   ///< one of the words of OptionSpec::allowed
-  choices,  ///< some of these words, none twice
-  names,    ///< names of sections: letters and digits, none twice
-  text,     ///< anything that is not empty
+  flag,      ///< true or false; the bare word is true
+  number,    ///< one finite number
+  duration,  ///< a time by the clock: 3h50m, 90s, 01:30:00, or a number of seconds
+  integer,   ///< one integer
+  numbers,   ///< OptionSpec::count finite numbers
+  choice,    ///< one of the words of OptionSpec::allowed
+  choices,   ///< some of these words, none twice
+  names,     ///< names of sections: letters and digits, none twice
+  text,      ///< anything that is not empty
 };
 
 /// One line of the table.
@@ -99,6 +100,7 @@ class Options {
   double number(std::string_view key, std::string_view name = {},
                 std::optional<double> otherwise = {});
   std::int64_t integer(std::string_view key, std::string_view name = {});
+  double duration(std::string_view key, std::string_view name = {});  ///< [s]
   std::string text(std::string_view key, std::string_view name = {},
                    const std::optional<std::string>& otherwise = {});
   std::vector<std::string> words(std::string_view key, std::string_view name = {});
@@ -121,6 +123,10 @@ class Options {
   const std::vector<IdleKey>& idle() const { return idle_; }
   /// Every option as read so far, and PETSc's as given, as YAML that repeats the run.
   std::string yaml() const;
+
+  /// Of the options that the scene or the command line gives, those that have been read and have a
+  /// value, by their names on the command line.
+  std::vector<std::string> read_and_given() const;
 
   /// Value of an option of PETSc's; empty if it has none or is not given.
   std::string petsc(std::string_view name) const;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,15 +14,25 @@
 
 namespace floe {
 
+/// What a loaded number must lie in; what is not a number never does.
+struct Within {
+  double least = std::numeric_limits<double>::lowest(), most = std::numeric_limits<double>::max();
+};
+inline constexpr Within finite{}, not_negative{0},
+    positive{std::numeric_limits<double>::denorm_min()},
+    not_negative_or_infinite{0, std::numeric_limits<double>::infinity()};
+
 /// One visit serves both ways: what is named is written when saving and set when loading, so that
 /// the two cannot disagree. The file is in global order and says nothing of the ranks but each
 /// one's share of a sum. Collective throughout; rank 0 alone touches the file. What is asked for
-/// while loading and is not in the file raises InputError on all ranks.
+/// while loading and is not in the file, or is no number that it can be, raises InputError on all
+/// ranks.
 class Memory {
  public:
   /// Saves into `file` (rank 0; null elsewhere), or loads from it. \param part  must outlive this
-  Memory(const Part& part, Hdf5File* file, bool loading)
-      : part_(part), file_(file), loading_(loading) {}
+  /// \param name  of the file, for messages
+  Memory(const Part& part, Hdf5File* file, bool loading, std::string name = {})
+      : part_(part), file_(file), loading_(loading), name_(std::move(name)) {}
 
   bool loading() const { return loading_; }
   /// How writing to the file went, on rank 0: what cannot be written ends nothing before all ranks
@@ -31,8 +42,9 @@ class Memory {
   void enter(const std::string& group) { group_ = group.empty() ? "" : group + "/"; }
 
   /// A number or numbers that all ranks hold alike.
-  void common(const std::string& name, double& value);
-  void common(const std::string& name, std::int64_t& value);  ///< below 2^53
+  void common(const std::string& name, double& value, Within must = finite);
+  /// Below 2^53. \param least  that it can be
+  void common(const std::string& name, std::int64_t& value, std::int64_t least = 0);
   void common(const std::string& name, bool& value);
   void common(const std::string& name, std::vector<double>& values);
   void common(const std::string& name, std::string& text);
@@ -61,7 +73,8 @@ class Memory {
                  std::span<const double> rows, int width);
   std::vector<double> gathered(std::span<const double> mine) const;
   /// Numbers of a dataset on all ranks.
-  std::vector<double> read(const std::string& name, int columns = 1);
+  std::vector<double> read(const std::string& name, Within must, int columns = 1);
+  std::vector<double> one(const std::string& name, Within must);
   [[noreturn]] void refuse(const std::string& why) const;
 
   const Part& part_;
@@ -74,7 +87,7 @@ class Memory {
   Hdf5File* file_;
   Outcome outcome_;
   bool loading_;
-  std::string group_;
+  std::string name_, group_;
 };
 
 }  // namespace floe

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "floe/forces/boundary.h"
 #include "floe/forces/load.h"
 #include "floe/lattice/memory.h"
 #include "floe/solve/integrator.h"
@@ -37,6 +38,11 @@ struct Sample {
       forces;  ///< energies and counts, as the forces report them
 };
 
+/// A sample with the columns of a run's rows and values of 0.
+/// \param names  of what forces and integrator report   \param breakable  beams may break
+Sample columns_of(const std::vector<Boundary>& boundaries, const std::vector<Load>& loads,
+                  const std::vector<std::string>& names, bool breakable);
+
 /// What the output of a run takes along over a restart.
 struct OutputMemory {
   Sample first, last;
@@ -45,12 +51,15 @@ struct OutputMemory {
   std::int64_t frames = 0;   ///< in fields.h5
   double next_history = 0;   ///< when the next row is due [s]
   double next_fields = 0;    ///< when the next frame is due [s]
+  std::string run;           ///< what identifies the run whose files they are
   void remember(Memory& memory);
 };
 
 /// Looks whether a folder holds the files that a restart goes on with; changes nothing. Collective.
+/// \param columns  a sample with the columns of this run's rows, whatever their values
 /// \throws InputError
-void require_files(const std::string& dir, const OutputMemory& memory, MPI_Comm comm);
+void require_files(const std::string& dir, const OutputMemory& memory, const Sample& columns,
+                   MPI_Comm comm);
 
 /// Takes every accepted state; writes on rank 0. Files of planar runs are those of spatial ones,
 /// with zeros. Collective throughout.
@@ -73,6 +82,8 @@ class Output {
   void accept(const Accepted<Space>& accepted);
   /// Writes the last accepted state if it is not on file yet.
   void finish();
+  /// Rows and frames so far outlive a crash of the machine.
+  void sync();
 
   /// What a checkpoint must know to cut the files back to this moment.
   const OutputMemory& memory() const;

@@ -38,6 +38,12 @@ class RunFolder {
   /// What would have been thrown, as one line; empty: nothing. For a scene that is only checked.
   static std::string problem(const FolderWish& wish, MPI_Comm comm);
 
+  /// How the run ended whose files are in a folder: the status in its summary.json, "unknown" where
+  /// that cannot be read; empty if there is none. On one rank.
+  static std::string status(const std::string& dir);
+  /// What identifies that run; empty if nobody knows. On one rank.
+  static std::string run_in(const std::string& dir);
+
   /// What identifies the run whose files are in the folder; empty if nobody knows. On all ranks.
   const std::string& run() const { return run_; }
   /// From here on the run writes its files; those of an earlier one are removed unless it goes on.

@@ -1,0 +1,86 @@
+"""A library that is loaded before floe's: it notes how files get to the disk, and ends or interrupts the run at a given call.
+
+Calls that count are those that make, rename or remove a checkpoint or bring something to the disk.
+"""
+import subprocess
+
+from launch import ENVIRONMENT
+
+SOURCE = r"""#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static int number(const char* name) {
+  const char* text = getenv(name);
+  return text != NULL ? atoi(text) : 0;
+}
+
+/* Before the call, so that it is the first that does not happen. */
+static void note(const char* what, const char* path, const char* second) {
+  static int count = 0;
+  const char* log = getenv("TEST_LOG");
+  if (log != NULL) {
+    FILE* file = fopen(log, "a");
+    fprintf(file, "%s\t%s\t%s\n", what, path, second);
+    fclose(file);
+  }
+  if (strstr(path, "checkpoint") == NULL && strcmp(what, "fsync") != 0) return;
+  if (++count == number("TEST_KILL_AT")) kill(getpid(), SIGKILL);
+}
+
+static void name_of(int file, char* path, int size) {
+  char link[64];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", file);
+  const ssize_t length = readlink(link, path, size - 1);
+  path[length > 0 ? length : 0] = 0;
+}
+
+#define REAL(name) ((__typeof__(name)*)dlsym(RTLD_NEXT, #name))
+
+int rename(const char* a, const char* b) {
+  note("rename", a, b);
+  return REAL(rename)(a, b);
+}
+int renameat2(int from, const char* a, int to, const char* b, unsigned flags) {
+  note("rename", a, b);
+  return REAL(renameat2)(from, a, to, b, flags);
+}
+int link(const char* a, const char* b) {
+  note("link", a, b);
+  return getenv("TEST_NO_LINKS") != NULL ? (errno = EPERM, -1) : REAL(link)(a, b);
+}
+int unlink(const char* a) {
+  note("unlink", a, "");
+  return REAL(unlink)(a);
+}
+int fsync(int file) {
+  char path[4096];
+  name_of(file, path, sizeof path);
+  note("fsync", path, "");
+  return REAL(fsync)(file);
+}
+ssize_t write(int file, const void* text, size_t size) {
+  static int rows = 0;
+  char path[4096];
+  name_of(file, path, sizeof path);
+  const ssize_t done = REAL(write)(file, text, size);
+  if (strstr(path, "history.csv") != NULL && ++rows == number("TEST_TERM_AT_ROW")) raise(SIGTERM);
+  return done;
+}
+"""
+
+
+def library(folder):
+    """Compiles it; what goes into the environment of a run."""
+    source, path = folder / "interposed.c", folder / "interposed.so"
+    source.write_text(SOURCE)
+    subprocess.run(["cc", "-O1", "-shared", "-fPIC", source, "-o", path, "-ldl"], check=True)
+    source.unlink()
+    preloaded = ":".join(filter(None, [str(path), ENVIRONMENT.get("LD_PRELOAD")]))
+    return {"LD_PRELOAD": preloaded}
