@@ -1,9 +1,10 @@
 // PETSc's options in a run: where they come from, and which of them nothing has asked for.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <set>
 
+#include "blame.h"
+#include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "option_names.h"
 #include "option_values.h"
@@ -95,14 +96,14 @@ void reject_unused_options(const std::set<std::string>& exempt) {
     break;
   }
   throw_verdict(verdict, PETSC_COMM_WORLD);  // a rank may have asked for less than rank 0
+  solver_options_are_good();
 }
 
 void warn_unused_options() {
   if (rank() != 0) return;
   for (const auto& [name, value] : unused_options()) {
     if (is_asked_for_at_the_end(name)) continue;
-    std::fprintf(stderr, "floe: warning: %s: nothing in this run has asked for this option\n",
-                 name.c_str());
+    warn(name + ": nothing in this run has asked for this option");
   }
 }
 }  // namespace floe

@@ -13,7 +13,7 @@ struct HistoryStart {
   std::int64_t size = 0;  ///< in bytes
   std::string header;     ///< the first line
 };
-/// \throws InputError if the file has fewer rows than `keep`
+/// \throws InputError if the file has fewer rows than `keep`, or what is no text in them
 HistoryStart history_start(const std::string& path, std::int64_t keep);
 
 /// Lives on rank 0.
@@ -31,6 +31,8 @@ class History {
   void write_header(const std::string& line);
   /// \param line  ends in a newline \throws FileError, with the file as it was before
   void write(const std::string& line);
+  /// The last thing. A full network disk may say so only here. \throws FileError
+  void close();
 
  private:
   std::string path_, header_;

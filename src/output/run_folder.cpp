@@ -14,7 +14,10 @@
 #include <random>
 
 #include "floe/base/files.h"
+#include "floe/base/log.h"
 #include "floe/base/on_root.h"
+#include "floe/base/run_log.h"
+#include "output/result_files.h"
 #include "output/run_lock.h"
 
 namespace floe {
@@ -24,10 +27,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// What a run writes, beside temporary files.
-constexpr std::array<std::string_view, 9> results{
-    "lattice.h5",  "options.yaml", "history.csv",   "fields.h5",
-    "fields.xmf",  "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
-    "summary.json"};
+constexpr std::array<std::string_view, 10> results{
+    "lattice.h5", "options.yaml", "history.csv",   "fields.h5",
+    "fields.xmf", "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
+    "floe.log",   "summary.json"};
 /// Removed when a run begins: what would contradict it until its own is written.
 constexpr std::array<std::string_view, 5> contradicting{
     "summary.json", "fields.xmf", "checkpoint.h5", "checkpoint_previous.h5", "breaks.h5"};
@@ -84,6 +87,7 @@ std::string result_named(const fs::path& path, const fs::path& dir) {
     if (way.parent_path() == folder &&
         std::find(results.begin(), results.end(), name) != results.end())
       return name;
+    if (way.parent_path() == folder / "fields") return "fields";
   }
   return {};
 }
@@ -138,6 +142,7 @@ void check_folder(const FolderWish& wish) {
     throw InputError("output: dir: " + wish.dir +
                      " is no folder for results (the root, or a home); name one below it");
   check_inputs(wish);
+  check_result_files(wish.dir, results);
   const std::string first = first_entry(wish.dir);
   if (first.empty() || wish.overwrite || is_folder_of_a_run(wish.dir)) return;
   throw InputError("output: dir: " + wish.dir + " is not empty and holds no run (it has '" + first +
@@ -195,8 +200,7 @@ RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
       impl_.reset();
       throw;
     }
-    if (!impl_->lock.warning().empty())
-      std::fprintf(stderr, "floe: warning: %s\n", impl_->lock.warning().c_str());
+    if (!impl_->lock.warning().empty()) warn(impl_->lock.warning());
   });
   share(run_, comm);
 }
@@ -229,6 +233,7 @@ void RunFolder::begin(const std::string& run) {
       for (const std::string_view name : contradicting) fs::remove(fs::path(dir_) / name, ignored);
     }
     write_whole(dir_ + reserve, std::string(room, ' '));
+    open_log(dir_ + "/floe.log", !run.empty());
   });
   begun_ = true;
   share(run_, comm_);

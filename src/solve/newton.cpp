@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <string>
 #include <vector>
 
 #include "floe/base/ranks.h"
@@ -123,6 +124,27 @@ std::int64_t negative_pivots(KSP ksp) {
   constexpr PetscInt number_of_negative_pivots = 12;  // MUMPS users' guide, INFOG(12)
   check(MatMumpsGetInfog(factor, number_of_negative_pivots, &negative));
   return negative;
+}
+
+void require_memory(KSP ksp) {
+  PC pc = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  check(KSPGetPC(ksp, &pc));
+  check(PCGetFailedReason(pc, &reason));
+  if (reason != PC_FACTOR_OUTMEMORY) return;
+  std::string text = "out of memory: the factorisation of the tangent needs more";
+  const Mat factor = mumps_cholesky(ksp);
+  if (factor != nullptr) {
+    std::array<PetscInt, 2> info{};
+    check(MatMumpsGetInfog(factor, 1, &info[0]));
+    check(MatMumpsGetInfog(factor, 2, &info[1]));
+    text += " (MUMPS says INFOG(1) = " + std::to_string(info[0]) +
+            ", INFOG(2) = " + std::to_string(info[1]) + ")";
+    constexpr PetscInt not_allocated = -13;  // its users' guide
+    if (info[0] != not_allocated) text += "; -mat_mumps_icntl_14 100 lets it take more";
+  }
+  throw RunFailed(text +
+                  "; -ksp_type cg -pc_type gamg needs less, as do more ranks on more machines");
 }
 
 template double typical_stiffness(const Model<Spatial>&);

@@ -41,4 +41,8 @@ void let_mumps_count(KSP ksp);
 /// the solver does not tell. Collective.
 std::int64_t negative_pivots(KSP ksp);
 
+/// After a linear solve that failed. \throws RunFailed if the factorisation had too little memory,
+/// which no smaller step mends. On all ranks alike.
+void require_memory(KSP ksp);
+
 }  // namespace floe

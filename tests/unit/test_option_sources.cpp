@@ -153,6 +153,13 @@ TEST(CommandLine, WordsMustBelongToAnOption) {
   EXPECT_TRUE(contains(command_line_error({"-check", "a.yaml"}), "usage"));
 }
 
+TEST(CommandLine, AnOptionInFrontOfTheSceneIsToldHowToStand) {
+  EXPECT_EQ(command_line_error({"-sheet_length", "3", "a.yaml", "-check"}),
+            "the scene's file comes first, options after it; -sheet_length is an option: floe "
+            "a.yaml -sheet_length 3 -check");
+  EXPECT_TRUE(contains(command_line_error({"-sheet_length", "3"}), "no scene is named; usage"));
+}
+
 TEST(CommandLine, TheLastValueCounts) {
   const std::array words{"floe",     "a.yaml", "-gravity",      "1",     "-KSP_Type", "cg",
                          "-gravity", "-2",     "-skip_petscrc", "-check"};
