@@ -181,7 +181,11 @@ int run(const std::string& path, const floe::UserOptions& options,
   if (!scene.check_only) {
     folder.emplace(wish, PETSC_COMM_WORLD);
     set_last_words([&folder](const std::string& why) {
-      if (folder) folder->fail(why);
+      if (folder && folder->has_begun()) {
+        folder->fail(why);
+      } else {
+        folder.reset();  // nothing of it is left
+      }
     });
   }
 

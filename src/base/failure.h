@@ -42,6 +42,7 @@ std::string out_of_memory_text();
 /// last words, and exit code 1 (2 if an option of PETSc's is to blame). Not with sanitizers, which
 /// say more.
 void report_crashes();
+void leave_crashes_to_the_system();
 /// What report_crashes() does at a crash; `what` is "segmentation fault".
 [[noreturn]] void end_crashed(const char* what) noexcept;
 

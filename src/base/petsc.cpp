@@ -171,6 +171,7 @@ Session::Session(const char* program, const UserOptions& user) : program_(progra
   words_[0] = program_.data();
   word_ = words_.data();
   int count = 1;
+  if (by_petsc || by_system) leave_crashes_to_the_system();
   // Before PETSc begins: it reads options then, and its own handler prints a page.
   if (!by_petsc) check(PetscPushErrorHandler(remember_error, nullptr));
   check(PetscInitialize(&count, &word_, nullptr, nullptr));

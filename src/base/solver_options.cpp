@@ -143,6 +143,8 @@ constexpr auto no_adjoint = "floe solves no adjoint equations";
 constexpr std::array useless{Useless{"ksp_view_diagonal_scale", "PETSc crashes on it"},
                              Useless{"snes_convergence_estimate", no_mesh},
                              Useless{"ts_convergence_estimate", no_mesh},
+                             Useless{"snes_monitor_fields", no_mesh},
+                             Useless{"snes_monitor_ksp", "PETSc crashes on it"},
                              Useless{"snes_adapt_initial", no_mesh},
                              Useless{"snes_adapt_sequence", no_mesh},
                              Useless{"snes_grid_sequence", no_mesh},
@@ -259,6 +261,11 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
 }  // namespace
 
 std::string solver_option_problem(std::string_view name, std::string_view value) {
+  const bool in_python = name == "python" || name.find("python_") != std::string_view::npos ||
+                         name.ends_with("_python") ||
+                         (name.ends_with("_type") && value == "python");
+  if (in_python)
+    return std::string(name) + ": solvers in Python cannot be used: floe runs no Python";
   for (const Useless& u : useless) {
     if (is_called(name, u.name) && to_flag(value).value_or(true))
       return std::string(name) + ": would have no use here: " + std::string(u.why);

@@ -42,10 +42,6 @@ std::string problem_of(const std::string& path, bool must_be_folder) {
 }  // namespace
 
 void check_result_files(const std::string& dir, std::span<const std::string_view> names) {
-  struct stat there {};
-  if (::stat(dir.c_str(), &there) != 0) return;  // it will be made
-  if (!may(dir, W_OK | X_OK))
-    throw InputError("output: dir: '" + dir + "' cannot be written to: " + std::strerror(errno));
   const auto require = [&](const std::string& name, bool folder) {
     const std::string problem = problem_of(dir + "/" + name, folder);
     if (!problem.empty())
