@@ -121,7 +121,7 @@ int run(const floe::Scene& scene, Start& start) {
     prepare();
     output->accept(accepted);
     folder->note(accepted.state.time, accepted.step);
-    run_place() = {"", accepted.state.time, accepted.step};
+    run_place() = {"", accepted.state.time, accepted.step, 0};
   };
   const auto remember = [&](Memory& checkpoint) {
     if (checkpoint.loading()) {
@@ -181,7 +181,7 @@ int run(const std::string& path, const floe::UserOptions& options,
   if (!scene.check_only) {
     folder.emplace(wish, PETSC_COMM_WORLD);
     set_last_words([&folder](const std::string& why) {
-      if (folder && folder->has_begun()) {
+      if (folder && (folder->has_begun() || run_place().code == failed)) {
         folder->fail(why);
       } else {
         folder.reset();  // nothing of it is left
@@ -218,7 +218,8 @@ int run(const std::string& path, const floe::UserOptions& options,
 int run_to_an_end(const std::string& path, const floe::UserOptions& options) {
   std::optional<floe::RunFolder> folder;
   const auto end = [&](const floe::Verdict& why, int code) {
-    if (folder && floe::rank() == 0) folder->fail(why.what());
+    if (folder && floe::rank() == 0 && (folder->has_begun() || code == failed))
+      folder->fail(why.what());
     say_error(std::string("floe: ") + why.what() + "\n");
     folder.reset();
     floe::set_last_words({});

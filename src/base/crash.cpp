@@ -85,6 +85,7 @@ void end_crashed(const char* what) noexcept {
   put("floe: ");
   put(line.data());
   put("\n");
+  run_place().code = code;
   say_last_words(line.data());
   end_at_once(code);
 }

@@ -13,6 +13,7 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/base/run_log.h"
+#include "floe/base/run_place.h"
 #include "launcher.h"
 
 namespace floe {
@@ -77,6 +78,7 @@ void end_at_once(int code) {
 void leave(const std::string& line, int code) {
   if (rank_of_world() > 0) ::sleep(2);
   print_error("floe: " + line + "\n");
+  run_place().code = code;
   say_last_words(line);
   end_at_once(code);
 }

@@ -250,7 +250,10 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
   if (!has("view") && !has("monitor") && !has("reason")) return {};
   const std::string_view type = value.substr(0, colon);
   constexpr std::array on_file{"", "ascii", "binary", "hdf5", "vtk", "matlab", "glvis", "exodusii"};
-  if (std::find(on_file.begin(), on_file.end(), type) == on_file.end()) return {};
+  constexpr std::array others{"draw", "socket", "string", "saws", "mathematica", "adios", "cgns"};
+  if (std::find(others.begin(), others.end(), type) != others.end()) return {};
+  if (std::find(on_file.begin(), on_file.end(), type) == on_file.end())
+    return refused(name, value, "one of PETSc's viewers: ascii:FILE, binary:FILE, hdf5:FILE, ...");
   std::string_view file = value.substr(colon + 1);
   file = file.substr(0, file.find(':'));
   return file.empty() || file == "stdout" || file == "stderr"

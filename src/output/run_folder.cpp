@@ -189,7 +189,7 @@ struct RunFolder::Impl {
 };
 
 RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
-    : comm_(comm), dir_(wish.dir), started_(date_and_time()) {
+    : comm_(comm), dir_(wish.dir), started_(date_and_time()), goes_on_(wish.goes_on) {
   on_root(comm, [&] {
     check_folder(wish);
     impl_.reset(new Impl{wish, RunLock(wish.dir)});
@@ -223,20 +223,22 @@ std::string RunFolder::problem(const FolderWish& wish, MPI_Comm comm) {
 }
 
 void RunFolder::begin(const std::string& run) {
-  on_root(comm_, [&] {
-    run_ = run.empty() ? new_run() : run;
-    begun_ = true;
-    impl_->lock.keep(run_);
-    for (const std::string_view name : results) remove_left_over(dir_ + "/" + std::string(name));
-    if (run.empty()) {
-      std::error_code ignored;
-      for (const std::string_view name : contradicting) fs::remove(fs::path(dir_) / name, ignored);
-    }
-    write_whole(dir_ + reserve, std::string(room, ' '));
-    open_log(dir_ + "/floe.log", !run.empty());
-  });
+  on_root(comm_, [&] { begin_here(run); });
   begun_ = true;
   share(run_, comm_);
+}
+
+void RunFolder::begin_here(const std::string& run) {
+  run_ = run.empty() ? new_run() : run;
+  begun_ = true;
+  impl_->lock.keep(run_);
+  for (const std::string_view name : results) remove_left_over(dir_ + "/" + std::string(name));
+  if (run.empty()) {
+    std::error_code ignored;
+    for (const std::string_view name : contradicting) fs::remove(fs::path(dir_) / name, ignored);
+  }
+  write_whole(dir_ + reserve, std::string(room, ' '));
+  open_log(dir_ + "/floe.log", !run.empty());
 }
 
 void RunFolder::finish(const std::string& summary) {
@@ -248,8 +250,9 @@ void RunFolder::finish(const std::string& summary) {
 }
 
 void RunFolder::fail(const std::string& why) noexcept {
-  if (!begun_) return;
+  if (!begun_ && goes_on_) return;  // the files are those of the run that it would go on with
   try {
+    if (!begun_ && impl_) begin_here({});
     const Json json{{"status", "failed"},  {"message", why},           {"time", time_},
                     {"steps", step_},      {"ranks", size(comm_)},     {"host", host_name()},
                     {"started", started_}, {"ended", date_and_time()}, {"version", FLOE_VERSION}};
