@@ -2,7 +2,6 @@
 
 #include <malloc.h>
 
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +13,8 @@
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
+#include "floe/base/run_log.h"
+#include "floe/base/run_place.h"
 #include "floe/base/scene_text.h"
 #include "floe/base/signals.h"
 #include "floe/base/version.h"
@@ -23,17 +24,18 @@
 #include "floe/output/run_folder.h"
 #include "floe/restart.h"
 #include "program/go_on.h"
+#include "program/log_heading.h"
 #include "program/program.h"
 
 namespace {
 
 using enum floe::program::Exit;
 
-void say(const std::string& text, std::FILE* where = stdout) {
-  if (floe::rank() == 0) {
-    std::fputs(text.c_str(), where);
-    std::fflush(where);
-  }
+void say(const std::string& text) {
+  if (floe::rank() == 0) floe::print(text);
+}
+void say_error(const std::string& text) {
+  if (floe::rank() == 0) floe::print_error(text);
 }
 
 /// Arrays above 1 MB come from the system and go back to it when they are freed, or the peak of a
@@ -89,6 +91,7 @@ int run(const floe::Scene& scene, Start& start) {
   using namespace floe;
   Lattice& lattice = start.lattice;
 
+  run_place().stage = "before the first state";
   const std::string lattice_id = fingerprint(lattice);
   const OutputSize size_of_output =
       output_size(lattice, scene.forces.fracture, scene.boundaries.size(), scene.loads.size(),
@@ -149,6 +152,7 @@ int run(const floe::Scene& scene, Start& start) {
     prepare(names_of(accepted.forces, accepted.columns));
     output->accept(accepted);
     folder->note(accepted.state.time, accepted.step);
+    run_place() = {"", accepted.state.time, accepted.step, 0};
   };
   const auto remember = [&](Memory& checkpoint) {
     if (checkpoint.loading()) {
@@ -167,8 +171,7 @@ int run(const floe::Scene& scene, Start& start) {
   // Bad input ends with one line: what may be meant so is said once the run is known to be
   // possible.
   const auto on_plan = [&](const RunPlan& plan) {
-    for (const std::string& warning : scene.warnings)
-      say("floe: warning: " + warning + "\n", stderr);
+    for (const std::string& warning : scene.warnings) say_error("floe: warning: " + warning + "\n");
     say(plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD)));
     return !scene.check_only;
   };
@@ -188,13 +191,14 @@ int run(const floe::Scene& scene, Start& start) {
                                     output->last(), MPI_Wtime() - start.time);
   folder->finish(summary.json);
   say(summary.text);
-  say("results: " + scene.output.dir + "/ (summary.json, history.csv; fields.xmf for ParaView)\n");
+  say("results: " + scene.output.dir +
+      "/ (summary.json, history.csv, floe.log; fields.xmf for ParaView)\n");
   const std::string how = goes_on ? "; go on with: " + start.go_on : "";
-  if (!result.done) say("floe: " + result.message + how + "\n", stderr);
+  if (!result.done) say_error("floe: " + result.message + how + "\n");
   if (result.unstable_modes > 0)
-    say("floe: warning: the equilibrium is unstable (" + std::to_string(result.unstable_modes) +
-            " negative eigenvalues of its tangent): the least disturbance would end it\n",
-        stderr);
+    say_error("floe: warning: the equilibrium is unstable (" +
+              std::to_string(result.unstable_modes) +
+              " negative eigenvalues of its tangent): the least disturbance would end it\n");
   warn_unused_options();
   return result.done ? done : result.stopped ? stopped : failed;
 }
@@ -237,11 +241,16 @@ int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
   if (!scene.check_only) {
     folder.emplace(wish, PETSC_COMM_WORLD);
     set_last_words([&folder](const std::string& why) {
-      if (folder) folder->fail(why);
+      if (folder && (folder->has_begun() || run_place().code == failed)) {
+        folder->fail(why);
+      } else {
+        folder.reset();  // nothing of it is left
+      }
     });
   }
 
   // 2. Sheet -> lattice, and what it does not need
+  run_place().stage = "while the lattice was made";
   start.lattice = make_lattice(scene, PETSC_COMM_WORLD, start.mesh);
   stop_if_asked(PETSC_COMM_WORLD);
   set_initial(scene, start.lattice);
@@ -269,8 +278,9 @@ int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
 int run_to_an_end(const Wish& user) {
   std::optional<floe::RunFolder> folder;
   const auto end = [&](const floe::Verdict& why, int code) {
-    if (folder && floe::rank() == 0) folder->fail(why.what());
-    say(std::string("floe: ") + why.what() + "\n", stderr);
+    if (folder && floe::rank() == 0 && (folder->has_begun() || code == failed))
+      folder->fail(why.what());
+    say_error(std::string("floe: ") + why.what() + "\n");
     folder.reset();
     floe::set_last_words({});
     return code;
@@ -288,15 +298,9 @@ int run_to_an_end(const Wish& user) {
   }
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (const auto code = floe::program::answer(argc, argv)) return *code;
-  if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
-    return floe::program::print_options(help);
-  const floe::program::Words words(argv, argv + argc);
-  floe::StopSignals signals;
-  floe::Mpi mpi(argc, argv);
+/// The scene's run.
+int run_command(int argc, char** argv, const floe::program::Words& words,
+                floe::StopSignals& signals) {
   try {
     const floe::CommandLine line = floe::read_command_line(argc, argv);
     floe::UserOptions options{floe::read_environment(line.petscrc), {}, line.options};
@@ -308,9 +312,25 @@ int main(int argc, char** argv) {
     give_memory_back();
     return run_to_an_end({words, options, restart});
   } catch (const floe::InputError& error) {
-    int me = 0;
-    MPI_Comm_rank(MPI_COMM_WORLD, &me);
-    if (me == 0) std::fprintf(stderr, "floe: %s\n", error.what());
+    if (floe::rank(MPI_COMM_WORLD) == 0)
+      floe::print_error(std::string("floe: ") + error.what() + "\n");
     return bad_input;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  floe::open_closed_streams();
+  if (const auto code = floe::program::answer(argc, argv)) return *code;
+  if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
+    return floe::program::print_options(help);
+  const floe::program::Words words(argv, argv + argc);
+  floe::StopSignals signals;
+  floe::Mpi mpi(argc, argv);
+  if (floe::rank(MPI_COMM_WORLD) == 0) floe::keep_log(floe::program::log_heading(argc, argv));
+  const int code = run_command(argc, argv, words, signals);
+  floe::close_log("ended " + floe::date_and_time() + " with exit code " + std::to_string(code) +
+                  "\n");
+  return code;
 }

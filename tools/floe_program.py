@@ -62,12 +62,15 @@ def reading(path):
         raise BadInput(f"{path}: cannot be read: {why}") from error
 
 
-def picture(text):
-    """An argparse type: a file to draw into, whose ending matplotlib knows and whose folder is there."""
+# What matplotlib writes.
+PICTURES = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "tif", "tiff", "webp")
+
+
+def picture(text, known=PICTURES):
+    """An argparse type: a file to draw into, whose ending is known and whose folder is there."""
     path = Path(text)
-    known = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "tif", "tiff", "webp")
     if path.suffix[1:] not in known:
-        raise argparse.ArgumentTypeError(f"'{text}' must end in one of .{', .'.join(known)}")
+        raise argparse.ArgumentTypeError(f"'{text}' must end in {'one of ' if len(known) > 1 else ''}.{', .'.join(known)}")
     if not path.parent.is_dir():
         raise argparse.ArgumentTypeError(f"'{path.parent}' is no folder")
     return text

@@ -33,6 +33,29 @@ void check_option(std::string_view word, std::string_view value) {
     throw InputError(shown_word + ": " + shown(value) + " must be true or false");
 }
 
+constexpr auto usage = "usage: floe SCENE.yaml [-key value ...], or floe -help";
+
+bool looks_like_a_scene(std::string_view word) {
+  return word.ends_with(".yaml") || word.ends_with(".yml");
+}
+
+/// Of a command line that begins with an option: the same with its scene in front.
+[[noreturn]] void refuse_option_first(int argc, const char* const* argv) {
+  const std::string begin = std::string("the scene's file comes first, options after it; ") +
+                            shown(argv[1]) + " is an option";
+  std::string scene, rest;
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = shown(argv[k]);
+    if (scene.empty() && looks_like_a_scene(argv[k])) {
+      scene = word;
+    } else {
+      rest += " " + word;
+    }
+  }
+  throw InputError(begin + (scene.empty() ? std::string(", and no scene is named; ") + usage
+                                          : ": floe " + scene + rest));
+}
+
 }  // namespace
 
 Help wants_help(int argc, const char* const* argv) {
@@ -46,12 +69,13 @@ Help wants_help(int argc, const char* const* argv) {
 }
 
 CommandLine read_command_line(int argc, const char* const* argv) {
-  constexpr auto usage = "usage: floe SCENE.yaml [-key value ...], or floe -help";
   const auto goes_on = [&] {
     return std::any_of(argv + 1, argv + argc,
                        [](std::string_view word) { return word == "-checkpoint_restart"; });
   };
   const bool has_scene = argc > 1 && argv[1][0] != '-' && argv[1][0] != '\0';
+  if (!has_scene && argc >= 2 && is_option_word(argv[1]) && !goes_on())
+    refuse_option_first(argc, argv);
   if (!has_scene && (argc < 2 || argv[1][0] == '\0' || !goes_on()))
     throw InputError(std::string("no scene is named; ") + usage);
   CommandLine line;

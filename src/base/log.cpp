@@ -9,6 +9,7 @@
 #include <string>
 
 #include "floe/base/petsc.h"
+#include "floe/base/run_log.h"
 
 namespace floe {
 namespace {
@@ -65,16 +66,15 @@ double resident_memory_mb(MPI_Comm comm) {
 }
 
 Progress::Progress(std::string_view what, double total)
-    : what_(what), total_(total), start_(MPI_Wtime()), last_print_(start_) {
+    : what_(what), total_(total), start_(MPI_Wtime()), last_print_(start_), last_logged_(start_) {
   active_ = rank() == 0;
   terminal_ = isatty(STDERR_FILENO) != 0;
 }
 
 void warn(const std::string& text) {
   // A progress bar may stand in the line.
-  std::fprintf(stderr, "%sfloe: warning: %s\n", isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "",
-               text.c_str());
-  std::fflush(stderr);
+  if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+  print_error("floe: warning: " + text + "\n");
 }
 
 Progress::~Progress() {
@@ -89,28 +89,27 @@ void Progress::update(double done, std::string_view note) {
   if (now - last_print_ < (terminal_ ? bar_seconds : line_seconds)) return;
   last_print_ = now;
   shown_ = true;
-  if (!(total_ > 0)) {
-    std::fprintf(stderr, terminal_ ? "\r\033[K%.*s: %.*s" : "%.*s: %.*s\n",
-                 static_cast<int>(what_.size()), what_.data(), static_cast<int>(note.size()),
-                 note.data());
-    std::fflush(stderr);
-    return;
-  }
-  const double share = std::clamp(done / total_, 0.0, 1.0);
-  const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
-  if (terminal_) {
+  std::string plain = std::string(what_) + ": ", drawn = plain;
+  if (total_ > 0) {
+    const double share = std::clamp(done / total_, 0.0, 1.0);
+    const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
     constexpr int bar_width = 30;
-    const int full = static_cast<int>(share * bar_width);
-    const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
-                            std::string(static_cast<std::size_t>(bar_width - full), '.');
-    std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%  %.0f s left  %.*s",
-                 static_cast<int>(what_.size()), what_.data(), bar.c_str(), 100 * share, left,
-                 static_cast<int>(note.size()), note.data());
-  } else {
-    std::fprintf(stderr, "%.*s: %.0f %%, %.0f s left  %.*s\n", static_cast<int>(what_.size()),
-                 what_.data(), 100 * share, left, static_cast<int>(note.size()), note.data());
+    const auto full = static_cast<std::size_t>(share * bar_width);
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), "%.0f %%, %.0f s left  ", 100 * share, left);
+    plain += text.data();
+    std::snprintf(text.data(), text.size(), "] %3.0f %%  %.0f s left  ", 100 * share, left);
+    drawn = std::string(what_) + " [" + std::string(full, '#') +
+            std::string(bar_width - full, '.') + text.data();
   }
+  plain += std::string(note) + "\n";
+  drawn = "\r\033[K" + drawn + std::string(note);
+  std::fputs(terminal_ ? drawn.c_str() : plain.c_str(), stderr);
   std::fflush(stderr);
+  constexpr double seldom = 60;  // [s]: weeks of lines are of no use in a log
+  if (now - last_logged_ < seldom) return;
+  last_logged_ = now;
+  put_into_log(plain);
 }
 
 }  // namespace floe

@@ -223,4 +223,14 @@ std::string shown(std::string_view value) {
   return plain ? text : "'" + text + "'";
 }
 
+std::string in_brackets(const std::string& place) {
+  return place.empty() ? "" : " (" + place + ")";
+}
+
+void refuse_value(const OptionSpec& spec, const std::string& label, std::string_view value,
+                  const std::string& place) {
+  throw InputError(label + ": " + (value.empty() ? "no value given," : shown(value)) + " must be " +
+                   allowed_text(spec) + place);
+}
+
 }  // namespace floe

@@ -51,5 +51,10 @@ std::string lower(std::string_view text);
 std::string allowed_text(const OptionSpec& spec);
 /// A value fit for one line of an error message: blanks for control characters, cut if long.
 std::string shown(std::string_view value);
+/// "PLACE" -> " (PLACE)"; nothing of nothing.
+std::string in_brackets(const std::string& place);
+/// Throws InputError: "LABEL: VALUE must be ...". \param place  in brackets, or nothing
+[[noreturn]] void refuse_value(const OptionSpec& spec, const std::string& label,
+                               std::string_view value, const std::string& place);
 
 }  // namespace floe

@@ -1,63 +1,14 @@
+// What was given: which line of the table it belongs to, and whether it has an effect.
 #include "floe/base/options.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdio>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "option_names.h"
 #include "option_values.h"
 
 namespace floe {
-namespace {
-
-using Pairs = std::vector<std::pair<std::string, std::string>>;
-
-/// Options that nothing has asked for so far, without their dash.
-Pairs unused_options() {
-  PetscInt n = 0;
-  char **names = nullptr, **values = nullptr;
-  check(PetscOptionsLeftGet(nullptr, &n, &names, &values));
-  Pairs options;
-  for (PetscInt k = 0; k < n; ++k) options.emplace_back(names[k], values[k] ? values[k] : "");
-  check(PetscOptionsLeftRestore(nullptr, &n, &names, &values));
-  return options;
-}
-
-bool is_value(std::string_view fallback) { return !fallback.empty() && fallback.front() != '('; }
-
-/// What PETSc asks for only while it ends.
-bool is_asked_for_at_the_end(std::string_view name) {
-  constexpr std::array late{"citations", "get_total_flops", "mpidump", "objects_dump",
-                            "stack_view"};
-  return std::find(late.begin(), late.end(), name) != late.end() || name.starts_with("options_") ||
-         name.starts_with("malloc_");
-}
-
-/// Viewers may be asked for at any time.
-bool is_viewer(std::string_view name) {
-  return name.find("_view") != std::string_view::npos || name.starts_with("viewer_");
-}
-
-[[noreturn]] void refuse_value(const OptionSpec& spec, const std::string& label,
-                               std::string_view value, const std::string& place) {
-  throw InputError(label + ": " + (value.empty() ? "no value given," : shown(value)) + " must be " +
-                   allowed_text(spec) + place);
-}
-
-std::string in_brackets(const std::string& place) {
-  return place.empty() ? "" : " (" + place + ")";
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  return std::string(text.data(), end);
-}
-
-}  // namespace
 
 GivenOptions UserOptions::merged() const {
   GivenOptions all = environment;
@@ -294,131 +245,6 @@ const std::vector<std::string>& Options::names(std::string_view section) const {
     throw std::logic_error("no section with names: " + std::string(section));
   return found->second;
 }
-
-Options::Reading Options::read(std::string_view key, std::string_view name) {
-  const OptionSpec& line = spec(key);
-  Reading reading{line, option_name(key, name), option_label(key, name), {}, {}, false};
-  if (!read_.try_emplace(reading.option).second)
-    throw std::logic_error("option read twice: " + reading.option);
-  if (const auto found = given_.find(reading.option); found != given_.end()) {
-    reading.value = found->second.value;
-    reading.place = in_brackets(found->second.place);
-    reading.is_list = found->second.is_list;
-  } else if (is_value(line.fallback)) {
-    reading.value = std::string(line.fallback);
-  } else if (line.fallback == "(required)") {
-    throw InputError(reading.label + ": is missing; it must be " + allowed_text(line));
-  }
-  return reading;
-}
-
-void Options::record(const Reading& reading, std::string value) {
-  read_[reading.option] = std::move(value);
-}
-
-bool Options::flag(std::string_view key, std::string_view name) {
-  const Reading reading = read(key, name);
-  const auto value = to_flag(reading.value.value_or("false"));
-  if (!value) refuse_value(reading.spec, reading.label, *reading.value, reading.place);
-  record(reading, *value ? "true" : "false");
-  return *value;
-}
-
-constexpr std::string_view automatic =
-    "(auto)";  // default of numbers that the word auto stands for
-
-double Options::number(std::string_view key, std::string_view name,
-                       std::optional<double> otherwise) {
-  const Reading reading = read(key, name);
-  if (otherwise && reading.spec.fallback == automatic && reading.value == "auto") {
-    record(reading, "auto");
-    return *otherwise;
-  }
-  if (!reading.value && otherwise) {
-    record(reading, reading.spec.fallback == automatic ? "auto" : shortest(*otherwise));
-    return *otherwise;
-  }
-  const std::string text = reading.value.value_or("");
-  const auto value = to_number(text);
-  if (!value || !in_range(*value, reading.spec.allowed))
-    refuse_value(reading.spec, reading.label, text, reading.place);
-  record(reading, text);
-  return *value;
-}
-
-std::int64_t Options::integer(std::string_view key, std::string_view name) {
-  const Reading reading = read(key, name);
-  const std::string text = reading.value.value_or("");
-  const auto value = to_integer(text);
-  if (!value || !in_range(static_cast<double>(*value), reading.spec.allowed))
-    refuse_value(reading.spec, reading.label, text, reading.place);
-  record(reading, text);
-  return *value;
-}
-
-double Options::duration(std::string_view key, std::string_view name) {
-  const Reading reading = read(key, name);
-  const std::string text = reading.value.value_or("");
-  const auto value = to_duration(text);
-  if (!value || !in_range(*value, reading.spec.allowed))
-    refuse_value(reading.spec, reading.label, text, reading.place);
-  record(reading, text);
-  return *value;
-}
-
-std::string Options::text(std::string_view key, std::string_view name,
-                          const std::optional<std::string>& otherwise) {
-  const Reading reading = read(key, name);
-  std::string value = reading.value ? *reading.value : otherwise.value_or("");
-  if (value.empty() || reading.is_list)
-    refuse_value(reading.spec, reading.label, value, reading.place);
-  record(reading, value);
-  return value;
-}
-
-std::vector<std::string> Options::words(std::string_view key, std::string_view name) {
-  const Reading reading = read(key, name);
-  const std::string text = reading.value.value_or("");
-  auto list = to_list(text);
-  const auto known = choices_of(reading.spec.allowed);
-  const bool fits = list && std::set(list->begin(), list->end()).size() == list->size() &&
-                    std::all_of(list->begin(), list->end(), [&](const std::string& word) {
-                      return std::find(known.begin(), known.end(), word) != known.end();
-                    });
-  if (!fits) refuse_value(reading.spec, reading.label, text, reading.place);
-  if (!list->empty()) record(reading, text);
-  return *list;
-}
-
-void Options::read_numbers(std::string_view key, std::string_view name, std::span<double> values) {
-  const Reading reading = read(key, name);
-  const std::string text = reading.value.value_or("");
-  const auto list = to_list(text);
-  if (!list || list->size() != values.size())
-    refuse_value(reading.spec, reading.label, text, reading.place);
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const auto value = to_number((*list)[k]);
-    if (!value || !in_range(*value, reading.spec.allowed))
-      refuse_value(reading.spec, reading.label, text, reading.place);
-    values[k] = *value;
-  }
-  record(reading, text);
-}
-
-int Options::read_choice(std::string_view key, std::string_view name) {
-  const Reading reading = read(key, name);
-  const std::string text = reading.value.value_or("");
-  const auto known = choices_of(reading.spec.allowed);
-  auto chosen = std::find(known.begin(), known.end(), text);
-  // Where true and false are words of the choice, their other spellings are too.
-  const auto truth = to_flag(text);
-  if (chosen == known.end() && truth && !text.empty())
-    chosen = std::find(known.begin(), known.end(), *truth ? "true" : "false");
-  if (chosen == known.end()) refuse_value(reading.spec, reading.label, text, reading.place);
-  record(reading, std::string(*chosen));
-  return static_cast<int>(chosen - known.begin());
-}
-
 void Options::refuse_unread() {
   for (const auto& [option, given] : given_) {
     if (read_.contains(option) || idle_options_.contains(option)) continue;
@@ -426,7 +252,6 @@ void Options::refuse_unread() {
     keep_idle(option, given, option_label(line->key, name), "would have no effect in this scene");
   }
 }
-
 std::vector<std::string> Options::read_and_given() const {
   std::vector<std::string> names;
   for (const auto& [option, given] : given_) {
@@ -437,54 +262,6 @@ std::vector<std::string> Options::read_and_given() const {
   return names;
 }
 
-std::string Options::petsc(std::string_view name) const {
-  const auto found = petsc_.find(name);
-  return found == petsc_.end() ? "" : found->second.value;
-}
-
-void Options::leave_out(std::string_view family, bool of_scene) {
-  std::erase_if(petsc_, [&](const auto& entry) {
-    const auto& [name, given] = entry;
-    const bool drop = given.source == Source::environment || given.source == Source::checkpoint ||
-                      (given.source == Source::scene && of_scene);
-    if (!drop || !name.starts_with(family)) return false;
-    check(PetscOptionsClearValue(nullptr, ("-" + name).c_str()));
-    if (given.source == Source::environment) {
-      ignored_[name] = given;
-    } else {
-      idle_.push_back({name, "nothing in this run would ask for it"});
-    }
-    return true;
-  });
-}
-
-std::set<std::string> Options::may_stay_unused() const {
-  const bool commanded = std::any_of(petsc_.begin(), petsc_.end(), [](const auto& entry) {
-    return entry.second.source == Source::command_line;
-  });
-  std::set<std::string> names;
-  for (const auto& [name, given] : petsc_) {
-    if (given.source == Source::environment || given.source == Source::checkpoint ||
-        (given.source == Source::scene && commanded))
-      names.insert(name);
-  }
-  return names;
-}
-
-std::string Options::environment_remark() const {
-  std::vector<std::string> taken, left;
-  for (const auto& [name, given] : petsc_) {
-    if (given.source != Source::environment) continue;
-    taken.push_back("-" + name + (given.value.empty() ? "" : " " + shown(given.value)) +
-                    in_brackets(given.place));
-  }
-  for (const auto& [name, given] : ignored_)
-    left.push_back("-" + shown(name) + in_brackets(given.place));
-  if (taken.empty() && left.empty()) return {};
-  return "options of the environment: " + (taken.empty() ? "none taken" : some_of(taken)) +
-         (left.empty() ? "" : "; not taken: " + some_of(left));
-}
-
 std::string some_of(const std::vector<std::string>& items) {
   constexpr std::size_t most = 6;
   std::string text;
@@ -492,7 +269,6 @@ std::string some_of(const std::vector<std::string>& items) {
   if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
   return text;
 }
-
 void throw_verdict(std::string verdict, MPI_Comm comm) {
   auto length = static_cast<int>(verdict.size());
   MPI_Bcast(&length, 1, MPI_INT, 0, comm);
@@ -500,26 +276,4 @@ void throw_verdict(std::string verdict, MPI_Comm comm) {
   MPI_Bcast(verdict.data(), length, MPI_CHAR, 0, comm);
   if (!verdict.empty()) throw InputError(verdict);
 }
-
-void reject_unused_options(const std::set<std::string>& exempt) {
-  std::string verdict;
-  for (const auto& [name, value] : unused_options()) {
-    if (exempt.contains(name) || is_viewer(name) || is_asked_for_at_the_end(name)) continue;
-    const std::string near = nearest_petsc_option(name);
-    verdict = name + ": nothing in this run has asked for this PETSc option" +
-              (near.empty() ? "" : "; is it '" + near + "'?");
-    break;
-  }
-  throw_verdict(verdict, PETSC_COMM_WORLD);  // a rank may have asked for less than rank 0
-}
-
-void warn_unused_options() {
-  if (rank() != 0) return;
-  for (const auto& [name, value] : unused_options()) {
-    if (is_asked_for_at_the_end(name)) continue;
-    std::fprintf(stderr, "floe: warning: %s: nothing in this run has asked for this option\n",
-                 name.c_str());
-  }
-}
-
 }  // namespace floe

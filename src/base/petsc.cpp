@@ -1,13 +1,20 @@
 #include "floe/base/petsc.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <optional>
 #include <string>
 
+#include "blame.h"
+#include "failure.h"
 #include "floe/base/options.h"
+#include "floe/base/run_log.h"
+#include "launcher.h"
 #include "option_names.h"
 #include "solver_options.h"
 
@@ -21,39 +28,9 @@ std::string
 
 PetscErrorCode remember_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
                               PetscErrorType type, const char* message, void*) {
+  if (code == PETSC_ERR_FP) end_crashed("floating-point exception, trapped");  // it would abort
   if (type == PETSC_ERROR_INITIAL) last_message = message ? message : "";
   return code;
-}
-
-/// Whether somebody else started this process as one of several, or may have: mpiexec, srun.
-bool has_launcher() {
-  for (const char* name :
-       {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_FD", "SLURM_PROCID"})
-    if (std::getenv(name) != nullptr) return true;
-  return false;
-}
-
-/// Tells Open MPI what one process does without; what the user has set stands, but for the
-/// yielding.
-void prepare_one_process() {
-  // MUMPS asks MPI for messages all the time. One process has nobody to give way to; told to yield
-  // (tools/env), it would hand each of its time slices to whatever else the machine runs.
-  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
-  if (size == nullptr || std::strcmp(size, "1") == 0)
-    setenv("OMPI_MCA_mpi_yield_when_idle", "0", 1);
-  if (has_launcher()) return;
-  // No daemon that could start further processes and no search for networks: 0.1 s instead of 0.5.
-  // No session folder either: those that start at the same time would share it, and one in 40
-  // aborted when another had removed it.
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-  setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
-  setenv("OMPI_MCA_pml", "ob1", 0);
-  setenv("OMPI_MCA_btl", "self", 0);
-}
-
-std::function<void(const std::string&)>& last_words() {
-  static std::function<void(const std::string&)> words;
-  return words;
 }
 
 bool& gave_up() {
@@ -61,73 +38,59 @@ bool& gave_up() {
   return yes;
 }
 
-/// MPI_Abort prints eight lines of its own; a process that started alone has nobody to tell.
-[[noreturn]] void end_at_once() {
-  std::fflush(nullptr);
-  int running = 0;
-  MPI_Initialized(&running);
-  if (running && has_launcher()) MPI_Abort(MPI_COMM_WORLD, 1);
-  std::_Exit(1);
+/// PETSc's words for the last error, in one line.
+std::string take_last_message(int ierr) {
+  const char* generic = nullptr;
+  PetscErrorMessage(ierr, &generic, nullptr);
+  std::string text = last_message.empty() ? std::string(generic ? generic : "") : last_message;
+  last_message.clear();
+  for (char& c : text) {
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
+  }
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
 }
 
-[[noreturn]] void report_and_abort() {
-  const char* what = "unknown error";
-  const char* kind = "internal error: ";
-  std::string text;
-  if (const auto error = std::current_exception()) {
-    try {
-      std::rethrow_exception(error);
-    } catch (const FileError& e) {
-      text = e.what();
-      what = text.c_str();
-      kind = "";
-    } catch (const std::exception& e) {
-      text = e.what();
-      what = text.c_str();
-    } catch (...) {
-    }
-  }
-  std::fprintf(stderr, "floe: %s%s\n", kind, what);
-  std::fflush(stderr);
-  if (last_words()) last_words()(std::string(kind) + what);
-  end_at_once();
+/// MUMPS says so by a number (INFOG(1), its users' guide).
+bool is_out_of_memory(int ierr, const std::string& text) {
+  return ierr == PETSC_ERR_MEM || text.find("INFOG(1)=-13") != std::string::npos ||
+         text.find("Cannot allocate required memory") != std::string::npos;
 }
 
 }  // namespace
 
 void fail(int ierr, const std::source_location& where) {
-  const char* generic = nullptr;
-  PetscErrorMessage(ierr, &generic, nullptr);
-  std::string text = last_message.empty() ? std::string(generic ? generic : "") : last_message;
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  last_message.clear();
+  const std::string text = take_last_message(ierr);
+  if (is_out_of_memory(ierr, text)) throw OutOfMemory();
+  if (solver_options_are_doubtful()) {
+    const std::string line = blame_solver_options(text);
+    if (!all_ranks_are_here()) leave(line, exit_bad_input);
+    throw InputError(line);
+  }
   const bool not_a_number = ierr == PETSC_ERR_ARG_OUTOFRANGE && text.rfind("Input string", 0) == 0;
   const bool not_in_list = ierr == PETSC_ERR_USER && text.rfind("Unknown option", 0) == 0;
   if (ierr == PETSC_ERR_ARG_UNKNOWN_TYPE || ierr == PETSC_ERR_USER_INPUT ||
-      ierr == PETSC_ERR_MISSING_FACTOR || not_a_number || not_in_list) {
-    for (char& c : text) {
-      if (c == '\n') c = ' ';
-    }
+      ierr == PETSC_ERR_MISSING_FACTOR || not_a_number || not_in_list)
     throw InputError("solver option: " + text);
-  }
-  throw std::runtime_error(text + " (code " + std::to_string(ierr) + ", " + where.file_name() +
-                           ":" + std::to_string(where.line()) + ")");
-}
-
-void set_last_words(std::function<void(const std::string&)> words) {
-  last_words() = std::move(words);
+  const std::string option = solver_option_named(text);
+  throw std::runtime_error((option.empty() ? "" : "with " + option + ": ") + text + " (code " +
+                           std::to_string(ierr) + ", " + where.file_name() + ":" +
+                           std::to_string(where.line()) + ")");
 }
 
 Mpi::Mpi(int& argc, char**& argv) {
-  std::set_terminate(report_and_abort);
+  std::set_terminate(report_uncaught);
   prepare_one_process();
   MPI_Init(&argc, &argv);
+  report_mpi_errors();
+  report_crashes();
 }
 
 void give_up_on_mpi() { gave_up() = true; }
 
 Mpi::~Mpi() {
-  if (gave_up()) end_at_once();
+  if (gave_up()) end_at_once(exit_failed);
+  forget_mpi();
   MPI_Finalize();
 }
 
@@ -152,33 +115,71 @@ class Without {
 };
 
 /// Puts PETSc's options into its table, before PetscInitialize, which acts on some of them.
-void put_petsc_options(const UserOptions& user) {
-  constexpr int most = 400;  // PETSc 3.18 has room for 512
-  int count = 0;
+/// \return  those
+GivenOptions put_petsc_options(const UserOptions& user) {
+  constexpr std::size_t most = 400;  // PETSc 3.18 has room for 512
+  GivenOptions put;
   std::string problem;
   for (const auto& [name, given] : user.merged()) {
     if (!is_petsc_option(name)) continue;
     if (given.source == Source::environment && !is_environment_option(name)) continue;
     if (problem.empty()) problem = solver_option_problem(name, given.value);
-    if (++count > most)
+    put[name] = given;
+    if (put.size() > most)
       throw InputError(name + ": more than " + std::to_string(most) + " options of PETSc's");
     check(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
                                given.value.empty() ? nullptr : given.value.c_str()));
   }
   throw_verdict(problem, MPI_COMM_WORLD);
   check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
+  return put;
+}
+
+/// Whoever looks for an error in a debugger or in PETSc's traces asks PETSc itself.
+bool wants_petsc_handlers(const GivenOptions& options) {
+  return std::any_of(options.begin(), options.end(), [](const auto& option) {
+    const std::string& name = option.first;
+    return name.starts_with("on_error_") || name == "start_in_debugger" ||
+           name == "stop_for_debugger";
+  });
+}
+
+decltype(PetscVFPrintf) print_by_petsc = nullptr;  // NOLINT: as PETSc's own pointer
+
+/// What PETSc prints on the terminal is in the log too.
+PetscErrorCode print_for_petsc(std::FILE* file, const char* format, std::va_list words) noexcept {
+  if (file == stdout || file == stderr) {
+    std::array<char, 8192> text{};
+    std::va_list again;
+    va_copy(again, words);
+    std::size_t length = 0;
+    if (PetscVSNPrintf(text.data(), text.size(), format, &length, again) == 0)
+      put_into_log(text.data());
+    va_end(again);
+  }
+  return print_by_petsc(file, format, words);
 }
 
 }  // namespace
 
 Session::Session(const char* program, const UserOptions& user) : program_(program) {
-  put_petsc_options(user);
-  const Without options("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
+  const GivenOptions options = put_petsc_options(user);
+  const bool by_petsc = wants_petsc_handlers(options);
+  const bool by_system = options.contains("no_signal_handler");
+  set_solver_options(options);
+  const Without variable("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
   words_[0] = program_.data();
   word_ = words_.data();
   int count = 1;
+  if (by_petsc || by_system) leave_crashes_to_the_system();
+  // Before PETSc begins: it reads options then, and its own handler prints a page.
+  if (!by_petsc) check(PetscPushErrorHandler(remember_error, nullptr));
   check(PetscInitialize(&count, &word_, nullptr, nullptr));
-  check(PetscPushErrorHandler(remember_error, nullptr));
+  if (!by_petsc && !by_system) report_crashes();  // PETSc has put handlers of its own there
+  if (print_by_petsc == nullptr) {
+    print_by_petsc = PetscVFPrintf;
+    PetscVFPrintf = print_for_petsc;
+  }
 }
 
 Session::~Session() {

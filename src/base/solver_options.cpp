@@ -143,6 +143,8 @@ constexpr auto no_adjoint = "floe solves no adjoint equations";
 constexpr std::array useless{Useless{"ksp_view_diagonal_scale", "PETSc crashes on it"},
                              Useless{"snes_convergence_estimate", no_mesh},
                              Useless{"ts_convergence_estimate", no_mesh},
+                             Useless{"snes_monitor_fields", no_mesh},
+                             Useless{"snes_monitor_ksp", "PETSc crashes on it"},
                              Useless{"snes_adapt_initial", no_mesh},
                              Useless{"snes_adapt_sequence", no_mesh},
                              Useless{"snes_grid_sequence", no_mesh},
@@ -248,7 +250,10 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
   if (!has("view") && !has("monitor") && !has("reason")) return {};
   const std::string_view type = value.substr(0, colon);
   constexpr std::array on_file{"", "ascii", "binary", "hdf5", "vtk", "matlab", "glvis", "exodusii"};
-  if (std::find(on_file.begin(), on_file.end(), type) == on_file.end()) return {};
+  constexpr std::array others{"draw", "socket", "string", "saws", "mathematica", "adios", "cgns"};
+  if (std::find(others.begin(), others.end(), type) != others.end()) return {};
+  if (std::find(on_file.begin(), on_file.end(), type) == on_file.end())
+    return refused(name, value, "one of PETSc's viewers: ascii:FILE, binary:FILE, hdf5:FILE, ...");
   std::string_view file = value.substr(colon + 1);
   file = file.substr(0, file.find(':'));
   return file.empty() || file == "stdout" || file == "stderr"
@@ -259,6 +264,11 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
 }  // namespace
 
 std::string solver_option_problem(std::string_view name, std::string_view value) {
+  const bool in_python = name == "python" || name.find("python_") != std::string_view::npos ||
+                         name.ends_with("_python") ||
+                         (name.ends_with("_type") && value == "python");
+  if (in_python)
+    return std::string(name) + ": solvers in Python cannot be used: floe runs no Python";
   for (const Useless& u : useless) {
     if (is_called(name, u.name) && to_flag(value).value_or(true))
       return std::string(name) + ": would have no use here: " + std::string(u.why);

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "floe/base/files.h"
 #include "floe/base/petsc.h"
@@ -19,6 +20,9 @@ HistoryStart history_start(const std::string& path, std::int64_t keep) {
   std::string line;
   std::int64_t rows = -1;                                         // the first line is not a row
   while (rows < keep && std::getline(old, line) && !old.eof()) {  // eof: no newline, torn
+    if (line.find('\0') != std::string::npos)
+      throw InputError("checkpoint: restart: '" + path + "' is damaged: line " +
+                       std::to_string(rows + 2) + " has bytes that are no text");
     start.size += static_cast<std::int64_t>(line.size()) + 1;
     if (++rows == 0) start.header = line + "\n";
   }
@@ -34,9 +38,13 @@ History::History(const std::string& path, std::int64_t keep) : path_(path) {
   const HistoryStart start = history_start(path, keep);
   size_ = start.size;
   header_ = start.header;
-  file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0 || ::ftruncate(file_, size_) != 0 || ::lseek(file_, size_, SEEK_SET) < 0)
-    throw FileError("cannot write " + path + ": " + std::strerror(errno));
+  // At the end, wherever that is: if somebody empties the file, no hole is left in front.
+  file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file_ < 0 || ::ftruncate(file_, size_) != 0) throw_file_error("write", path, errno);
+}
+
+void History::close() {
+  if (::close(std::exchange(file_, -1)) != 0) throw_file_error("write", path_, errno);
 }
 
 History::~History() {

@@ -13,7 +13,7 @@ struct HistoryStart {
   std::int64_t size = 0;  ///< in bytes
   std::string header;     ///< the first line
 };
-/// \throws InputError if the file has fewer rows than `keep`
+/// \throws InputError if the file has fewer rows than `keep`, or what is no text in them
 HistoryStart history_start(const std::string& path, std::int64_t keep);
 
 /// Lives on rank 0.
@@ -33,6 +33,8 @@ class History {
   void write(const std::string& line);
   /// All rows so far outlive a crash of the machine. \throws FileError
   void sync();
+  /// The last thing. A full network disk may say so only here. \throws FileError
+  void close();
 
  private:
   std::string path_, header_;

@@ -342,7 +342,10 @@ void Output<Space>::finish() {
   impl_->memory.row_pending = false;
   if (impl_->pending) impl_->write_frame(*impl_->pending);
   impl_->pending.reset();
-  if (impl_->fields) impl_->fields->finish();
+  on_root(impl_->part.comm, [&] {
+    impl_->fields->finish();
+    impl_->history->close();
+  });
 }
 
 template <class Space>

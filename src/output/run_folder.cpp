@@ -14,7 +14,10 @@
 #include <random>
 
 #include "floe/base/files.h"
+#include "floe/base/log.h"
 #include "floe/base/on_root.h"
+#include "floe/base/run_log.h"
+#include "output/result_files.h"
 #include "output/run_lock.h"
 
 namespace floe {
@@ -24,10 +27,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// What a run writes, beside temporary files.
-constexpr std::array<std::string_view, 9> results{
-    "lattice.h5",  "options.yaml", "history.csv",   "fields.h5",
-    "fields.xmf",  "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
-    "summary.json"};
+constexpr std::array<std::string_view, 10> results{
+    "lattice.h5", "options.yaml", "history.csv",   "fields.h5",
+    "fields.xmf", "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
+    "floe.log",   "summary.json"};
 /// Removed when a run begins: what would contradict it until its own is written.
 constexpr std::array<std::string_view, 5> contradicting{
     "summary.json", "fields.xmf", "checkpoint.h5", "checkpoint_previous.h5", "breaks.h5"};
@@ -84,6 +87,7 @@ std::string result_named(const fs::path& path, const fs::path& dir) {
     if (way.parent_path() == folder &&
         std::find(results.begin(), results.end(), name) != results.end())
       return name;
+    if (way.parent_path() == folder / "fields") return "fields";
   }
   return {};
 }
@@ -146,6 +150,7 @@ void check_folder(const FolderWish& wish) {
     throw InputError("output: dir: " + wish.dir +
                      " is no folder for results (the root, or a home); name one below it");
   check_inputs(wish);
+  check_result_files(wish.dir, results);
   const std::string first = first_entry(wish.dir);
   if (first.empty() || wish.overwrite || is_folder_of_a_run(wish.dir)) return;
   throw InputError("output: dir: " + wish.dir + " is not empty and holds no run (it has '" + first +
@@ -192,7 +197,7 @@ struct RunFolder::Impl {
 };
 
 RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
-    : comm_(comm), dir_(wish.dir), started_(date_and_time()) {
+    : comm_(comm), dir_(wish.dir), started_(date_and_time()), goes_on_(wish.goes_on) {
   on_root(comm, [&] {
     check_folder(wish);
     impl_.reset(new Impl{wish, RunLock(wish.dir)});
@@ -203,8 +208,7 @@ RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
       impl_.reset();
       throw;
     }
-    if (!impl_->lock.warning().empty())
-      std::fprintf(stderr, "floe: warning: %s\n", impl_->lock.warning().c_str());
+    if (!impl_->lock.warning().empty()) warn(impl_->lock.warning());
   });
   share(run_, comm);
 }
@@ -230,19 +234,22 @@ std::string RunFolder::problem(const FolderWish& wish, MPI_Comm comm) {
 }
 
 void RunFolder::begin(const std::string& run) {
-  on_root(comm_, [&] {
-    run_ = run.empty() ? new_run() : run;
-    begun_ = true;
-    impl_->lock.keep(run_);
-    for (const std::string_view name : results) remove_left_over(dir_ + "/" + std::string(name));
-    if (run.empty()) {
-      std::error_code ignored;
-      for (const std::string_view name : contradicting) fs::remove(fs::path(dir_) / name, ignored);
-    }
-    write_whole(dir_ + reserve, std::string(room, ' '));
-  });
+  on_root(comm_, [&] { begin_here(run); });
   begun_ = true;
   share(run_, comm_);
+}
+
+void RunFolder::begin_here(const std::string& run) {
+  run_ = run.empty() ? new_run() : run;
+  begun_ = true;
+  impl_->lock.keep(run_);
+  for (const std::string_view name : results) remove_left_over(dir_ + "/" + std::string(name));
+  if (run.empty()) {
+    std::error_code ignored;
+    for (const std::string_view name : contradicting) fs::remove(fs::path(dir_) / name, ignored);
+  }
+  write_whole(dir_ + reserve, std::string(room, ' '));
+  open_log(dir_ + "/floe.log", !run.empty());
 }
 
 void RunFolder::finish(const std::string& summary) {
@@ -254,8 +261,9 @@ void RunFolder::finish(const std::string& summary) {
 }
 
 void RunFolder::fail(const std::string& why) noexcept {
-  if (!begun_) return;
+  if (!begun_ && goes_on_) return;  // the files are those of the run that it would go on with
   try {
+    if (!begun_ && impl_) begin_here({});
     const Json json{{"status", "failed"},  {"message", why},           {"time", time_},
                     {"steps", step_},      {"ranks", size(comm_)},     {"host", host_name()},
                     {"started", started_}, {"ended", date_and_time()}, {"version", FLOE_VERSION}};

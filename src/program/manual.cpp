@@ -31,7 +31,8 @@ floe \- floating sea ice as rigid bodies joined by beams
 .SH DESCRIPTION
 A scene is a YAML file that says which sheet or blocks there are, what holds, moves and loads them, and how the time
 goes on. A first word that is a file, or has '/' or '.' in it, is a scene. Results go to the folder out/SCENE:
-summary.json, history.csv, lattice.h5, fields.h5 with fields.xmf for ParaView, and options.yaml, which repeats the run.
+summary.json, history.csv, lattice.h5, fields.h5 with fields.xmf for ParaView, options.yaml, which repeats the run, and
+floe.log, which has all that the run said.
 Paths in a scene are relative to the current folder.
 .TP
 .BR \-v ", " \-\-version

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -98,7 +100,8 @@ std::string output_problem(const std::string& dir) {
   if (!std::filesystem::is_directory(there, error))
     return "output: dir: " + dir + " cannot be a folder: " + there.string() + " is not one";
   if (access(there.c_str(), W_OK | X_OK) != 0)
-    return "output: dir: " + dir + " cannot be written: no permission for " + there.string();
+    return "output: dir: " + dir + " cannot be written: " + there.string() + ": " +
+           std::strerror(errno);
   return {};
 }
 

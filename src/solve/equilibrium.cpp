@@ -304,6 +304,7 @@ bool Equilibrium<Space>::predict(double time) {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   check(KSPGetConvergedReason(ksp, &reason));
   if (reason < 0) {
+    require_memory(ksp);
     why_ = std::string("the linear solver failed (") + KSPConvergedReasons[reason] + ")";
     return false;
   }
@@ -416,6 +417,9 @@ bool Equilibrium<Space>::balance(double time) {
     return false;
   }
   if (reason < 0) {
+    KSP ksp = nullptr;
+    check(SNESGetKSP(snes_, &ksp));
+    require_memory(ksp);
     why_ = reason == SNES_DIVERGED_DTOL
                ? "nothing holds the bodies within 100 times the lattice's extent (does it sink?)"
                : std::string("Newton failed (") + SNESConvergedReasons[reason] + " after " +

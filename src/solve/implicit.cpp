@@ -301,6 +301,11 @@ std::string ImplicitRun<Space>::failure(TSConvergedReason) const {
   check(TSGetSNES(ts_, &snes));
   check(SNESGetConvergedReason(snes, &why));
   check(TSGetTimeStep(ts_, &step));
+  if (why < 0) {
+    KSP ksp = nullptr;
+    check(SNESGetKSP(snes, &ksp));
+    require_memory(ksp);
+  }
   return "no step from time " + text(state().time) + " s on (cut to " + text(step) + " s): " +
          (why < 0 ? std::string("Newton failed (") + SNESConvergedReasons[why] + ")"
                   : "its error stays too large, or beams fold over") +

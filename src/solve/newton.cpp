@@ -1,8 +1,13 @@
 #include "solve/newton.h"
 
+#include <petscblaslapack.h>
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <new>
+#include <string>
 #include <vector>
 
 #include "floe/base/ranks.h"
@@ -30,6 +35,7 @@ double typical_stiffness(const Model<Space>& model) {
 }
 
 void set_cholesky(KSP ksp) {
+  claim_blas_memory();
   PC pc = nullptr;
   check(KSPSetType(ksp, KSPPREONLY));
   check(KSPGetPC(ksp, &pc));
@@ -123,6 +129,58 @@ std::int64_t negative_pivots(KSP ksp) {
   constexpr PetscInt number_of_negative_pivots = 12;  // MUMPS users' guide, INFOG(12)
   check(MatMumpsGetInfog(factor, number_of_negative_pivots, &negative));
   return negative;
+}
+
+namespace {
+
+/// Of MUMPS's errors those of memory and room to work in (its users' guide, INFOG(1)).
+bool is_want_of_memory(PetscInt infog) {
+  constexpr std::array<PetscInt, 9> codes{-5, -7, -8, -9, -11, -13, -17, -19, -20};
+  return std::find(codes.begin(), codes.end(), infog) != codes.end();
+}
+
+}  // namespace
+
+void require_memory(KSP ksp) {
+  PC pc = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  check(KSPGetPC(ksp, &pc));
+  check(PCGetFailedReason(pc, &reason));
+  if (reason == PC_NOERROR) return;
+  std::string text = "out of memory: the factorisation of the tangent needs more";
+  if (const Mat factor = mumps_cholesky(ksp)) {
+    std::array<PetscInt, 2> info{};
+    check(MatMumpsGetInfog(factor, 1, &info[0]));
+    check(MatMumpsGetInfog(factor, 2, &info[1]));
+    if (!is_want_of_memory(info[0])) return;
+    text += " (MUMPS says INFOG(1) = " + std::to_string(info[0]) +
+            ", INFOG(2) = " + std::to_string(info[1]) + ")";
+    constexpr PetscInt of_its_workspace = -9;
+    if (info[0] == of_its_workspace) text += "; -mat_mumps_icntl_14 100 lets it take more";
+  } else if (reason != PC_FACTOR_OUTMEMORY) {
+    return;
+  }
+  throw RunFailed(text +
+                  "; -ksp_type cg -pc_type gamg needs less, as do more ranks on more machines");
+}
+
+void claim_blas_memory() {
+  static const bool done = [] {
+    // OpenBLAS takes 128 MB of addresses on first need, keeps them, and tries for ever if it does
+    // not get them.
+    constexpr std::size_t needed = 160U << 20;
+    void* room = ::mmap(nullptr, needed, PROT_READ | PROT_WRITE,
+                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED) throw std::bad_alloc();
+    ::munmap(room, needed);
+    constexpr PetscBLASInt n = 128;
+    const std::vector<PetscScalar> a(n * n, 1.0);
+    std::vector<PetscScalar> c(n * n);
+    const PetscScalar one = 1, zero = 0;
+    BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &zero, c.data(), &n);
+    return true;
+  }();
+  (void)done;
 }
 
 template double typical_stiffness(const Model<Spatial>&);

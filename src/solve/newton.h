@@ -41,4 +41,11 @@ void let_mumps_count(KSP ksp);
 /// the solver does not tell. Collective.
 std::int64_t negative_pivots(KSP ksp);
 
+/// Has the library of dense algebra take its buffers while there is memory. \throws std::bad_alloc
+void claim_blas_memory();
+
+/// After a linear solve that failed. \throws RunFailed if the factorisation had too little memory,
+/// which no smaller step mends. On all ranks alike.
+void require_memory(KSP ksp);
+
 }  // namespace floe

@@ -262,8 +262,8 @@ class Repeats(OutputTest):
         self.assertIn("left_force_x", self.history(folder)[0])
         self.assertEqual((folder / "fields.xmf").read_text().count("<Time "), 2)
         self.assertEqual(sorted(f.name for f in folder.iterdir()),
-                         [".lock", "fields", "fields.h5", "fields.xmf", "history.csv", "lattice.h5", "options.yaml",
-                          "summary.json"])
+                         [".lock", "fields", "fields.h5", "fields.xmf", "floe.log", "history.csv", "lattice.h5",
+                          "options.yaml", "summary.json"])
 
 
 class Fields(OutputTest):

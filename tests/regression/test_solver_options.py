@@ -18,10 +18,18 @@ MOVING = "integrator: implicit\n" + STATIC + "time: {end: 0.01}\n"
 CASES = [(STATIC, "snes_lag_jacobian", "0", "-2"), (STATIC, "snes_max_it", "-1", ">= 1"),
          (STATIC, "snes_rtol", "nan", "< 1"), (STATIC, "snes_rtol", "-1", ">= 0"), (STATIC, "snes_atol", "-1", ">= 0"),
          (STATIC, "mat_mumps_icntl_7", "99", "one of 0 | 2 | 3"), (STATIC, "mat_type", "dense", "sbaij"),
-         (STATIC, "snes_view", "ascii:/nonexist/x", "no folder '/nonexist'"), (STATIC, "ksp_rtol", "inf", "< 1"),
+         (STATIC, "snes_view", "ascii:/nonexist/x", "no folder '/nonexist'"), (STATIC, "log_view", "abc:x", "hdf5"), (STATIC, "ksp_rtol", "inf", "< 1"),
          (STATIC, "check_pointer_intensity", "3", "<= 2"), (MOVING, "ts_max_steps", "-5", ">= 0"),
          (MOVING, "ts_adapt_clip", "3,2", "shrink"), (MOVING, "ts_adapt_safety", "9", "<= 1"),
          (MOVING, "ts_max_time", "-1", "> 0"), (MOVING, "ts_atol", "nan", ">= 0"), (MOVING, "ts_dt", "nan", "> 0")]
+
+# What PETSc alone finds: while it begins, while its solvers are set up, or in the first solve.
+OF_PETSC = [("ksp_type", "conjugate"), ("snes_type", "abc"), ("pc_type", "abc"), ("snes_monitor", "abc"), ("fp_trap", "abc"),
+            ("ksp_error_if_not_converged", "abc"), ("malloc_debug", "abc"), ("device_enable", "3"), ("mat_mumps_view_info", "99"),
+            ("snes_linesearch_type", "abc")]
+# What makes PETSc crash, or start something that floe has not.
+USELESS = [("snes_monitor_fields", ""), ("snes_monitor_ksp", ""), ("snes_monitor_python", "x"), ("ksp_type", "python"),
+           ("ksp_view_diagonal_scale", ""), ("ts_save_trajectory", "")]
 
 
 class Values(unittest.TestCase):
@@ -45,6 +53,28 @@ class Values(unittest.TestCase):
 
     def test_on_two_ranks(self):
         self.check(2)
+
+    def refused(self, option, value, words, ranks=1):
+        code, lines, made = self.run_with(STATIC, words, {}, ranks)
+        self.assertEqual((code, len(lines), made), (2, 1, False), (option, value, lines))
+        self.assertTrue(lines[0].startswith(f"floe: {option}"), lines)
+        return lines[0]
+
+    def test_what_petsc_finds(self):
+        for option, value in OF_PETSC:
+            for ranks in (1, 2):
+                with self.subTest(option=option, value=value, ranks=ranks):
+                    said = self.refused(option, value, ["-" + option, value], ranks)
+                    self.assertIn(f"{option} {value}: PETSc cannot take it: ", said)
+
+    def test_of_several_the_right_one_is_named(self):
+        said = self.refused("snes_monitor", "abc", ["-ksp_rtol", "1e-9", "-snes_monitor", "abc", "-snes_stol", "1e-9"])
+        self.assertNotIn("ksp_rtol", said)
+
+    def test_what_is_of_no_use(self):
+        for option, value in USELESS:
+            with self.subTest(option=option):
+                self.refused(option, value, ["-" + option, *([value] if value else [])])
 
     def test_in_the_environment(self):
         code, lines, made = self.run_with(STATIC, [], {"PETSC_OPTIONS": "-snes_rtol nan"}, 1)

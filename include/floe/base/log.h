@@ -44,7 +44,8 @@ void warn(const std::string& text);
 double resident_memory_mb(MPI_Comm comm);
 
 /// Progress of long work on rank 0's standard error: a bar with the time left on a terminal, a
-/// plain line every few seconds otherwise, nothing for work that ends within a second.
+/// plain line every few seconds otherwise, nothing for work that ends within a second. In the log
+/// file, a line a minute.
 class Progress {
  public:
   /// \param total  0: not known, the notes are all there is
@@ -58,7 +59,7 @@ class Progress {
 
  private:
   std::string_view what_;
-  double total_, start_, last_print_;
+  double total_, start_, last_print_, last_logged_;
   bool shown_ = false, terminal_ = false, active_ = false;
 };
 

@@ -54,17 +54,20 @@ class RunFolder {
   /// summary.json, whole. The run has come to an end.
   void finish(const std::string& summary);
   /// Writes a summary that says failed, when and why, as well as it can: also from one rank alone
-  /// and where the disk is full. Nothing if the run has not begun. Never fails.
+  /// and where the disk is full. If the run has not begun yet, it begins with this, unless it is to
+  /// go on with another. Never fails.
   void fail(const std::string& why) noexcept;
   /// Where the run has got to, for fail().
   void note(double time, long long step) { time_ = time, step_ = step; }
 
  private:
+  void begin_here(const std::string& run);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;  ///< rank 0
   MPI_Comm comm_;
   std::string dir_, run_, started_;
-  bool begun_ = false;
+  bool begun_ = false, goes_on_;
   double time_ = 0;
   long long step_ = 0;
 };

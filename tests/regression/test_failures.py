@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+"""Out of memory and crashes: one line, exit code 1, and a summary that says failed."""
+import os
+import resource
+import signal
+import subprocess
+import unittest
+
+from launch import ENVIRONMENT, FLOE, on_ranks, own_words
+from running import FAILED, RunningTest
+
+STATIC = """forces: [beam]
+sheet: {length: 120, thickness: 1, element_size: 1, iterations: 2}
+boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
+load: {names: [b], b: {set: right, force: [0, 0, 1e3]}}
+"""
+LIMITED = "import resource, os, sys; n = int(sys.argv[1]); resource.setrlimit(resource.RLIMIT_AS, (n, n)); os.execv(sys.argv[2], sys.argv[2:])"
+
+
+def starts_with(size):
+    """Whether floe says its version in so much address space (a build with sanitizers takes terabytes)."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size))
+    return subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode == 0
+
+
+class OutOfMemory(RunningTest):
+    def limited(self, megabytes, *words, ranks=1):
+        """A run in so much address space per process: its exit code and what it says."""
+        command = ["/usr/bin/python3", "-c", LIMITED, str(megabytes << 20), str(FLOE), "scene.yaml", *words, "-output_overwrite"]
+        done = subprocess.run(on_ranks(ranks, command), cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
+        return done.returncode, own_words(done.stderr)
+
+    @unittest.skipUnless(starts_with(2 << 30), "a build with sanitizers")
+    def test_one_line(self):
+        """From what is too little to begin to what is enough, one line each; the middle ones say what has run out."""
+        for scene in (STATIC, STATIC + "integrator: implicit\ntime: {end: 1e-3}\n",
+                      STATIC + "integrator: explicit\ntime: {end: 1e-3}\n"):
+            self.write(scene)
+            for ranks in (1, 2):
+                ended = []
+                for megabytes in range(500, 1100, 60):
+                    code, said = self.limited(megabytes, ranks=ranks)
+                    ended.append(code)
+                    if code == 0:
+                        break
+                    with self.subTest(ranks=ranks, megabytes=megabytes, said=said):
+                        self.assertEqual(code, FAILED)
+                        self.assertEqual(said.count("\n"), 1)
+                        self.assertTrue(said.startswith("floe: "))
+                        self.assertIn("memory", said)
+                        if (self.folder / "out/scene/summary.json").exists():
+                            self.assertEqual(self.summary()["status"], "failed")
+                self.assertIn(FAILED, ended)
+
+    def test_of_mumps(self):
+        """Told to take less than it needs."""
+        self.write(STATIC)
+        said = self.floe("-mat_mumps_icntl_23", "1", code=FAILED)
+        self.assertEqual(said.count("\n"), 1, said)
+        self.assertIn("out of memory: the factorisation of the tangent needs more (MUMPS says INFOG(1) = ", said)
+        self.assertEqual(self.summary()["status"], "failed")
+
+
+class Crash(RunningTest):
+    SIGNALS = {signal.SIGSEGV: "segmentation fault", signal.SIGBUS: "bus error", signal.SIGFPE: "arithmetic exception",
+               signal.SIGABRT: "aborted by a library", signal.SIGILL: "illegal instruction"}
+
+    @unittest.skipUnless(starts_with(2 << 30), "sanitizers have handlers of their own")
+    def test_one_line(self):
+        for number, what in self.SIGNALS.items():
+            for ranks in (1, 2):
+                with self.subTest(signal=number, ranks=ranks):
+                    process = self.running("-output_overwrite", ranks=ranks)
+                    os.kill(self.ranks_of(process)[-1], number)
+                    said = self.finish(process, FAILED)
+                    self.assertEqual(said.count("\n"), 1, said)
+                    self.assertRegex(said, rf"^floe: crashed after time \S+, step \d+: {what}.*; this is an error in floe or in a "
+                                           "library: please report it")
+                    summary = self.summary()
+                    self.assertEqual((summary["status"], "floe: " + summary["message"] + "\n"), ("failed", said))
+                    if ranks == 1:
+                        self.assertIn(said, (self.folder / "out/scene/floe.log").read_text())
+
+    @unittest.skipUnless(starts_with(2 << 30), "sanitizers have handlers of their own")
+    def test_petsc_may_be_asked(self):
+        """Its traces for whoever wants them, or the system's own end."""
+        process = self.running("-on_error_abort", "-output_overwrite")
+        os.kill(process.pid, signal.SIGSEGV)
+        process.communicate()
+        self.assertNotEqual(process.returncode, 0)
+        process = self.running("-no_signal_handler", "-output_overwrite")
+        os.kill(process.pid, signal.SIGSEGV)
+        process.communicate()
+        self.assertEqual(process.returncode, -signal.SIGSEGV)
+
+
+if __name__ == "__main__":
+    unittest.main()
