@@ -4,6 +4,7 @@ No test gives a run a time limit: ctest ends what hangs, after 20 minutes.
 """
 import os
 import re
+import resource
 import subprocess
 from pathlib import Path
 
@@ -31,6 +32,15 @@ def on_ranks(ranks, command):
 def own_words(error):
     """Standard error of a run, without what the launcher adds and without lines of progress, which come when a machine is slow."""
     return PROGRESS.sub("", BANNER.sub("", error))
+
+
+def limited_memory(gib):
+    """What makes a run end for lack of memory: a limit of its address space, of which floe takes 0.5 GiB, as preexec_fn. None for
+    a build with sanitizers, which takes terabytes of it."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (gib << 30, gib << 30))
+    works = subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode == 0
+    return limit if works else None
 
 
 def run(*words, ranks=1, **how):
