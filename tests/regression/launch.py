@@ -2,6 +2,7 @@
 
 No test gives a run a time limit: ctest ends what hangs, after 20 minutes.
 """
+import functools
 import os
 import re
 import resource
@@ -34,6 +35,7 @@ def own_words(error):
     return PROGRESS.sub("", BANNER.sub("", error))
 
 
+@functools.cache
 def limited_memory(gib):
     """What makes a run end for lack of memory: a limit of its address space, of which floe takes 0.5 GiB, as preexec_fn. None for
     a build with sanitizers, which takes terabytes of it."""

@@ -29,9 +29,6 @@ OBSTACLE = ("integrator: explicit\nforces: [beam, contact]\nsheet: {length: 6, e
 KINDS = {"lattice_file": (LATTICE, "l.h5"), "sheet: mesh_file": (SHEET, "m.h5"), "obstacle: o: file": (OBSTACLE, "o.h5")}
 
 
-LIMIT = limited_memory(2)
-
-
 class HostileTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -65,7 +62,7 @@ class HostileTest(unittest.TestCase):
     def said(self, code=2):
         """What a run says that must end so: one line, with little memory, and no output folder."""
         done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT,
-                              preexec_fn=LIMIT)
+                              preexec_fn=limited_memory(2))
         said = own_words(done.stderr)
         self.assertEqual(done.returncode, code, said)
         if code:

@@ -24,7 +24,6 @@ EMPTY = set("a an and are as at be but by can could does for from has have here 
             "on one only or out than that the there this to too was what where which with without would floe file line value "
             "number numbers text expected allowed known run".split())
 HELP = re.compile(r"^-{0,2}(h|help|help_markdown|help_man|version|V|v)$")
-LIMIT = launch.limited_memory(4)
 
 
 def words_of(text):
@@ -40,7 +39,7 @@ class Outcome:
         environment = {**launch.ENVIRONMENT, "HOME": str(folder), "ASAN_OPTIONS": "detect_leaks=0", **case.environment}
         command = launch.on_ranks(case.ranks, [launch.FLOE, *case.words])
         process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   env=environment, preexec_fn=LIMIT, start_new_session=True)
+                                   env=environment, preexec_fn=launch.limited_memory(4), start_new_session=True)
         try:
             out, error = process.communicate(timeout=HANGS)
         except subprocess.TimeoutExpired:
@@ -79,7 +78,7 @@ class Outcome:
             self.breaks("not one line of floe's", repr(self.error[:1000]))
         elif len(lines[0]) >= LONGEST_LINE:
             self.breaks(f"a line of {len(lines[0])} letters", lines[0][:LONGEST_LINE])
-        elif not (words_of(lines[0]) - EMPTY) & words_of(self.case.all_text()):
+        elif not self.names_input(lines[0]):
             self.breaks("the line names nothing of the input", lines[0])
         if not lines or any(not letter.isprintable() for line in lines for letter in line):
             self.breaks("letters that cannot be printed", repr(self.error[:300]))
@@ -87,6 +86,12 @@ class Outcome:
         if before != after:
             changed = [name for name in {*before, *after} if before.get(name, 0) != after.get(name, 0)]
             self.breaks("refused, but touched", sorted(changed)[:6])
+
+    def names_input(self, line):
+        """Whether it holds a word of the input, or a whole word of the command line."""
+        return bool((words_of(line) - EMPTY) & words_of(self.case.all_text()) or
+                    any(word.lstrip("-") and word.lstrip("-") in line or word in line.split() or f"{word}:" in line.split()
+                        for word in self.case.words))
 
     def check_run(self):
         folders = [path.parent for path in self.folder.rglob("summary.json") if path.parent not in self.case.earlier(self.folder)]
