@@ -16,8 +16,9 @@ FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 ENDLESS = ("-time_end", "1e5", "-limit_frames", "1e12", "-limit_disk", "1e12")
 FULL = os.environ.get("FLOE_FULL", "0") not in ("", "0")  # the long forms
 
-# What tools/env exports.
-ENVIRONMENT = {**os.environ, **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
+# What tools/env exports. Of a build with sanitizers: MPI and PETSc keep what they have until the process ends, and what is too
+# large is refused as by any allocator.
+ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1", **os.environ, **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
 
 # What the launcher of Open MPI 5 adds to the errors of a run that fails: it has no way to keep it quiet.
 BANNER = re.compile(r"^-{60,}\n(?:prterun |MPI_ABORT was invoked)(?:.*\n)*?-{60,}\n|^\[\S+:\d+\] PMIX ERROR: .*\n", re.M)

@@ -147,8 +147,10 @@ class Case:
         names = " ".join([*self.files, *LATTICES, "checkpoint mesh_file lattice_file m.h5 scene"])
         datasets = self.base.names if self.damaged else ""
         rest = " ".join(self.files[name].decode(errors="replace") for name in self.files if name == ".petscrc")
-        return " ".join([self.scene, *self.words, *self.environment.values(), names, datasets, rest]).replace("_", " _ ") + " " + \
-            " ".join([self.scene, *self.words])
+        keys = " ".join(word for key in self.base.scenes.keys for word in key.path)  # one may be missing
+        text = " ".join([self.scene, *self.words, *self.environment.values(), names, datasets, rest, keys])
+        text = text.encode(errors="replace").decode()
+        return text + " " + text.replace("_", " _ ")
 
     def lay(self, folder):
         for name in (*LATTICES, "o.h5"):

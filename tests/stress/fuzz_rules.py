@@ -36,7 +36,7 @@ class Outcome:
     def __init__(self, case, folder):
         self.case, self.folder, self.broken = case, folder, []
         before = self.contents()
-        environment = {**launch.ENVIRONMENT, "HOME": str(folder), "ASAN_OPTIONS": "detect_leaks=0", **case.environment}
+        environment = {**launch.ENVIRONMENT, "HOME": str(folder), **case.environment}
         command = launch.on_ranks(case.ranks, [launch.FLOE, *case.words])
         process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    env=environment, preexec_fn=launch.limited_memory(4), start_new_session=True)
@@ -60,6 +60,7 @@ class Outcome:
         self.broken.append(": ".join([rule, *map(str, more)]))
 
     def check(self, before):
+        """All rules."""
         for text in (self.out, self.error):
             if found := TRACES.search(text):
                 self.breaks("a trace", text[max(0, found.start() - 100):found.end() + 300])
@@ -73,14 +74,14 @@ class Outcome:
             self.check_run()
 
     def check_refused(self, before):
-        lines = self.error.splitlines()
-        if len(lines) != 1 or not self.error.startswith("floe:") or not self.error.endswith("\n"):
+        lines = self.error.removesuffix("\n").split("\n")
+        if len(lines) != 1 or not re.match(r"floe( \w+)?:", self.error) or not self.error.endswith("\n"):
             self.breaks("not one line of floe's", repr(self.error[:1000]))
-        elif len(lines[0]) >= LONGEST_LINE:
+        elif len(re.sub(r"[^\s']{100,}", "...", lines[0])) >= LONGEST_LINE:  # but for a long path that was given
             self.breaks(f"a line of {len(lines[0])} letters", lines[0][:LONGEST_LINE])
         elif not self.names_input(lines[0]):
             self.breaks("the line names nothing of the input", lines[0])
-        if not lines or any(not letter.isprintable() for line in lines for letter in line):
+        if any(ord(letter) < 32 or ord(letter) == 127 for line in lines for letter in line):
             self.breaks("letters that cannot be printed", repr(self.error[:300]))
         after = self.contents()
         if before != after:
