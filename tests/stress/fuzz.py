@@ -24,7 +24,7 @@ import fuzz_files  # noqa: E402
 import fuzz_words  # noqa: E402
 from fuzz_keys import read_keys  # noqa: E402
 from fuzz_rules import is_help, run_case  # noqa: E402
-from fuzz_scenes import LATTICES, Scenes, bound, write_scene  # noqa: E402
+from fuzz_scenes import LATTICES, Scenes, bound, scene_of, write_scene  # noqa: E402
 
 KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text", "mesh")  # one case each, again and again
 TMPFS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
@@ -125,7 +125,16 @@ class Case:
         self.tree = self.base.folder / "c"
         self.damaged = "out/s/checkpoint.h5"
         self.put_scene(fuzz_files.CHECKPOINTED, list(fuzz_files.RESTART))
-        self.files[self.damaged] = self.damage("c/out/s/checkpoint.h5", chance)
+        way = chance.random()
+        if way < 0.7:
+            self.files[self.damaged] = self.damage("c/out/s/checkpoint.h5", chance)
+            return
+        # The good checkpoint of another scene, or none.
+        scene = scene_of(fuzz_files.CHECKPOINTED)
+        self.base.scenes.spoil(scene, chance)
+        more = fuzz_words.command_line(self.base.scenes, scene, chance) if chance.random() < 0.3 else []
+        self.put_scene(write_scene(scene), [*more, *(fuzz_files.RESTART if way < 0.95 else fuzz_files.RESTART[2:])])
+        self.damaged = None
 
     def make_petsc(self, chance):
         scene, options, words = chance.choice(PETSC_SCENES), fuzz_words.petsc_options(chance), []
@@ -171,7 +180,7 @@ class Case:
 
     def check_results(self, folder):
         """Which rule of this kind a run breaks that ended well: a restart from a damaged checkpoint is the undamaged run's."""
-        if self.kind != "checkpoint" or not self.base.checked or "-check" in self.words:
+        if self.kind != "checkpoint" or not self.damaged or not self.base.checked or "-check" in self.words:
             return None
         straight, resumed = (f / "out/s/history.csv" for f in (self.base.folder / "d", folder))
         return None if straight.read_bytes() == resumed.read_bytes() else ("a damaged checkpoint gives other results",)

@@ -91,7 +91,7 @@ class Outcome:
     def names_input(self, line):
         """Whether it holds a word of the input, or a whole word of the command line."""
         return bool((words_of(line) - EMPTY) & words_of(self.case.all_text()) or
-                    any(word.lstrip("-") and word.lstrip("-") in line or word in line.split() or f"{word}:" in line.split()
+                    any(word.lstrip("-") and word.lstrip("-")[:40] in line or word in line.split() or f"{word}:" in line.split()
                         for word in self.case.words))
 
     def check_run(self):

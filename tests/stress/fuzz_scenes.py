@@ -39,10 +39,10 @@ def flat_flow(text, path, scene):
         flat_flow(value.strip(), (*path, key.strip()), scene)
 
 
-def read_scene(file):
-    """A scene of input/, which uses a small part of YAML."""
+def scene_of(text):
+    """A scene of a text that uses a small part of YAML, as those of input/ do."""
     scene, open_keys = {}, []
-    for line in file.read_text().splitlines():
+    for line in text.splitlines():
         line = re.sub(r"(^|\s)#.*", "", line).rstrip()
         if not line:
             continue
@@ -118,7 +118,7 @@ class Scenes:
 
     def __init__(self, keys):
         self.keys = keys
-        self.inputs = {str(file.relative_to(launch.REPOSITORY)): read_scene(file)
+        self.inputs = {str(file.relative_to(launch.REPOSITORY)): scene_of(file.read_text())
                        for file in sorted((launch.REPOSITORY / "input").rglob("*.yaml"))}
 
     def place(self, key, scene, chance):
