@@ -18,7 +18,8 @@ FULL = os.environ.get("FLOE_FULL", "0") not in ("", "0")  # the long forms
 
 # What tools/env exports. Of a build with sanitizers: MPI and PETSc keep what they have until the process ends, and what is too
 # large is refused as by any allocator.
-ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1", **os.environ, **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
+ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1", **os.environ,
+               **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
 
 # What the launcher of Open MPI 5 adds to the errors of a run that fails: it has no way to keep it quiet.
 BANNER = re.compile(r"^-{60,}\n(?:prterun |MPI_ABORT was invoked)(?:.*\n)*?-{60,}\n|^\[\S+:\d+\] PMIX ERROR: .*\n", re.M)
@@ -38,8 +39,8 @@ def own_words(error):
 
 @functools.cache
 def limited_memory(gib):
-    """What makes a run end for lack of memory: a limit of its address space, of which floe takes 0.5 GiB, as preexec_fn. None for
-    a build with sanitizers, which takes terabytes of it."""
+    """A preexec_fn that limits a run's address space, of which floe takes 0.5 GiB. None for a build with
+    sanitizers, which takes terabytes of it."""
     def limit():
         resource.setrlimit(resource.RLIMIT_AS, (gib << 30, gib << 30))
     works = subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode == 0

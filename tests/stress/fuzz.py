@@ -4,8 +4,9 @@
     tests/stress/fuzz.py --kind scene --seed 123 [--keep FOLDER]      one case: its files, what floe says, broken rules
     tests/stress/fuzz.py [--cases 500] [--first 0] [--kind KIND] [--jobs N]    many; exit code 1 if any breaks a rule
 
-Each case follows from its kind and seed alone. Rules: no signal, no hang, no trace, an exit code of 0 to 3; exit code 2 with one
-line that names something of the input, nothing touched; exit code 0 with finite results; exit code 1 with a summary that says so.
+Each case follows from its kind and seed alone. Rules: no signal, no hang, no trace, an exit code of
+0 to 3; exit code 2 with one line that names something of the input, nothing touched; exit code 0
+with finite results; exit code 1 with a summary that says so.
 FLOE: the program, build/release/floe by default.
 """
 import argparse
@@ -19,19 +20,19 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
-import launch  # noqa: E402
 import fuzz_files  # noqa: E402
 import fuzz_words  # noqa: E402
 from fuzz_keys import read_keys  # noqa: E402
 from fuzz_rules import is_help, run_case  # noqa: E402
 from fuzz_scenes import LATTICES, Scenes, bound, scene_of, write_scene  # noqa: E402
 
-KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text", "mesh")  # one case each, again and again
+# One case of each, again and again.
+KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text", "mesh")
 TMPFS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 LATTICE_SCENES = {
-    "frame.h5": "integrator: explicit\nforces: [beam]\nbeam: {damping_ratio: 0.1}\ninitial: {names: [i], i: {set: tip, velocity: "
-                "[0, 1, 1]}}\nlattice_file: frame.h5\ntime: {end: 1}\n",
+    "frame.h5": "integrator: explicit\nforces: [beam]\nbeam: {damping_ratio: 0.1}\n"
+                "initial: {names: [i], i: {set: tip, velocity: [0, 1, 1]}}\nlattice_file: frame.h5\ntime: {end: 1}\n",
     "triangles.h5": "forces: [beam]\nlattice_file: triangles.h5\nboundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
                     "load: {names: [p], p: {set: right, force: [1e3, 0, 1e2]}}\n",
     "rubble.h5": "integrator: explicit\nforces: [contact, gravity, buoyancy]\ncontact: {young: 1e6}\nlattice_file: rubble.h5\n"
@@ -42,7 +43,8 @@ LATTICE_SCENES = {
 MESH_SCENE = ("integrator: explicit\nforces: [beam]\n"
               "sheet: {length: 6, element_size: 2, iterations: 9, mesh_file: m.h5}\ntime: {end: 1}\n")
 PETSC_SCENES = ("forces: [beam]\nsheet: {length: 8, thickness: 1, element_size: 2, iterations: 5}\n"
-                "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\nload: {names: [p], p: {set: right, force: [1e5, 0, 1e3]}}\n",
+                "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
+                "load: {names: [p], p: {set: right, force: [1e5, 0, 1e3]}}\n",
                 "integrator: implicit\nforces: [beam, gravity, buoyancy]\nsheet: {length: 6, element_size: 2}\n"
                 "time: {end: 0.1, dt: 0.02}\n",
                 "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2}\ntime: {end: 1e-3}\n",
@@ -112,7 +114,8 @@ class Case:
 
     def make_lattice(self, chance):
         name = chance.choice(list(LATTICE_SCENES))
-        self.put_scene(LATTICE_SCENES[name], [] if name == "triangles.h5" else ["-ts_max_steps", "8" if name == "strip.h5" else "40"])
+        steps = {"triangles.h5": None, "strip.h5": "8"}.get(name, "40")
+        self.put_scene(LATTICE_SCENES[name], ["-ts_max_steps", steps] if steps else [])
         self.files[name] = self.damage(name, chance)
         self.damaged = name
 
@@ -160,6 +163,11 @@ class Case:
         text = " ".join([self.scene, *self.words, *self.environment.values(), names, datasets, rest, keys])
         text = text.encode(errors="replace").decode()
         return text + " " + text.replace("_", " _ ")
+
+    def names_file(self, name):
+        """Whether a file is one that an option of PETSc names."""
+        return self.kind == "petsc" and not name.startswith("out") and any(
+            len(word) > 1 and name.startswith(word.lstrip(":")) for word in self.all_text().split())
 
     def lay(self, folder):
         for name in (*LATTICES, "o.h5"):
@@ -215,7 +223,8 @@ def try_case(kind, seed, base):
 def try_many(seeds, kind=None, jobs=1, say=None):
     """Outcomes that broke a rule, counts of exit codes per kind, the slowest cases."""
     broken, codes, slowest = [], {}, []
-    with tempfile.TemporaryDirectory(prefix="fuzz_base", dir=TMPFS) as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+    with (tempfile.TemporaryDirectory(prefix="fuzz_base", dir=TMPFS) as folder,
+          concurrent.futures.ThreadPoolExecutor(jobs) as pool):
         base = Base(folder)
         for outcome, took in pool.map(lambda seed: try_case(kind or kind_of(seed), seed, base), seeds):
             count = codes.setdefault(outcome.case.kind, {})

@@ -11,7 +11,8 @@ import launch
 sys.path.insert(0, str(launch.REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 
-NUMBERS = (np.nan, np.inf, -np.inf, -1.0, 0.0, -0.0, 1.0, 2.0, 1e300, -1e300, 1e-300, 1e-320, 1e31, 1e15, 1e-15, 0.5, 2.0**53, 1e9)
+NUMBERS = (np.nan, np.inf, -np.inf, -1.0, 0.0, -0.0, 1.0, 2.0, 1e300, -1e300, 1e-300, 1e-320, 1e31,
+           1e15, 1e-15, 0.5, 2.0**53, 1e9)
 INTEGERS = (-1, 0, 1, 2, 3, 7, 2**31 - 1, -2**31, 100, 10**6)
 TYPES = ("f4", "f2", ">f8", "i1", "u1", "i8", "u8", ">i4", "c16", "S4", "b1")
 
@@ -100,7 +101,8 @@ def _odd_entries(values, chance):
         if chance.random() < 0.3:
             flat[at] = flat[chance.randrange(flat.size)]
         elif flat.dtype.kind == "f":
-            flat[at] = chance.choice((*NUMBERS, flat[at] * 2, -flat[at], flat[at] * 10**chance.uniform(-9, 9)))
+            with np.errstate(all="ignore"):
+                flat[at] = chance.choice((*NUMBERS, flat[at] * 2, -flat[at], flat[at] * 10**chance.uniform(-9, 9)))
         else:
             info = np.iinfo(flat.dtype)
             flat[at] = min(max(int(chance.choice((*INTEGERS, int(flat[at]) + 1))), info.min), info.max)
@@ -124,7 +126,8 @@ def _change_dataset(file, name, chance):
             values = values.astype(chance.choice(TYPES)) if values.dtype.kind in "fiu" else np.zeros(3)
     elif way == 5:
         rows = np.atleast_1d(values)
-        values = chance.choice((rows[:-1], np.concatenate([rows, rows]), rows[:0], rows[::-1], np.concatenate([rows, rows[:1]])))
+        values = chance.choice((rows[:-1], np.concatenate([rows, rows]), rows[:0], rows[::-1],
+                                np.concatenate([rows, rows[:1]])))
     elif way == 6:
         values = chance.choice((np.float64(1), np.zeros(np.shape(values) + (1,)), np.ravel(values), np.asarray(values).T,
                                 np.zeros((2, 2, 2)), h5py.Empty("f8"), np.zeros(4, [("x", "f8")]), "text"))
@@ -132,7 +135,8 @@ def _change_dataset(file, name, chance):
         file.create_group(name)
         return
     else:
-        file[name] = chance.choice((h5py.SoftLink("/" + name), h5py.SoftLink("/nowhere"), h5py.ExternalLink("o.h5", "/" + name)))
+        file[name] = chance.choice((h5py.SoftLink("/" + name), h5py.SoftLink("/nowhere"),
+                                    h5py.ExternalLink("o.h5", "/" + name)))
         return
     file[name] = values
     for key, value in attributes.items():

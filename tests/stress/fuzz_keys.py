@@ -9,12 +9,15 @@ ROW = re.compile(r"^\| `([^`]+)` \| (.*?)(?<!\\) \| (.*?)(?<!\\) \|")
 NUMBER = r"[-+]?\d[\d.]*(?:e[-+]?\d+)?"
 
 # What no key allows, and what looks like a number and is none; YAML's own signs among them.
-ODD = ("nan", "-nan", "inf", "-inf", ".nan", ".inf", "1e400", "-1e400", "1e308", "1e-320", "-0", "0x10", "1e", "e5", "--5", "1,2",
-       "1 2", "", "~", "null", "[]", "[[]]", "{}", "[1, 2", "{a: 1", "'open", '"open', "true", "yes", "abc", "é", "日本", "%s%n%d",
-       "../..", "/", "*missing", "&anchor 3", "!!int 3", "!!python/object:os.system x", "1_000", "0.1.2", "- 1", "? x", "@x", "`x`",
-       "9223372036854775807", "9223372036854775808", "-9223372036854775809", "1e18", "1e-300", "0", "-1", "1", "2", "1e9", "1e-9",
-       "a" * 500, "7" * 400, "1 " * 200, "[1, 2, 3, 4, 5, 6, 7]", "[nan, 0, 0]", "[0, inf, 0]", "[1e300, 1e300, 1e300]", "[a, b]",
-       "\"\\x07\"", "\"\\0\"", "'a b'", "a: b", "a #b", "#", "|", ">", "<<", "x y", "-", "--", "=", "\\", "$HOME", "0 0 0", "1 1 1")
+ODD = ("nan", "-nan", "inf", "-inf", ".nan", ".inf", "1e400", "-1e400", "1e308", "1e-320", "-0",
+       "0x10", "1e", "e5", "--5", "1,2", "1 2", "", "~", "null", "[]", "[[]]", "{}", "[1, 2",
+       "{a: 1", "'open", '"open', "true", "yes", "abc", "é", "日本", "%s%n%d", "../..", "/",
+       "*missing", "&anchor 3", "!!int 3", "!!python/object:os.system x", "1_000", "0.1.2", "- 1",
+       "? x", "@x", "`x`", "9223372036854775807", "9223372036854775808", "-9223372036854775809",
+       "1e18", "1e-300", "0", "-1", "1", "2", "1e9", "1e-9", "a" * 500, "7" * 400, "1 " * 200,
+       "[1, 2, 3, 4, 5, 6, 7]", "[nan, 0, 0]", "[0, inf, 0]", "[1e300, 1e300, 1e300]", "[a, b]",
+       "\"\\x07\"", "\"\\0\"", "'a b'", "a: b", "a #b", "#", "|", ">", "<<", "x y", "-", "--", "=",
+       "\\", "$HOME", "0 0 0", "1 1 1")
 
 
 class Key:
@@ -64,7 +67,8 @@ class Key:
                 return chance.choice([0, 10**chance.uniform(-3, 2), -(10**chance.uniform(-3, 2))])
             return usual * 10**chance.uniform(-0.5, 0.5)
         if way < 0.87:
-            return chance.choice([self.low, self.high]) if self.kind == "integer" or abs(self.high) >= 1 and self.low >= 0 else usual
+            extreme = self.kind == "integer" or abs(self.high) >= 1 and self.low >= 0
+            return chance.choice([self.low, self.high]) if extreme else usual
         top = math.log10(max(abs(self.low), abs(self.high)))
         bottom = math.log10(self.low) if self.low > 0 else -12
         return 10**chance.uniform(bottom, top) * (chance.choice([1, -1]) if self.low < 0 else 1)
@@ -101,6 +105,7 @@ class Key:
 
 def read_keys():
     """All keys of this program."""
-    page = subprocess.run([launch.FLOE, "-help_markdown"], capture_output=True, text=True, env=launch.ENVIRONMENT, check=True).stdout
-    rows = [ROW.match(line) for line in page.splitlines()]
+    page = subprocess.run([launch.FLOE, "-help_markdown"], capture_output=True, text=True,
+                          env=launch.ENVIRONMENT, check=True)
+    rows = [ROW.match(line) for line in page.stdout.splitlines()]
     return [Key(row[1], row[2], row[3].strip("()")) for row in rows if row]

@@ -10,8 +10,9 @@ from fuzz_keys import ODD
 
 NAMES = {"region": "r", "cut": "c", "obstacle": "o", "boundary": "b", "load": "p", "initial": "i"}
 SHEET_SETS = ("left", "right", "bottom", "top", "all", "r0", "leftinner", "centre")
-LATTICES = {"frame.h5": ("root", "tip", "all"), "triangles.h5": ("left", "right", "bottom", "top", "leftinner", "rightinner", "all"),
-            "rubble.h5": ("all",), "block.h5": ("all",), "strip.h5": ("left", "right", "all"), "stack.h5": ("lowest", "highest", "all")}
+LATTICES = {"frame.h5": ("root", "tip", "all"), "rubble.h5": ("all",), "block.h5": ("all",),
+            "triangles.h5": ("left", "right", "bottom", "top", "leftinner", "rightinner", "all"),
+            "strip.h5": ("left", "right", "all"), "stack.h5": ("lowest", "highest", "all")}
 BEAMLESS = ("rubble.h5", "block.h5", "stack.h5")
 # The lattices of input/, and the small ones that take their places.
 STAND_INS = {"strip": "frame.h5", "rubble_pile": "rubble.h5", "punch_through": "rubble.h5", "triangles": "triangles.h5",
@@ -217,8 +218,10 @@ class Scenes:
         scene[("forces",)] = "[" + ", ".join(forces) + "]"
         if ("lattice_file",) not in scene:
             size = 10**chance.uniform(-0.3, 0.5)
-            scene |= {("sheet", "length"): repr(size * chance.uniform(2, 8)), ("sheet", "width"): repr(size * chance.uniform(2, 8)),
-                      ("sheet", "element_size"): repr(size), ("sheet", "thickness"): repr(chance.uniform(0.1, 2))}
+            scene[("sheet", "length")] = repr(size * chance.uniform(2, 8))
+            scene[("sheet", "width")] = repr(size * chance.uniform(2, 8))
+            scene[("sheet", "element_size")] = repr(size)
+            scene[("sheet", "thickness")] = repr(chance.uniform(0.1, 2))
             for word in ("seed", "relaxation", "iterations", "tolerance"):
                 if chance.random() < 0.3:
                     key = next(k for k in self.keys if k.path == ("sheet", word))
@@ -254,7 +257,8 @@ class Scenes:
         if dynamic:
             self.named(scene, "initial", chance, chance.choice((0, 0, 1)))
             scene[("time", "end")] = repr(10**chance.uniform(-4, 1))
-        for path in (("time", "safety"), ("output", "history"), ("output", "fields"), ("limit", "velocity"), ("model", "planar")):
+        for path in (("time", "safety"), ("output", "history"), ("output", "fields"), ("limit", "velocity"),
+                     ("model", "planar")):
             if chance.random() < 0.15:
                 key = next(k for k in self.keys if k.path == path)
                 scene[path] = self.value(key, scene, chance)
@@ -269,8 +273,8 @@ class Scenes:
             for word, of in (("velocity", "xyz"), ("displacement", "xyz"), ("angular_velocity", ["rx", "ry", "rz"])):
                 path = ("boundary", name, word)
                 if path in scene:
-                    scene[path] = "[" + ", ".join(f"{chance.uniform(-1, 1) * 10**chance.uniform(-4, 1):.3g}" if c in fix else "0"
-                                                  for c in of) + "]"
+                    values = [chance.uniform(-1, 1) * 10**chance.uniform(-4, 1) if c in fix else 0 for c in of]
+                    scene[path] = "[" + ", ".join(f"{value:.3g}" for value in values) + "]"
             if ("boundary", name, "displacement") in scene:
                 scene[("boundary", name, "ramp")] = repr(10**chance.uniform(-4, 1))
         for name in sorted({path[1] for path in scene if path[0] == "load" and len(path) == 3}):
@@ -339,9 +343,10 @@ class Scenes:
             at = chance.randrange(len(data) + 1)
             lines = data.split(b"\n")
             row = chance.randrange(len(lines))
-            odd = [b"\t", b"\0", b"\xff", b"\xff\xfe", b"\xef\xbb\xbf", b"\r\n", b"---\n", b"...\n", b"- ", b"? ", b": ", b"{", b"}",
-                   b"[", b"]", b"&a ", b"*a ", b"!t ", b"|\n", b"'", b'"', b"#", b"%YAML 1.3\n", b"<<: *a\n", "ü".encode(),
-                   "\u2028".encode(), b"  ", b"a: {" * chance.choice((3, 50, 3000)), b"[" * chance.choice((3, 3000)), b"x" * 5000]
+            odd = [b"\t", b"\0", b"\xff", b"\xff\xfe", b"\xef\xbb\xbf", b"\r\n", b"---\n", b"...\n", b"- ", b"? ",
+                   b": ", b"{", b"}", b"[", b"]", b"&a ", b"*a ", b"!t ", b"|\n",
+                   b"'", b'"', b"#", b"%YAML 1.3\n", b"<<: *a\n", "ü".encode(), "\u2028".encode(), b"  ", b"a: {" * chance.choice((3, 50, 3000)), b"x" * 5000,
+                   b"[" * chance.choice((3, 3000))]
             way = chance.randrange(7)
             if way == 0:
                 data = data[:at] + chance.choice(odd) + data[at:]

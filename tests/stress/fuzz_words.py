@@ -26,19 +26,25 @@ options_file options_string check_pointer_intensity error_output_stdout on_error
 citations history nox display dm_view dm_mat_type tao_type eps_type bogus foo_type snes_bogus ts_bogus prefix_snes_rtol
 use_gpu_aware_mpi cuda_device petsc_ci_tmp skip_petscrc help version v""".split()
 
-VALUES = (*ODD, "none", "basic", "rk", "leapfrog", "liealpha", "euler", "bdf", "alpha2", "4", "5dp", "3bs", "1fe", "2a", "8vr",
-          "newtonls", "newtontr", "ksponly", "nrichardson", "ngmres", "fas", "bt", "l2", "cp", "gmres", "cg", "preonly", "minres",
-          "bcgs", "richardson", "chebyshev", "lu", "cholesky", "ilu", "icc", "jacobi", "sor", "gamg", "mg", "asm", "bjacobi", "none",
-          "mumps", "petsc", "superlu_dist", "cholmod", "aij", "sbaij", "baij", "dense", "shell", "mpi", "seq", "::ascii_info",
-          "ascii:o.txt", "binary:o.bin", "draw", ":o.txt", ":/nowhere/o", "hdf5:o.h5", "1e-3", "1e-12", "0.5", "3", "10", "-2",
-          "-3", "1e-8,1e-8", "0.1,10", "3,2", "0,1", "l2norm", "unpreconditioned", "left", "right", "symmetric", "matchstep",
-          "stepover", "interpolate", "nonzero", "positive_definite", "inblocks", "nd", "rcm", "natural", "qmd")
+VALUES = (*ODD, "none", "basic", "rk", "leapfrog", "liealpha", "euler", "bdf", "alpha2", "4", "5dp",
+          "3bs", "1fe", "2a", "8vr", "newtonls", "newtontr", "ksponly", "nrichardson", "ngmres",
+          "fas", "bt", "l2", "cp", "gmres", "cg", "preonly", "minres", "bcgs", "richardson",
+          "chebyshev", "lu", "cholesky", "ilu", "icc", "jacobi", "sor", "gamg", "mg", "asm",
+          "bjacobi", "none", "mumps", "petsc", "superlu_dist", "cholmod", "aij", "sbaij", "baij",
+          "dense", "shell", "mpi", "seq", "::ascii_info", "ascii:o.txt", "binary:o.bin", "draw",
+          ":o.txt", ":/nowhere/o", "hdf5:o.h5", "1e-3", "1e-12", "0.5", "3", "10", "-2", "-3",
+          "1e-8,1e-8", "0.1,10", "3,2", "0,1", "l2norm", "unpreconditioned", "left", "right",
+          "symmetric", "matchstep", "stepover", "interpolate", "nonzero", "positive_definite",
+          "inblocks", "nd", "rcm", "natural", "qmd")
 
-WORDS = ("-help", "--help", "-h", "help", "-version", "--version", "-V", "-check", "--check", "-help_markdown", "-help_man", "-",
-         "--", "---", "-=", "=", "-sheet", "-sheet:", "-sheet_", "-_", "-1", "-1e3", "", " ", "-é", "-sheet_length=3", "--sheet_length",
-         "-sheet-length", "-sheet:length", "sheet_length", "-SHEET_LENGTH", "-boundary_left_set", "-x" * 400, "-help sheet", "nowhere.yaml",
-         "s.yaml", ".", "/dev/null", "/", "..", "-options_file", "-scene", "-np", "-n", "-forces", "-output_dir", "-time_end", "-limit_steps",
-         "-checkpoint_restart", "-lattice_file", "-check false", "-report", "-output_overwrite", "make_lattice", "plot_sheet", "-ts_max_steps")
+WORDS = ("-help", "--help", "-h", "help", "-version", "--version", "-V", "-check", "--check",
+         "-help_markdown", "-help_man", "-", "--", "---", "-=", "=", "-sheet", "-sheet:", "-sheet_",
+         "-_", "-1", "-1e3", "", " ", "-é", "-sheet_length=3", "--sheet_length", "-sheet-length",
+         "-sheet:length", "sheet_length", "-SHEET_LENGTH", "-boundary_left_set", "-x" * 400,
+         "-help sheet", "nowhere.yaml", "s.yaml", ".", "/dev/null", "/", "..", "-options_file",
+         "-scene", "-np", "-n", "-forces", "-output_dir", "-time_end", "-limit_steps",
+         "-checkpoint_restart", "-lattice_file", "-check false", "-report", "-output_overwrite",
+         "make_lattice", "plot_sheet", "-ts_max_steps")
 
 BYTES = ("a\nb", "a\tb", "\x1b[31m", "\x07", "a\udcff", "\udce4pfel", "\u2028", "\u202e", "\r")  # \udcff stands for a byte 255
 
@@ -63,7 +69,8 @@ def command_line(scenes, scene, chance):
             value = key.hostile(chance) if chance.random() < 0.3 else scenes.value(key, scene, chance)
             value = value.strip("[]").replace(", ", ",") if chance.random() < 0.8 else value
             value = chance.choice(BYTES) if chance.random() < 0.04 else value
-            words += chance.choice(([name, value], [name, value], [name, value], [f"{name}={value}"], ["-" + name, value], [name]))
+            words += chance.choice(([name, value], [name, value], [name, value], [f"{name}={value}"],
+                                    ["-" + name, value], [name]))
         elif way < 0.85:
             words += chance.choice(WORDS).split(" ") if chance.random() < 0.9 else [chance.choice(WORDS), chance.choice(ODD)]
         else:

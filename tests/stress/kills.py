@@ -1,12 +1,15 @@
-"""Runs that are killed, told to stop or that find the disk full, at random times, again and again, and that go on each time from
-their newest checkpoint: in the end they equal the run that nothing happened to, bit for bit, and no file was ever torn.
+"""Runs that are killed, told to stop or that find the disk full, at random times, again and again, and
+that go on each time from their newest checkpoint: in the end they equal the run that nothing happened
+to, bit for bit, and no file was ever torn.
 
-Chains of events; what happens when follows from the chain's seed, but for what the machine's speed decides. test_kills.py and
-test_kills_ranks.py run them, on one rank and on two.
+What happens when follows from the chain's seed, but for what the machine's speed decides. test_kills.py
+and test_kills_ranks.py run the chains, on one rank and on two.
 """
+import functools
 import json
 import os
 import random
+import re
 import resource
 import signal
 import subprocess
@@ -64,7 +67,7 @@ class Chain(Killing):
 
     def newest(self):
         """Options that go on from the newest checkpoint, if there is one."""
-        if "auto" in checkpoint_help():
+        if re.search(r"\bauto\b", checkpoint_help()):
             return ["-checkpoint_restart", "auto"]
         return ["-checkpoint_restart", "b/checkpoint.h5"] if (self.results / "checkpoint.h5").exists() else []
 
@@ -177,6 +180,7 @@ class Chain(Killing):
         self.assertGreater(summary["contacts"], 0)
 
 
+@functools.cache
 def checkpoint_help():
     """What floe says of the option -checkpoint_restart."""
     page = subprocess.run([FLOE, "-help_markdown"], capture_output=True, text=True, env=ENVIRONMENT, check=True).stdout
