@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "floe/base/petsc.h"
+#include "floe/base/scene_text.h"
 #include "option_names.h"
 #include "option_values.h"
 
@@ -19,6 +20,8 @@ constexpr std::array<std::string_view, 4> flags_of_petsc{
 
 void check_option(std::string_view word, std::string_view value) {
   const std::string shown_word = shown(word);
+  if (const std::string problem = text_problem(value); !problem.empty())
+    throw InputError(shown_word + ": " + shown(value) + " " + problem);
   if (word.starts_with("--")) throw InputError(shown_word + ": options have one dash: -key value");
   if (word.find('=') != std::string_view::npos)
     throw InputError(shown_word + ": options are written -key value, without '='");
@@ -80,6 +83,8 @@ CommandLine read_command_line(int argc, const char* const* argv) {
     throw InputError(std::string("no scene is named; ") + usage);
   CommandLine line;
   if (has_scene) line.scene = argv[1];
+  if (const std::string problem = text_problem(line.scene); !problem.empty())
+    throw InputError("scene " + shown(line.scene) + ": its name " + problem);
   for (int k = has_scene ? 2 : 1; k < argc; ++k) {
     const std::string_view word = argv[k];
     if (!is_option_word(word)) throw InputError(shown(word) + ": belongs to no option; " + usage);

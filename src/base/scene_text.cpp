@@ -23,6 +23,12 @@ constexpr int deepest_key = 8;  // those of floe have three words, those of PETS
 constexpr std::size_t longest_key = 120;
 constexpr std::size_t largest_scene = 16U << 20;
 
+constexpr auto unprintable = "has a character that cannot be printed";
+
+bool has_control_character(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; });
+}
+
 /// Options that are for the command line only.
 constexpr std::array<std::string_view, 6> command_line_only{
     "help", "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci", "version"};
@@ -201,12 +207,23 @@ class SceneParser {
     }
   }
 
+  /// The text of a value, which goes into lines and paths: breaks of lines and tabs are blanks.
+  std::string checked_text(const Event& event, const std::string& key) {
+    std::string text = event.text();
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+    if (event.text().ends_with('\n')) text.erase(text.find_last_not_of(' ') + 1);
+    if (has_control_character(text))
+      refuse(event.line(), key + ": " + shown(text) + " " + unprintable);
+    return text;
+  }
+
   /// A scalar, a list or an alias of one.
   Value read_value(const Event& event, const std::string& key) {
     if (event.type() == YAML_ALIAS_EVENT) return value_of_alias(event);
     Value value;
     if (event.type() == YAML_SCALAR_EVENT) {
-      value.text = event.text();
+      value.text = checked_text(event, key);
       const bool null = event.is_plain() && (value.text == "~" || lower(value.text) == "null");
       if (null) value.text.clear();
     } else {
@@ -283,6 +300,26 @@ void check_text(const std::string& path, const std::string& text) {
 }
 
 }  // namespace
+
+std::string text_problem(std::string_view value) {
+  if (has_control_character(value)) return unprintable;
+  // libyaml reads a comment as it reads all of a scene: as printable UTF-8, or not at all.
+  const std::string comment = "# " + std::string(value);
+  yaml_parser_t parser{};
+  yaml_token_t token{};
+  yaml_parser_initialize(&parser);
+  yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
+  yaml_parser_set_input_string(&parser, reinterpret_cast<const unsigned char*>(comment.data()),
+                               comment.size());
+  bool good = true;
+  for (bool more = true; good && more;) {
+    good = yaml_parser_scan(&parser, &token) != 0;
+    more = good && token.type != YAML_STREAM_END_TOKEN;
+    if (good) yaml_token_delete(&token);
+  }
+  yaml_parser_delete(&parser);
+  return good ? "" : "is not a text in UTF-8";
+}
 
 GivenOptions parse_scene(const std::string& path, const std::string& text, Source source) {
   check_text(path, text);

@@ -7,9 +7,11 @@
 #include <span>
 #include <utility>
 
+#include "base/option_values.h"
 #include "floe/base/hdf5.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
+#include "floe/base/spelling.h"
 #include "floe/geometry/overlap.h"
 #include "floe/lattice/lattice.h"
 
@@ -245,6 +247,11 @@ Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin 
   return s;
 }
 
+std::string quoted(const std::string& name) {
+  const std::string text = shown(name);
+  return text.starts_with('\'') ? text : "'" + text + "'";
+}
+
 std::span<const double> flat(const std::vector<Point3>& v) {
   return {v.empty() ? nullptr : v[0].data(), 3 * v.size()};
 }
@@ -254,12 +261,22 @@ std::span<const double> flat(const std::vector<Point3>& v) {
 const std::vector<std::int32_t>& Lattice::set(const std::string& name,
                                               const std::string& key) const {
   if (const auto found = sets.find(name); found != sets.end()) {
-    if (found->second.empty()) throw InputError(key + ": the set '" + name + "' has no bodies");
+    if (found->second.empty())
+      throw InputError(key + ": the set " + quoted(name) + " has no bodies");
     return found->second;
   }
+  constexpr std::size_t most = 12;
+  std::vector<std::string_view> names;
   std::string known;
-  for (const auto& [other, bodies_of_set] : sets) known += (known.empty() ? "" : ", ") + other;
-  throw InputError(key + ": there is no set '" + name + "'; the scene has " + known);
+  for (const auto& [other, bodies_of_set] : sets) {
+    names.emplace_back(other);
+    if (names.size() <= most) known += (known.empty() ? "" : ", ") + shown(other);
+  }
+  if (names.size() > most) known += " and " + std::to_string(names.size() - most) + " more";
+  const std::string near = nearest_word(name, names);
+  throw InputError(key + ": there is no set " + quoted(name) +
+                   (near.empty() ? "" : " (is it " + quoted(near) + "?)") + "; the scene has " +
+                   known);
 }
 
 Lattice read_lattice(const std::string& file) {

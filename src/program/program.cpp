@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/option_values.h"
 #include "floe/base/spelling.h"
 #include "floe/base/version.h"
 #include "floe/scene.h"
@@ -77,7 +78,7 @@ int help(std::string_view topic) {
   std::vector<std::string_view> known{"options", "scenes", "version"};
   for (const Subcommand& tool : subcommands()) known.push_back(tool.name);
   const std::string near = nearest_word(topic, known);
-  return say("floe help: there is no topic '" + std::string(topic) + "'" +
+  return say("floe help: there is no topic " + shown(topic) +
                  (near.empty() ? "" : "; the nearest one is '" + near + "'") +
                  " (floe help lists them)\n",
              bad_input, stderr);
@@ -120,9 +121,9 @@ int print_options(const Help& help) {
   if (help.topic.empty()) return say(options_help(), done);
   const std::string keys = options_topic(help.topic);
   if (!keys.empty()) return say(keys, done);
-  return say(
-      "floe: -help: there is no section or key '" + help.topic + "' (floe -help lists them all)\n",
-      bad_input, stderr);
+  return say("floe: -help: there is no section or key " + shown(help.topic) +
+                 " (floe -help lists them all)\n",
+             bad_input, stderr);
 }
 
 }  // namespace floe::program

@@ -2,8 +2,10 @@
 
 No test gives a run a time limit: ctest ends what hangs, after 20 minutes.
 """
+import functools
 import os
 import re
+import resource
 import subprocess
 from pathlib import Path
 
@@ -14,8 +16,10 @@ FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 ENDLESS = ("-time_end", "1e5", "-limit_frames", "1e12", "-limit_disk", "1e12")
 FULL = os.environ.get("FLOE_FULL", "0") not in ("", "0")  # the long forms
 
-# What tools/env exports.
-ENVIRONMENT = {**os.environ, **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
+# What tools/env exports. Of a build with sanitizers: MPI and PETSc keep what they have until the process ends, and what is too
+# large is refused as by any allocator.
+ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1", **os.environ,
+               **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(), re.M))}
 
 # What the launcher of Open MPI 5 adds to the errors of a run that fails: it has no way to keep it quiet.
 BANNER = re.compile(r"^-{60,}\n(?:prterun |MPI_ABORT was invoked)(?:.*\n)*?-{60,}\n|^\[\S+:\d+\] PMIX ERROR: .*\n", re.M)
@@ -31,6 +35,16 @@ def on_ranks(ranks, command):
 def own_words(error):
     """Standard error of a run, without what the launcher adds and without lines of progress, which come when a machine is slow."""
     return PROGRESS.sub("", BANNER.sub("", error))
+
+
+@functools.cache
+def limited_memory(gib):
+    """A preexec_fn that limits a run's address space, of which floe takes 0.5 GiB. None for a build with
+    sanitizers, which takes terabytes of it."""
+    def limit():
+        resource.setrlimit(resource.RLIMIT_AS, (gib << 30, gib << 30))
+    works = subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode == 0
+    return limit if works else None
 
 
 def run(*words, ranks=1, **how):

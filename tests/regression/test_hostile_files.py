@@ -6,7 +6,6 @@ nothing left on disk. FLOE_FULL=1 flips more bytes.
 """
 import os
 import random
-import resource
 import shutil
 import subprocess
 import sys
@@ -17,7 +16,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, FLOE, FULL, REPOSITORY, own_words, run
+from launch import ENVIRONMENT, FLOE, FULL, REPOSITORY, limited_memory, own_words, run
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
@@ -28,16 +27,6 @@ OBSTACLE = ("integrator: explicit\nforces: [beam, contact]\nsheet: {length: 6, e
             "obstacle: {names: [o], o: {shape: file, file: o.h5, point: [50, 0, 0]}}\ntime: {end: 1e-3}\n")
 # What names a file in a message, and the scene and file that it is.
 KINDS = {"lattice_file": (LATTICE, "l.h5"), "sheet: mesh_file": (SHEET, "m.h5"), "obstacle: o: file": (OBSTACLE, "o.h5")}
-
-
-def limit_memory():
-    """Of a run: 2 GiB of address space, of which floe takes 0.5."""
-    resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
-
-
-# A build with sanitizers takes terabytes of address space.
-LIMIT = limit_memory if subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT,
-                                       preexec_fn=limit_memory).returncode == 0 else None
 
 
 class HostileTest(unittest.TestCase):
@@ -73,7 +62,7 @@ class HostileTest(unittest.TestCase):
     def said(self, code=2):
         """What a run says that must end so: one line, with little memory, and no output folder."""
         done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT,
-                              preexec_fn=LIMIT)
+                              preexec_fn=limited_memory(2))
         said = own_words(done.stderr)
         self.assertEqual(done.returncode, code, said)
         if code:

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "floe/base/given.h"
 #include "floe/base/petsc.h"
@@ -24,5 +25,9 @@ GivenOptions parse_scene(const std::string& path, const std::string& text,
 /// \param near_to  words to be added to the message if there is no such file, as a similar name
 GivenOptions read_scene_text(const std::string& path, MPI_Comm comm = MPI_COMM_WORLD,
                              const std::function<std::string(const std::string&)>& near_to = {});
+
+/// What keeps a value from standing in a line of text, in options.yaml among others: control
+/// characters, bytes that are not UTF-8. Empty if nothing does.
+std::string text_problem(std::string_view value);
 
 }  // namespace floe
