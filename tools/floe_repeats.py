@@ -5,7 +5,6 @@ rounded differently each time. Each scene is run many times, and each run is com
 """
 import subprocess
 import tempfile
-from pathlib import Path
 
 import numpy as np
 

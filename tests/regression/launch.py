@@ -5,6 +5,8 @@ No test gives a run a time limit: ctest ends what hangs, after 20 minutes.
 import os
 import re
 import subprocess
+import tempfile
+import unittest
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -21,6 +23,20 @@ ENVIRONMENT = {**os.environ, **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOS
 BANNER = re.compile(r"^-{60,}\n(?:prterun |MPI_ABORT was invoked)(?:.*\n)*?-{60,}\n|^\[\S+:\d+\] PMIX ERROR: .*\n", re.M)
 
 PROGRESS = re.compile(r"^(?:[\w ]+: +\d+ %, \d+ s left  .*|stable step: iteration \d+)\n", re.M)
+
+
+class FolderTest(unittest.TestCase):
+    """Each test has a temporary folder of its own."""
+
+    def setUp(self):
+        self.folder = temporary_folder(self.addCleanup)
+
+
+def temporary_folder(cleanup):
+    """A folder that goes where `cleanup` (of a test or of its class) says, whatever still writes into it."""
+    temporary = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+    cleanup(temporary.cleanup)
+    return Path(temporary.name)
 
 
 def on_ranks(ranks, command):

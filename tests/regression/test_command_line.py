@@ -4,11 +4,10 @@ import os
 import re
 import shutil
 import subprocess
-import tempfile
 import unittest
 from pathlib import Path
 
-from launch import ENVIRONMENT, FLOE, REPOSITORY, on_ranks, own_words
+from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest, on_ranks, own_words
 
 SCENES = REPOSITORY / "input"
 LOADER = Path("/lib64/ld-linux-x86-64.so.2")
@@ -20,12 +19,7 @@ def tools():
     return re.findall(r"^  (\w+) +(\S.*)$", text.split("Tools")[1], re.MULTILINE)
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class CommandLine(FolderTest):
     def run_it(self, *words, ranks=1, code=0, floe=(FLOE,)):
         """Runs floe in the folder: its standard output and error."""
         run = subprocess.run(on_ranks(ranks, [*floe, *words]), cwd=self.folder, env=ENVIRONMENT, capture_output=True,

@@ -1,16 +1,12 @@
 #!/usr/bin/python3
 """Contacts that cannot be right are said: overlaps at the start, speeds that jump over bodies, bodies pressed through
 others. Each run as a user would run it, at 1 and at 2 ranks."""
-import json
-import os
-import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+from launch import REPOSITORY
+from one_run import OneRun
+
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 
@@ -30,21 +26,14 @@ contact: {young: 1e7}
 PLATE = "obstacle: {names: [plate], plate: {shape: box, centre: [0, 0, -1.03], size: [4, 4, 0.05]}}\n"
 
 
-class Run:
-    """One run: `code`, `error` (standard error), `summary` or None."""
+def cubes(folder):
+    """Two cubes for scenes that ask for them."""
+    fl.blocks([[1, 1, 1], [1, 1, 1]], [[0, 0, 0], [100, 0, 50]]).write(folder / "cube.h5")
 
+
+class Run(OneRun):
     def __init__(self, scene, *words, ranks=1):
-        with tempfile.TemporaryDirectory() as folder:
-            Path(folder, "s.yaml").write_text(scene)
-            if "cube.h5" in scene:
-                fl.blocks([[1, 1, 1], [1, 1, 1]], [[0, 0, 0], [100, 0, 50]]).write(str(Path(folder, "cube.h5")))
-            command = [str(FLOE), "s.yaml", *words]
-            if ranks > 1:
-                command = ["mpiexec", "-n", str(ranks), *command]
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-            self.code, self.error = done.returncode, done.stderr
-            summary = Path(folder, "out/s/summary.json")
-            self.summary = json.loads(summary.read_text()) if summary.exists() else None
+        super().__init__(scene, *words, ranks=ranks, prepare=cubes if "cube.h5" in scene else lambda folder: None)
 
     def warnings(self):
         return [line for line in self.error.splitlines() if line.startswith("floe: warning: contact")]

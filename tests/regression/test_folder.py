@@ -10,7 +10,8 @@ from pathlib import Path
 
 import h5py
 
-from running import AFLOAT, BAD_INPUT, FAILED, LOADED, RunningTest
+from running import BAD_INPUT, FAILED, RunningTest
+from small_scenes import AFLOAT, LOADED
 
 SHORT = ["-time_end", "0.5"]
 WITHOUT_FLOCK = """#include <errno.h>

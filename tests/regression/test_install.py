@@ -12,6 +12,8 @@ from pathlib import Path
 
 import h5py
 
+import launch
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 BUILD = FLOE.parent
@@ -38,11 +40,9 @@ def run(*words, cwd, code=0):
     return done.stdout + done.stderr
 
 
-class Installed(unittest.TestCase):
+class Installed(launch.FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        super().setUp()
         self.prefix = self.folder / "a prefix"
         run(CMAKE, "--install", BUILD, "--prefix", self.folder / "first", cwd=self.folder)
         (self.folder / "first").rename(self.prefix)  # it works where it is moved to

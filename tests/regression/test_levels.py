@@ -15,7 +15,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, FLOE, REPOSITORY
+from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest
 
 AT_LEVEL = REPOSITORY / "tools/at_level"
 BUILT = ["x86-64", "x86-64-v3", "x86-64-v4"]  # levels that get a library
@@ -84,11 +84,9 @@ class Layout(unittest.TestCase):
 
 
 @unittest.skipUnless(PORTABLE, "needs a floe that was built with FLOE_PORTABLE")
-class Levels(unittest.TestCase):
+class Levels(FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        super().setUp()
         self.levels = [level for level in BUILT if has(level)]
 
     def run_at(self, level, *words, dir):

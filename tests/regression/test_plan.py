@@ -4,9 +4,7 @@ number, before anything is written."""
 import json
 import re
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import launch
 
@@ -29,12 +27,7 @@ PLAN = re.compile(r"plan: (?P<step>.*)\nplan: about (?P<rows>\S+) rows?, (?P<fra
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 
 
-class PlanTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-
+class PlanTest(launch.FolderTest):
     def run_scene(self, scene, *options, code=0, ranks=1):
         (self.folder / "scene.yaml").write_text(scene)
         done = launch.run("scene.yaml", *options, ranks=ranks, cwd=self.folder)

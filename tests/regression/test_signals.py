@@ -6,7 +6,8 @@ import subprocess
 import unittest
 
 from launch import ENVIRONMENT, FLOE, on_ranks, own_words
-from running import AFLOAT, LOADED, STOPPED, RunningTest
+from running import STOPPED, RunningTest
+from small_scenes import AFLOAT, LOADED
 
 ALL = ("SIGTERM", "SIGINT", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGXCPU")
 LONG_SET_UP = AFLOAT.replace("iterations: 5", "iterations: 1000000").replace("length: 6", "length: 30")

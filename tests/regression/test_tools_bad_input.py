@@ -6,12 +6,10 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+from launch import FLOE, REPOSITORY, temporary_folder
+
 TOOLS = REPOSITORY / "tools"
 READERS = ("plot_sheet", "plot_fragments", "plot_load", "plot_deflection", "campaign_report")
 SCENE = """forces: [beam]
@@ -23,9 +21,7 @@ boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
 class ToolsBadInput(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        cls.folder = temporary_folder(cls.addClassCleanup)
         (cls.folder / "s.yaml").write_text(SCENE)
         subprocess.run([str(FLOE), "s.yaml"], cwd=cls.folder, check=True, capture_output=True, timeout=600)
 
