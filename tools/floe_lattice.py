@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Writes lattice.h5 files: frames, sheets of regular triangles, loose blocks.
 
 What floe reads as `lattice_file: FILE.h5`. As a command: floe make_lattice KIND [options] FILE.h5
@@ -11,7 +10,6 @@ SI units everywhere. Quaternions are unit, (w, x, y, z), body to world. A beam's
 to its second body, axis 2 is `axis_y`, axis 3 = 1 x 2; `width` is the section's extent along axis 2 and
 `height` along axis 3, so inertia_y (about axis 2) = width height^3 / 12.
 """
-import argparse
 import os
 from dataclasses import dataclass, field
 
@@ -350,82 +348,3 @@ def rollup(elements):
 def elastica(elements):
     """A spring-steel rod, L = 10 m, section 10 x 10 mm, EI = 175 N m^2: A L^2/I = 1.2e7, as good as inextensible."""
     return straight_frame(10.0, elements, Section(0.01, 0.01, young=2.1e11, poisson=0.3, density=7850.0))
-
-
-def _count(text):
-    """A whole number of at least 1, as argparse's type."""
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{number} is not at least 1")
-    return number
-
-
-_count.__name__ = "whole number"
-
-
-class _Parser(argparse.ArgumentParser):
-    """Says what is wrong with a command line in one line."""
-
-    def error(self, message):
-        self.exit(2, f"{self.prog}: {' '.join(message.split())} ({self.prog} --help)\n")
-
-
-def _arguments():
-    parser = _Parser(prog="floe make_lattice", description="Writes a lattice.h5 file for floe.")
-    kinds = parser.add_subparsers(dest="kind", required=True, metavar="KIND")
-
-    def kind(name, text, **options):
-        sub = kinds.add_parser(name, help=text, description=text,
-                               formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-        for option, (default, unit) in options.items():
-            many = isinstance(default, tuple)
-            sub.add_argument(f"--{option}", default=default,
-                             type=_count if unit == "n" else type(default[0] if many else default),
-                             nargs=len(default) if many else None, metavar=unit.upper(), help=f"[{unit}]")
-        sub.add_argument("file", metavar="FILE.h5")
-        return sub
-
-    kind("cantilever", "straight frame along x", elements=(64, "n"), length=(10.0, "m"), width=(1.0, "m"),
-         height=(1.0, "m"), young=(4e9, "Pa"), poisson=(0.3, "-"), density=(920.0, "kg/m3"))
-    kind("strip", "floating strip that ends at x = 0: one row of boxes", elements=(120, "n"), length=(120.0, "m"),
-         width=(1.0, "m"), height=(1.0, "m"), water=(1010.0, "kg/m3"), young=(4e9, "Pa"), poisson=(0.3, "-"),
-         density=(920.0, "kg/m3"))
-    bend = kind("bend45", "45-degree bend, R = 100, section 1 x 1, E = 1e7", elements=(64, "n"))
-    bend.add_argument("--torsion", type=float, default=1 / 6, metavar="M4", help="torsion constant J [m4]")
-    kind("rollup", "strip for the roll-up test, L = 10, EI = 100", elements=(40, "n"))
-    kind("elastica", "slender rod, L = 10, EI = 175, inextensible for practical purposes", elements=(64, "n"))
-    kind("triangles", "sheet of regular triangles; the module's documentation says how its edges are treated",
-         columns=(21, "n"), rows=(21, "n"), spacing=(1.0, "m"), thickness=(1.0, "m"), young=(4e9, "Pa"),
-         poisson=(0.3, "-"), density=(920.0, "kg/m3"))
-    kind("block", "one upright box with its centroid above the origin", size=((4.0, 4.0, 1.0), "m"), height=(0.0, "m"),
-         density=(920.0, "kg/m3"))
-    kind("stack", "loose boxes above each other, no beams", count=(5, "n"), size=((1.0, 1.0, 0.5), "m"),
-         gap=(0.0, "m"), density=(920.0, "kg/m3"))
-    kind("rubble", "loose boxes turned at random, on a grid under water", columns=((10, 10, 10), "n"),
-         size=((1.0, 1.0, 0.5), "m"), spacing=(1.6, "m"), depth=(1.0, "m"), seed=(1, "-"), density=(920.0, "kg/m3"))
-    return parser, parser.parse_args()
-
-
-def main():
-    parser, given = _arguments()
-    options = vars(given)
-    kind, file = options.pop("kind"), options.pop("file")
-    makers = {"bend45": bend45, "rollup": rollup, "elastica": elastica, "triangles": triangles, "block": block, "stack": stack,
-              "rubble": rubble}
-    try:
-        if kind == "cantilever":
-            length, elements = options.pop("length"), options.pop("elements")
-            lattice = straight_frame(length, elements, Section(**options))
-        elif kind == "strip":
-            length, elements, water = (options.pop(name) for name in ("length", "elements", "water"))
-            lattice = strip(length, elements, Section(**options), water)
-        else:
-            lattice = makers[kind](**options)
-        lattice.write(file)
-    except (ValueError, OSError, OverflowError, ZeroDivisionError, MemoryError) as error:
-        parser.error(str(error) or "too large for the memory")
-    print(f"{file}: {len(lattice.position)} bodies, {len(lattice.bodies)} beams")
-
-
-if __name__ == "__main__":
-    main()

@@ -11,8 +11,7 @@ import numpy as np
 from floe_output import Output
 
 SCENES = ("input/tension.yaml", "input/compression.yaml", "input/bending.yaml", "input/edge_load.yaml",
-          "input/notch.yaml", "input/bending_implicit.yaml", "input/tension_implicit.yaml",
-          "input/bench/largest.yaml")
+          "input/bending_implicit.yaml", "input/tension_implicit.yaml", "input/bench/largest.yaml")
 RESULTS = ("E", "E_gauge_over_Eb", "deflection_max")  # of summary.json
 
 

@@ -13,6 +13,9 @@
 namespace floe {
 namespace {
 
+// Progress: nothing before, and at least between two lines of a terminal's bar or of other output.
+constexpr double quiet_seconds = 1, bar_seconds = 0.2, line_seconds = 5;
+
 constexpr int number_of_events = static_cast<int>(Event::count);
 
 std::array<double, number_of_events>& totals() {
@@ -83,10 +86,26 @@ Progress::~Progress() {
 
 void Progress::update(double done, std::string_view note) {
   if (!active_) return;
-  constexpr double quiet_seconds = 1, bar_seconds = 0.2, line_seconds = 5;
   const double now = MPI_Wtime();
+  if (announced_ > 0) took_ = now - announced_;
+  announced_ = 0;
   if (now - start_ < quiet_seconds) return;
   if (now - last_print_ < (terminal_ ? bar_seconds : line_seconds)) return;
+  print(done, note, now);
+}
+
+void Progress::announce(double done, std::string_view note, double seconds) {
+  update(done, note);
+  if (!active_) return;
+  announced_ = MPI_Wtime();
+  const double expected = took_ > 0 ? took_ : seconds;
+  if (expected < line_seconds) return;
+  std::array<char, 32> time{};
+  std::snprintf(time.data(), time.size(), ", about %.2g s", expected);
+  print(done, std::string(note) + time.data(), announced_);
+}
+
+void Progress::print(double done, std::string_view note, double now) {
   last_print_ = now;
   shown_ = true;
   if (!(total_ > 0)) {
@@ -97,18 +116,21 @@ void Progress::update(double done, std::string_view note) {
     return;
   }
   const double share = std::clamp(done / total_, 0.0, 1.0);
-  const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
+  std::array<char, 32> left{};
+  if (share > 0)
+    std::snprintf(left.data(), left.size(), ", %.0f s left",
+                  (now - start_) * (1 - share) / share);
   if (terminal_) {
     constexpr int bar_width = 30;
     const int full = static_cast<int>(share * bar_width);
     const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                             std::string(static_cast<std::size_t>(bar_width - full), '.');
-    std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%  %.0f s left  %.*s",
-                 static_cast<int>(what_.size()), what_.data(), bar.c_str(), 100 * share, left,
+    std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%%s  %.*s", static_cast<int>(what_.size()),
+                 what_.data(), bar.c_str(), 100 * share, left.data(),
                  static_cast<int>(note.size()), note.data());
   } else {
-    std::fprintf(stderr, "%.*s: %.0f %%, %.0f s left  %.*s\n", static_cast<int>(what_.size()),
-                 what_.data(), 100 * share, left, static_cast<int>(note.size()), note.data());
+    std::fprintf(stderr, "%.*s: %.0f %%%s  %.*s\n", static_cast<int>(what_.size()), what_.data(),
+                 100 * share, left.data(), static_cast<int>(note.size()), note.data());
   }
   std::fflush(stderr);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The picture tools: Kelvin's function against tabulated values, and pictures from real runs."""
-import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
+from launch import ENDLESS, FLOE, REPOSITORY
+from running import RunningTest
+
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_plate  # noqa: E402
 
@@ -71,6 +72,9 @@ class Pictures(unittest.TestCase):
     def test_sheet(self):
         self.draw("tension.yaml", ["-sheet_length", "12", "-sheet_width", "10"], "plot_sheet", "--colour", "ux")
 
+    def test_fragments(self):
+        self.draw("notch.yaml", ["-sheet_element_size", "2"], "plot_fragments")
+
     def test_deflection(self):
         self.draw("bending.yaml", ["-sheet_length", "20", "-sheet_width", "20"], "plot_deflection")
 
@@ -79,6 +83,38 @@ class Pictures(unittest.TestCase):
             run = subprocess.run([str(REPOSITORY / "tools" / tool), "/nonexistent"], capture_output=True, text=True)
             self.assertEqual(run.returncode, 2)
             self.assertIn("/nonexistent", run.stderr)
+
+
+# A sheet that is pushed against a leg, and breaks.
+PUSHED = """integrator: explicit
+forces: [beam, fracture, gravity, buoyancy, drag, contact]
+sheet: {length: 12, width: 8, thickness: 0.5, element_size: 2, iterations: 5}
+beam: {damping_ratio: 1}
+water: {drag_linear: 100}
+contact: {young: 1e8}
+obstacle: {names: [leg], leg: {shape: cylinder, base: [8.01, 0, -3], radius: 2, height: 6}}
+boundary: {names: [back], back: {set: left, fix: x, velocity: [0.5, 0, 0]}}
+output: {history: 0.01, fields: 0.1}
+"""
+
+
+class Unfinished(RunningTest):
+    """A run that is under way, then killed: its pictures are drawn in either state."""
+
+    def test_pictures(self):
+        self.write(PUSHED)
+        process = self.running(*ENDLESS)
+        process.send_signal(signal.SIGSTOP)  # while pictures are drawn
+        for state in ("under way", "killed"):
+            for tool, name in (("plot_sheet", "sheet"), ("plot_fragments", "fragments"), ("plot_load", "load")):
+                with self.subTest(f"{tool}, {state}"):
+                    picture = self.folder / f"{name} {state}.png"
+                    plot = subprocess.run([REPOSITORY / "tools" / tool, "out/scene", "--file", picture], cwd=self.folder,
+                                          capture_output=True, text=True)
+                    self.assertEqual(plot.returncode, 0, plot.stderr)
+                    self.assertTrue(picture.read_bytes().startswith(b"\x89PNG"))
+            process.kill()
+            process.wait()
 
 
 if __name__ == "__main__":
