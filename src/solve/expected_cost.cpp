@@ -63,8 +63,10 @@ double free_in_group() {
 FactorisationCost factorisation_cost(double unknowns, int ranks) {
   // Nested dissection of a plane graph: n^1.5 operations, n log n numbers.
   constexpr double size = 177'000, seconds = 2, solve_seconds = 0.15, bytes_a_level = 150;
+  constexpr double least = 1e-3, least_solve = 2e-4;  // calls, whatever the size
   const double relative = unknowns / size, shared = std::pow(ranks, 0.7);
-  return {seconds * std::pow(relative, 1.35) / shared, solve_seconds * relative / shared,
+  return {least + seconds * std::pow(relative, 1.35) / shared,
+          least_solve + solve_seconds * relative / shared,
           bytes_a_level * unknowns * std::log2(std::max(2.0, unknowns))};
 }
 
