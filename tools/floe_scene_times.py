@@ -1,8 +1,9 @@
 """Run times of the scenes that come with floe (tools/bench scenes).
 
-Each scene is run by its own command, on one rank, in a folder of its own. The time is the processor's (user and
-system): on an idle core the clock shows the same, on a busy machine it says more than the clock. A run that takes
-longer than wanted is stopped, and its whole time follows from the part of it that was made.
+Each scene is run by its own command, on one rank, in a folder of its own. The time is the
+processor's (user and system): on an idle core the clock shows the same, on a busy machine it says
+more than the clock. A run that takes longer than wanted is stopped, and its whole time follows from
+the part of it that was made.
 """
 import json
 import os
@@ -19,7 +20,8 @@ HEAD = "| scene | what it shows | integrator | bodies | time |\n|---|---|---|---
 
 def scenes_of(floe):
     """Names of the scenes and what they show, as `floe help scenes` lists them."""
-    text = subprocess.run([floe, "help", "scenes"], check=True, capture_output=True, text=True).stdout
+    text = subprocess.run([floe, "help", "scenes"], check=True, capture_output=True,
+                          text=True).stdout
     return re.findall(r"^  (\w+) +(\S.*)$", text, re.MULTILINE)
 
 
@@ -31,7 +33,8 @@ def seconds_so_far(pid):
 
 def timed(command, folder, environment, most):
     """Processor time of a command [s], which is asked to stop after `most` of it."""
-    process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL)
     asked = False
     while True:
         pid, _, usage = os.wait4(process.pid, os.WNOHANG)
@@ -45,7 +48,9 @@ def timed(command, folder, environment, most):
 
 def text_of(seconds):
     """As people say it."""
-    return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+    if seconds >= 120:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s"
 
 
 def row(floe, root, scene, subject, environment, most):
@@ -57,7 +62,8 @@ def row(floe, root, scene, subject, environment, most):
         (folder / "input").symlink_to(root / "input")
         *before, last = (shlex.split(part) for part in command.split("&&"))
         for words in before:
-            subprocess.run([root / "tools" / words[1], *words[2:]], cwd=folder, env=environment, check=True,
+            subprocess.run([root / "tools" / words[1], *words[2:]], cwd=folder, env=environment,
+                           check=True,
                            stdout=subprocess.DEVNULL)
         seconds = timed([floe, *last[1:]], folder, environment, most)
         summary = json.loads((folder / f"out/{scene}/summary.json").read_text())
@@ -66,7 +72,9 @@ def row(floe, root, scene, subject, environment, most):
             options = (folder / f"out/{scene}/options.yaml").read_text()
             end = float(re.search(r"^time:.*?^  end: (\S+)", options, re.MULTILINE | re.DOTALL)[1])
             seconds, about = seconds * end / summary["time"], "about "
-        return f"| `{scene}` | {subject} | {summary['integrator']} | {summary['bodies']} | {about}{text_of(seconds)} |"
+        cells = (f"`{scene}`", subject, summary["integrator"], str(summary["bodies"]),
+                 about + text_of(seconds))
+        return f"| {' | '.join(cells)} |"
 
 
 def table(floe, root, environment, wanted, most):

@@ -118,16 +118,15 @@ void Progress::print(double done, std::string_view note, double now) {
   const double share = std::clamp(done / total_, 0.0, 1.0);
   std::array<char, 32> left{};
   if (share > 0)
-    std::snprintf(left.data(), left.size(), ", %.0f s left",
-                  (now - start_) * (1 - share) / share);
+    std::snprintf(left.data(), left.size(), ", %.0f s left", (now - start_) * (1 - share) / share);
   if (terminal_) {
     constexpr int bar_width = 30;
     const int full = static_cast<int>(share * bar_width);
     const std::string bar = std::string(static_cast<std::size_t>(full), '#') +
                             std::string(static_cast<std::size_t>(bar_width - full), '.');
     std::fprintf(stderr, "\r\033[K%.*s [%s] %3.0f %%%s  %.*s", static_cast<int>(what_.size()),
-                 what_.data(), bar.c_str(), 100 * share, left.data(),
-                 static_cast<int>(note.size()), note.data());
+                 what_.data(), bar.c_str(), 100 * share, left.data(), static_cast<int>(note.size()),
+                 note.data());
   } else {
     std::fprintf(stderr, "%.*s: %.0f %%%s  %.*s\n", static_cast<int>(what_.size()), what_.data(),
                  100 * share, left.data(), static_cast<int>(note.size()), note.data());

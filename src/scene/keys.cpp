@@ -227,9 +227,9 @@ constexpr std::array table{
                "the same for frames of fields.h5"},
     OptionSpec{"limit: disk", number, "1000", "GB", ">= 1e-6, <= 1e15",
                "the same for the room on disk"},
-    OptionSpec{"limit: memory", number, "(3 times what is free)", "GB", ">= 1e-3, <= 1e9",
+    OptionSpec{"limit: memory", number, "(auto)", "GB", ">= 1e-3, <= 1e9",
                "a sheet whose run would take more memory, by an estimate, is refused before it is "
-               "meshed; more than is free is a warning"},
+               "meshed, more than is free is a warning; auto: three times what is free"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
     OptionSpec{"output: overwrite", flag, "false", "", "",

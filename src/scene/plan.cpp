@@ -115,8 +115,8 @@ void check_size(const Scene& scene, double free, int ranks) {
   }
   constexpr double honest = 3;  // a factor of what estimates are good to
   const double most = scene.limit.memory > 0 ? 1e9 * scene.limit.memory : honest * free;
-  const std::string what = "sheet: about " + count(bodies) + " bodies would take about " +
-                           bytes(needed) + " of memory";
+  const std::string what =
+      "sheet: about " + count(bodies) + " bodies would take about " + bytes(needed) + " of memory";
   if (needed > most)
     throw InputError(what + ", " +
                      (scene.limit.memory > 0 ? "at most " + bytes(most) + " are taken"

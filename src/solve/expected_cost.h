@@ -2,7 +2,7 @@
 /// What a run of a sheet will take, before it is known.
 ///
 /// Formulas fitted to runs of sheets of 3,000 to 30,000 bodies on the machine of docs/bench: meant
-/// to be good to a factor of 3 for lattices whose beams lie as a sheet's; blocks of many layers take
+/// to be good to a factor of 3 for lattices whose beams lie as a sheet's; blocks of layers take
 /// longer.
 #pragma once
 

@@ -38,8 +38,8 @@ void require_same_motion(const Boundary& a, const Boundary& b, std::size_t compo
     const auto &one = set_of(a, lattice), &other = set_of(b, lattice);
     std::set_intersection(one.begin(), one.end(), other.begin(), other.end(),
                           std::back_inserter(common));
-    throw InputError("boundary: " + b.name + ": prescribes " + component_names[component] +
-                     " of " + std::to_string(common.size()) + " bodies that boundary: " + a.name +
+    throw InputError("boundary: " + b.name + ": prescribes " + component_names[component] + " of " +
+                     std::to_string(common.size()) + " bodies that boundary: " + a.name +
                      " prescribes differently");
   }
 }

@@ -1,7 +1,7 @@
-"""Bad input ends with one line on standard error, exit code 2 and nothing written, at 1 and at 2 ranks.
+"""Bad input ends with one line on standard error, exit code 2 and nothing written.
 
-Each case runs in a temporary folder of its own, as a user would run it. A rank that waits for another that has
-given up is a failure that this looks for. The cases: test_bad_*.py.
+Each case runs in a temporary folder of its own, as a user would run it. A rank that waits for
+another that has given up is a failure that this looks for. The cases: test_bad_*.py.
 """
 import re
 import tempfile
@@ -15,7 +15,8 @@ HELD = "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
 GOOD = "forces: [beam]\n" + SHEET + HELD
 BREAKABLE = "forces: [beam, fracture]\n" + SHEET + HELD
 FLOATING = "forces: [beam, gravity, buoyancy]\n" + SHEET
-FILE = "forces: [beam]\nlattice_file: bad.h5\nboundary: {names: [a], a: {set: root, fix: x y z rx ry rz}}\n"
+FILE = ("forces: [beam]\nlattice_file: bad.h5\n"
+        "boundary: {names: [a], a: {set: root, fix: x y z rx ry rz}}\n")
 
 
 def held(rest):
@@ -55,7 +56,8 @@ class BadInput(unittest.TestCase):
         setattr(cls, method, test)
 
     def refused(self, words, part, ranks, folder):
-        """Runs floe with `words` in `folder`; checks how it ends and that nothing has been written."""
+        """Runs floe with `words` in `folder`; checks how it ends and that nothing has been
+        written."""
         before = sorted(folder.rglob("*"))
         run = launch.run(*words, ranks=ranks, cwd=folder)
         lines = run.stderr.splitlines()

@@ -7,7 +7,8 @@ import launch
 
 
 class OneRun:
-    """`code`, `error` (standard error), `summary` or None, and whether there is an output folder."""
+    """`code`, `error` (standard error), `summary` or None, and whether there is an output
+    folder."""
 
     def __init__(self, scene, *words, ranks=1, prepare=lambda folder: None):
         with tempfile.TemporaryDirectory() as folder:

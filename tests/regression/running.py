@@ -1,4 +1,5 @@
-"""Runs that a test looks at while they run: started in a temporary folder, waited for by what they write."""
+"""Runs that a test looks at while they run: started in a temporary folder, waited for by what they
+write."""
 import json
 import subprocess
 import time
@@ -20,8 +21,10 @@ class RunningTest(FolderTest):
         (self.folder / name).write_text(scene)
 
     def begin(self, *words, scene="scene.yaml", ranks=1, environment={}, **how):
-        process = subprocess.Popen(on_ranks(ranks, [FLOE, scene, *words]), cwd=self.folder, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True, env={**ENVIRONMENT, **environment}, **how)
+        process = subprocess.Popen(on_ranks(ranks, [FLOE, scene, *words]), cwd=self.folder,
+                                   stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True,
+                                   env={**ENVIRONMENT, **environment}, **how)
         self.addCleanup(self.end, process)
         return process
 

@@ -4,7 +4,8 @@ import unittest
 
 import h5py
 
-from bad_input import BREAKABLE, FLOATING, GOOD, HELD, MOVING, PULLED, SHEET, TOUCHING, BadInput, held, loaded, scene_file
+from bad_input import (BREAKABLE, FLOATING, GOOD, HELD, MOVING, PULLED, SHEET, TOUCHING, BadInput,
+                       held, loaded, scene_file)
 
 COMMAND_LINE = {
     "stray word": (GOOD, ["stray"], "stray"),
@@ -29,15 +30,23 @@ COMMAND_LINE = {
 PLANAR = ["-model_planar", "true"]
 NEEDS_SPACE = {
     "a word for planar": (GOOD, ["-model_planar", "maybe"], "model: planar"),
-    "planar, floating": (FLOATING, PLANAR, "model: planar: true leaves out what this scene needs: forces: buoyancy"),
+    "planar, floating": (FLOATING, PLANAR, "model: planar: true leaves out what this scene needs: "
+                                           "forces: buoyancy"),
     "planar, heavy": ("forces: [beam, gravity]\n" + SHEET + HELD, PLANAR, "forces: gravity"),
-    "planar, breakable": (BREAKABLE + "fracture: {tensile_strength: 6e5, shear_strength: 6e5, energy: 15}\n", PLANAR, "forces: fracture"),
-    "planar, touching": (TOUCHING + "time: {end: 1}\ncontact: {young: 1e9}\n", PLANAR, "forces: contact"),
-    "planar, lifted": (loaded("set: right, force: [0, 0, 1]"), PLANAR, "load: p acts out of the x-y plane"),
-    "planar, twisted": (loaded("set: right, moment: [1, 0, 0]"), PLANAR, "load: p acts out of the x-y plane"),
-    "planar, moved up": (held("fix: x y z rx ry rz, velocity: [0, 0, 1]"), PLANAR, "boundary: a moves out of the x-y plane"),
-    "planar, rolled": (held("fix: x y z rx ry rz, angular_velocity: [0, 1, 0]"), PLANAR, "boundary: a moves out of the x-y plane"),
-    "planar, thrown up": (MOVING + "initial: {names: [i], i: {set: all, velocity: [0, 0, 1]}}\n", PLANAR, "initial velocity"),
+    "planar, breakable": (BREAKABLE + "fracture: {tensile_strength: 6e5, shear_strength: "
+                                      "6e5, energy: 15}\n", PLANAR, "forces: fracture"),
+    "planar, touching": (TOUCHING + "time: {end: 1}\ncontact: {young: 1e9}\n", PLANAR,
+                         "forces: contact"),
+    "planar, lifted": (loaded("set: right, force: [0, 0, 1]"), PLANAR,
+                       "load: p acts out of the x-y plane"),
+    "planar, twisted": (loaded("set: right, moment: [1, 0, 0]"), PLANAR,
+                        "load: p acts out of the x-y plane"),
+    "planar, moved up": (held("fix: x y z rx ry rz, velocity: [0, 0, 1]"), PLANAR,
+                         "boundary: a moves out of the x-y plane"),
+    "planar, rolled": (held("fix: x y z rx ry rz, angular_velocity: [0, 1, 0]"), PLANAR,
+                       "boundary: a moves out of the x-y plane"),
+    "planar, thrown up": (MOVING + "initial: {names: [i], i: {set: all, velocity: [0, 0, 1]}}\n",
+                          PLANAR, "initial velocity"),
     "planar, implicit": (MOVING.replace("explicit", "implicit"), PLANAR, "integrator: implicit"),
     "planar, Runge-Kutta": (MOVING, [*PLANAR, "-ts_type", "rk"], "-ts_type rk"),
 }

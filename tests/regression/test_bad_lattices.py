@@ -39,16 +39,21 @@ LATTICE_FILES = {
     "no masses": (spoil("bodies/mass", None), "/bodies/mass"),
     "negative mass": (spoil("bodies/mass", -np.ones(5)), "/bodies/mass"),
     "nan": (spoil("bodies/mass", np.array([1, 1, np.nan, 1, 1])), "/bodies/mass"),
-    "not a unit quaternion": (spoil("bodies/orientation", np.full((5, 4), 0.9)), "/bodies/orientation"),
+    "not a unit quaternion": (spoil("bodies/orientation", np.full((5, 4), 0.9)),
+                              "/bodies/orientation"),
     "beam to a body that is not there":
-        (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 5]], np.int32)), "/beams/bodies"),
+        (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 5]], np.int32)),
+         "/beams/bodies"),
     "beam to a negative body":
-        (spoil("beams/bodies", np.array([[-1, 1], [1, 2], [2, 3], [3, 4]], np.int32)), "/beams/bodies"),
+        (spoil("beams/bodies", np.array([[-1, 1], [1, 2], [2, 3], [3, 4]], np.int32)),
+         "/beams/bodies"),
     "beam of one body":
-        (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 3]], np.int32)), "/beams/bodies"),
+        (spoil("beams/bodies", np.array([[0, 1], [1, 2], [2, 3], [3, 3]], np.int32)),
+         "/beams/bodies"),
     "beams with three columns": (spoil("beams/bodies", np.ones((4, 3), np.int32)), "/beams/bodies"),
     "wrong length": (spoil("beams/length", np.full(4, 7.0)), "/beams/length"),
-    "factors of shear in the plane, one too few": (spoil("beams/shear_factor_y", np.ones(3)), "/beams/shear_factor_y"),
+    "factors of shear in the plane, one too few": (spoil("beams/shear_factor_y", np.ones(3)),
+                                                   "/beams/shear_factor_y"),
     "set of a body that is not there": (spoil("sets/root", np.array([5], np.int32)), "/sets/root"),
     "a beam given twice":
         (spoil("beams/bodies", np.array([[0, 1], [1, 2], [1, 2], [3, 4]], np.int32)),
@@ -80,10 +85,13 @@ for title, (change, part) in LATTICE_FILES.items():
 LatticeFiles.case("fracture of sections without sides", ["scene.yaml"], "/beams/width",
                   frame_file(without_sides, FILE.replace("[beam]", "[beam, fracture]")))
 LatticeFiles.case("not HDF5", ["scene.yaml"], "bad.h5",
-                  lambda folder: [(folder / "scene.yaml").write_text(FILE), (folder / "bad.h5").write_text("no")])
+                  lambda folder: [(folder / "scene.yaml").write_text(FILE),
+                                  (folder / "bad.h5").write_text("no")])
 
-# A point is carried by the nearest body: the frame's last one, at x = 4 m, reaches half a beam and more.
-POINT = FILE.replace("bad.h5", "good.h5") + "load: {names: [p], p: {point: [4.1, 0], force: [0, 0, 1]}}\n"
+# A point is carried by the nearest body: the frame's last one, at x = 4 m, reaches half a beam and
+# more.
+POINT = (FILE.replace("bad.h5", "good.h5")
+         + "load: {names: [p], p: {point: [4.1, 0], force: [0, 0, 1]}}\n")
 
 
 def good_frame(folder):
@@ -99,24 +107,29 @@ class FarLoads(BadInput):
 
 
 for title, point, distance in (("far ahead", "40,0", "36 m"), ("far aside", "2,9", "9 m")):
-    FarLoads.case(title, ["scene.yaml", "-load_p_point", point], f"load: p: point: lies {distance} from the nearest body", good_frame)
+    FarLoads.case(title, ["scene.yaml", "-load_p_point", point],
+                  f"load: p: point: lies {distance} from the nearest body", good_frame)
 
 
 class Shapes(BadInput):
-    """Of an obstacle and of loose bodies: cubes that are no closed convex polyhedra with plane faces."""
+    """Of an obstacle and of loose bodies: cubes that are no closed convex polyhedra with plane
+    faces."""
 
 
 LOOSE = "integrator: explicit\nforces: [contact]\nlattice_file: good.h5\ncontact: {young: 1e7}\n"
-CUBE = np.array([[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))], float) / 2
+CUBE = np.array([[x, y, z] for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))],
+                float) / 2
 FACES = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
-DENTED = np.vstack([CUBE[:6], [[0.1, 0.1, 0.1]], CUBE[7:]])  # a corner that no plane of another face is beyond
+# a corner that no plane of another face is beyond
+DENTED = np.vstack([CUBE[:6], [[0.1, 0.1, 0.1]], CUBE[7:]])
 SHAPES = {
     "without a top": (CUBE, FACES[:1] + FACES[2:], "faces must close"),
     "without two sides": (CUBE, FACES[:2] + FACES[2:5:2], "faces must close"),
     "a face twice": (CUBE, FACES + FACES[:1], "faces must close"),
     "a face the other way round": (CUBE, FACES[:5] + [FACES[5][::-1]], "faces must close"),
     "vertices of each face its own":
-        (CUBE[np.concatenate(FACES)], [list(range(4 * k, 4 * k + 4)) for k in range(6)], "faces must close"),
+        (CUBE[np.concatenate(FACES)], [list(range(4 * k, 4 * k + 4)) for k in range(6)],
+         "faces must close"),
     "flat": (CUBE * [1, 1, 0], FACES, "volume > 0"),
     "inside out": (CUBE, [face[::-1] for face in FACES], "counter-clockwise"),
     "dented": (DENTED, FACES, "not plane"),
@@ -124,7 +137,8 @@ SHAPES = {
 
 
 def loose_body(path):
-    fl.Lattice(np.array([[0.0, 0, 9]]), np.array([[1.0, 0, 0, 0]]), np.array([920.0]), np.full((1, 3), 920 / 6),
+    fl.Lattice(np.array([[0.0, 0, 9]]), np.array([[1.0, 0, 0, 0]]), np.array([920.0]),
+               np.full((1, 3), 920 / 6),
                shapes=fl.Shapes.boxes(np.ones((1, 3)))).write(path)
 
 
@@ -143,7 +157,9 @@ def spoilt_obstacle(vertices, corners):
     def prepare(folder):
         loose_body(folder / "good.h5")
         spoil_shape(folder / "bad.h5", vertices, corners)
-        (folder / "scene.yaml").write_text(LOOSE + "obstacle: {names: [o], o: {shape: file, file: bad.h5}}\n")
+        (folder / "scene.yaml").write_text(LOOSE
+                                           + "obstacle: {names: [o], o: {shape: file, file: "
+                                             "bad.h5}}\n")
     return prepare
 
 
@@ -174,7 +190,8 @@ def nested(folder):
 
 
 Bodies.case("a body inside another", ["scene.yaml"], "wholly inside", nested)
-Bodies.case("more ranks than bodies", ["scene.yaml", "-sheet_length", "1", "-sheet_element_size", "1"], "ranks",
+Bodies.case("more ranks than bodies", ["scene.yaml", "-sheet_length", "1", "-sheet_element_size",
+                                       "1"], "ranks",
             scene_file(GOOD), ranks=(3,))  # 2 bodies
 
 

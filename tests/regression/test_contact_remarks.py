@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Contacts that cannot be right are said: overlaps at the start, speeds that jump over bodies, bodies pressed through
-others. Each run as a user would run it, at 1 and at 2 ranks."""
+"""Contacts that cannot be right are said: overlaps at the start, speeds that jump over bodies,
+bodies pressed through others. Each run as a user would run it, at 1 and at 2 ranks."""
 import sys
 import unittest
 
@@ -17,13 +17,15 @@ fracture: {tensile_strength: 6e5, energy: 15}
 contact: {young: 1e8, restitution: 0.5}
 time: {end: 0.02}
 """
-LEG = "obstacle: {{names: [leg], leg: {{shape: cylinder, base: [{x}, 0, -3], radius: 2, height: 6}}}}\n"
+LEG = ("obstacle: {{names: [leg], leg: {{shape: cylinder, base: [{x}, 0, -3], radius: 2, "
+       "height: 6}}}}\n")
 CUBE = """integrator: explicit
 forces: [contact]
 lattice_file: cube.h5
 contact: {young: 1e7}
 """
-PLATE = "obstacle: {names: [plate], plate: {shape: box, centre: [0, 0, -1.03], size: [4, 4, 0.05]}}\n"
+PLATE = ("obstacle: {names: [plate], "
+         "plate: {shape: box, centre: [0, 0, -1.03], size: [4, 4, 0.05]}}\n")
 
 
 def cubes(folder):
@@ -33,10 +35,12 @@ def cubes(folder):
 
 class Run(OneRun):
     def __init__(self, scene, *words, ranks=1):
-        super().__init__(scene, *words, ranks=ranks, prepare=cubes if "cube.h5" in scene else lambda folder: None)
+        super().__init__(scene, *words, ranks=ranks, prepare=cubes if "cube.h5" in scene
+                         else lambda folder: None)
 
     def warnings(self):
-        return [line for line in self.error.splitlines() if line.startswith("floe: warning: contact")]
+        return [line for line in self.error.splitlines()
+                if line.startswith("floe: warning: contact")]
 
 
 class Overlap(unittest.TestCase):
@@ -45,12 +49,14 @@ class Overlap(unittest.TestCase):
             run = Run(SHEET + LEG.format(x=11.5), ranks=ranks)
             self.assertEqual(run.code, 2, run.error)
             self.assertIsNone(run.summary)
-            for word in ("obstacle 'leg'", "overlap by 0.", "at most 0.1", "initial_overlap: stress_free"):
+            for word in ("obstacle 'leg'", "overlap by 0.", "at most 0.1",
+                         "initial_overlap: stress_free"):
                 self.assertIn(word, run.error)
 
     def test_taken_as_rest_it_breaks_nothing(self):
         for ranks in (1, 2):
-            run = Run(SHEET + LEG.format(x=11.5), "-contact_initial_overlap", "stress_free", ranks=ranks)
+            run = Run(SHEET + LEG.format(x=11.5), "-contact_initial_overlap", "stress_free",
+                      ranks=ranks)
             self.assertEqual(run.code, 0, run.error)
             self.assertEqual(run.summary["beams_broken"], 0)
             self.assertLess(run.summary["energy"]["contact"], 1)
@@ -97,7 +103,8 @@ class Passing(unittest.TestCase):
         self.assertIn("speed of obstacle 'leg'", run.error)
 
     def test_a_cube_that_a_plate_cannot_hold(self):
-        scene = CUBE + "time: {end: 0.1}\ninitial: {names: [i], i: {set: all, velocity: [0, 0, -50]}}\n" + PLATE
+        scene = (CUBE + PLATE + "time: {end: 0.1}\n"
+                 "initial: {names: [i], i: {set: all, velocity: [0, 0, -50]}}\n")
         for ranks in (1, 2):
             run = Run(scene, ranks=ranks)
             self.assertEqual(run.code, 0, run.error)
@@ -107,7 +114,8 @@ class Passing(unittest.TestCase):
                 self.assertIn(word, run.warnings()[0])
 
     def test_a_floor_that_rises_through_a_soft_cube(self):
-        floor = "obstacle: {names: [floor], floor: {shape: halfspace, point: [0, 0, -0.6], velocity: [0, 0, 5]}}\n"
+        floor = ("obstacle: {names: [floor], "
+                 "floor: {shape: halfspace, point: [0, 0, -0.6], velocity: [0, 0, 5]}}\n")
         held = "boundary: {names: [b], b: {set: all, fix: x y z rx ry rz}}\n"
         run = Run(CUBE + "time: {end: 0.5}\n" + floor + held)
         self.assertEqual(run.code, 0, run.error)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Explicit runs that must not go on: a step above the stable one, a run that blows up, options of solvers.
+"""Explicit runs that must not go on: a step above the stable one, a run that blows up, options of
+solvers.
 
 Each runs in a temporary folder of its own, as a user would run it, at 1 and at 2 ranks.
 """
@@ -41,8 +42,8 @@ class ExplicitLimits(unittest.TestCase):
 
     def test_a_run_that_blows_up_stops_and_says_where(self):
         for ranks in (1, 2):
-            run = OneRun(PULL, "-time_dt", repr(1.05 * self.stable), "-time_allow_unstable", "-time_end", "0.5",
-                      ranks=ranks)
+            run = OneRun(PULL, "-time_dt", repr(1.05 * self.stable), "-time_allow_unstable",
+                         "-time_end", "0.5", ranks=ranks)
             self.assertEqual(run.code, 1, run.error)
             last = [line for line in run.error.splitlines() if line.startswith("floe: ")][-1]
             self.assertRegex(last, r"at time \S+ s")
@@ -55,8 +56,9 @@ class ExplicitLimits(unittest.TestCase):
 
     def test_a_number_that_is_not_finite_stops_it(self):
         # Too wide a limit to stop a velocity before it is infinite.
-        run = OneRun(PULL, "-time_dt", repr(3 * self.stable), "-time_allow_unstable", "-time_end", "0.5",
-                  "-limit_velocity", "1e300", "-limit_energy_error", "1e300", "-output_history", "0.5")
+        run = OneRun(PULL, "-time_dt", repr(3 * self.stable), "-time_allow_unstable",
+                     "-time_end", "0.5", "-limit_velocity", "1e300", "-limit_energy_error", "1e300",
+                     "-output_history", "0.5")
         self.assertEqual(run.code, 1, run.error)
         self.assertRegex(run.error, r"not finite at time \S+ s, body \d+ at \(")
 
@@ -66,7 +68,8 @@ class ExplicitLimits(unittest.TestCase):
         self.assertIn("limit: velocity 0.05 m/s", run.error)
 
     def test_options_of_solvers_are_refused(self):
-        for option, value in (("-snes_rtol", "0.1"), ("-ksp_type", "cg"), ("-pc_type", "lu"), ("-mat_type", "aij")):
+        for option, value in (("-snes_rtol", "0.1"), ("-ksp_type", "cg"), ("-pc_type", "lu"),
+                              ("-mat_type", "aij")):
             run = OneRun(PULL, option, value)
             self.assertEqual(run.code, 2, option + run.error)
             self.assertIn(option[1:], run.error)
@@ -75,7 +78,8 @@ class ExplicitLimits(unittest.TestCase):
 
     def test_types_of_petsc_that_cannot_step_this_are_refused(self):
         for kind, reason in (("basicsymplectic", "angular momentum"), ("beuler", "implicit"),
-                             ("alpha2", "implicit"), ("euler", "unstable"), ("nonsense", "leapfrog")):
+                             ("alpha2", "implicit"), ("euler", "unstable"),
+                             ("nonsense", "leapfrog")):
             run = OneRun(PULL, "-ts_type", kind)
             self.assertEqual(run.code, 2, kind + run.error)
             self.assertIn(kind, run.error)

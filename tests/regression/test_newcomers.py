@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What helps who is new to floe: numbers in other units are asked about, a scene says how its lattice file is made, the
-last line says where the results are."""
+"""What helps who is new to floe: numbers in other units are asked about, a scene says how its
+lattice file is made, the last line says where the results are."""
 import re
 import shutil
 import subprocess
@@ -40,9 +40,11 @@ class Units(NewcomerTest):
         for ranks in (1, 2):
             for words in (("-check",), ()):
                 said = self.warnings("-ice_young", "4", "-ice_density", "0.92", *words, ranks=ranks)
-                self.assertEqual(said, ["ice: density: 0.92 kg/m^3 is unusual for ice at sea (100 to 2000 kg/m^3): is it "
+                self.assertEqual(said, ["ice: density: 0.92 kg/m^3 is unusual for ice at sea (100 "
+                                        "to 2000 kg/m^3): is it "
                                         "meant in g/cm^3?",
-                                        "ice: young: 4 Pa is unusual for ice at sea (1e+06 to 1e+11 Pa): is it meant in GPa?"])
+                                        "ice: young: 4 Pa is unusual for ice at sea (1e+06 to "
+                                        "1e+11 Pa): is it meant in GPa?"])
 
     def test_a_sheet_that_sinks_by_its_units_is_asked_about(self):
         said = self.run_scene("-water_density", "1.01", "-check", code=2).stderr
@@ -62,17 +64,20 @@ class LatticeFiles(NewcomerTest):
                 shutil.copy(path, self.folder / "scene.yaml")
                 said = self.run_scene("-check", code=2).stderr
                 self.assertEqual(said.count("\n"), 1, said)
-                found = re.fullmatch(r"floe: lattice_file: '(\S+)' is not there; make it with: floe (make_lattice .*)\n", said)
+                found = re.fullmatch(r"floe: lattice_file: '(\S+)' is not there; make it with: "
+                                     r"floe (make_lattice .*)\n", said)
                 self.assertIsNotNone(found, said)
                 self.assertEqual(found[2].split()[-1], found[1])
-                subprocess.run([launch.FLOE, *found[2].split()], cwd=self.folder, check=True, capture_output=True)
+                subprocess.run([launch.FLOE, *found[2].split()], cwd=self.folder, check=True,
+                               capture_output=True)
                 self.run_scene("-check")
 
     def test_another_file(self):
         (self.folder / "scene.yaml").write_text("forces: [beam]\nlattice_file: mine.h5\n")
         for ranks in (1, 2):
             said = self.run_scene(code=2, ranks=ranks).stderr
-            self.assertEqual(said, "floe: lattice_file: 'mine.h5' is not there; floe make_lattice --help tells how to make one\n")
+            self.assertEqual(said, "floe: lattice_file: 'mine.h5' is not there; "
+                                   "floe make_lattice --help tells how to make one\n")
 
 
 class Results(NewcomerTest):
@@ -80,7 +85,8 @@ class Results(NewcomerTest):
         (self.folder / "scene.yaml").write_text(FLOATING)
         for words, where in (((), "out/scene"), (("-output_dir", "elsewhere"), "elsewhere")):
             last = self.run_scene(*words).stdout.splitlines()[-1]
-            self.assertEqual(last, f"results: {where}/ (summary.json, history.csv; fields.xmf for ParaView)")
+            self.assertEqual(last, f"results: {where}/ (summary.json, history.csv; "
+                                   "fields.xmf for ParaView)")
             for name in ("summary.json", "history.csv", "fields.xmf"):
                 self.assertTrue((self.folder / where / name).exists())
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The tools answer bad input with one line and exit code 2: folders that are not there, damaged files, runs without that
-result, times out of range, pictures that cannot be drawn.
+"""The tools answer bad input with one line and exit code 2: folders that are not there, damaged
+files, runs without that result, times out of range, pictures that cannot be drawn.
 """
 import os
 import shutil
@@ -23,11 +23,13 @@ class ToolsBadInput(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = temporary_folder(cls.addClassCleanup)
         (cls.folder / "s.yaml").write_text(SCENE)
-        subprocess.run([str(FLOE), "s.yaml"], cwd=cls.folder, check=True, capture_output=True, timeout=600)
+        subprocess.run([str(FLOE), "s.yaml"], cwd=cls.folder, check=True, capture_output=True,
+                       timeout=600)
 
     def refused(self, tool, *words, part=""):
         with self.subTest(tool=tool, words=words):
-            run = subprocess.run([sys.executable, str(TOOLS / tool), *words], cwd=self.folder, capture_output=True,
+            run = subprocess.run([sys.executable, str(TOOLS / tool), *words], cwd=self.folder,
+                                 capture_output=True,
                                  text=True, timeout=600, env={**os.environ, "FLOE": str(FLOE)})
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
             self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)

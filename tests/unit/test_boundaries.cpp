@@ -45,8 +45,7 @@ TEST(Boundaries, ComponentsOfAllAreHeld) {
   head.fixed[5] = true;
   tail.fixed = {false, true, false, false, false, false};
   using Bits = std::vector<std::uint8_t>;
-  EXPECT_EQ(prescribed_components(lattice, {head, tail}),
-            (Bits{x | rz, x | rz, x | y | rz, y, y}));
+  EXPECT_EQ(prescribed_components(lattice, {head, tail}), (Bits{x | rz, x | rz, x | y | rz, y, y}));
   EXPECT_EQ(prescribed_components(lattice, {}), Bits(5, 0));
 }
 
