@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What helps who is new to floe: numbers in other units are asked about, a scene says how its
 lattice file is made, the last line says where the results are."""
+import csv
 import re
 import shutil
 import subprocess
@@ -89,6 +90,20 @@ class Results(NewcomerTest):
                                    "fields.xmf for ParaView)")
             for name in ("summary.json", "history.csv", "fields.xmf"):
                 self.assertTrue((self.folder / where / name).exists())
+
+
+class ReadMe(NewcomerTest):
+    def test_the_scene_of_ones_own(self):
+        """README's three lines, and the number that it gives."""
+        readme = (launch.REPOSITORY / "README.md").read_text()
+        scene = re.search(r"`mine.yaml`:.*?\n\n((?:    [^\n]*\n)+)", readme, re.S)[1]
+        sinks = float(re.search(r"he sinks by (\S+) mm", readme)[1])
+        (self.folder / "scene.yaml").write_text("".join(line[4:] for line in
+                                                        scene.splitlines(keepends=True)))
+        self.run_scene()
+        with open(self.folder / "out/scene/history.csv", newline="") as file:
+            row = list(csv.DictReader(file))[-1]
+        self.assertEqual(round(-1e3 * float(row["man_load_displacement_z"]), 2), sinks)
 
 
 if __name__ == "__main__":
