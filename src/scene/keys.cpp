@@ -249,7 +249,8 @@ constexpr std::array table{
         "checkpoint: restart", text, "(none: from t = 0)", "", "",
         "dynamics: the checkpoint.h5 to go on from, in the same output folder; its step dt is "
         "kept, time: end may be later; the same to the last bit on as many ranks, but for implicit "
-        "runs on several, which MUMPS rounds differently each time (1e-14)"},
+        "runs on several, which MUMPS rounds differently each time (displacements by up to 2e-15 "
+        "of the largest)"},
 };
 
 }  // namespace

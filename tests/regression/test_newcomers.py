@@ -81,6 +81,27 @@ class LatticeFiles(NewcomerTest):
                                    "floe make_lattice --help tells how to make one\n")
 
 
+class Words(NewcomerTest):
+    def test_words_of_a_choice_in_capitals(self):
+        (self.folder / "scene.yaml").write_text("model: {planar: False}\n" + FLOATING)
+        for value in ("False", "FALSE", "auto"):
+            self.run_scene("-model_planar", value, "-check")
+        said = self.run_scene("-model_planar", "True", "-check", code=2).stderr
+        self.assertIn("model: planar: true leaves out what this scene needs", said)
+
+    def test_help_of_a_section_and_of_a_key(self):
+        def said(*words, code=0):
+            done = launch.run("-help", *words, cwd=self.folder)
+            self.assertEqual(done.returncode, code, done.stderr)
+            return done.stdout + done.stderr
+        section = re.findall(r"^  (-\w+)", said("sheet"), re.M)
+        self.assertIn("-sheet_mesh_file", section)
+        self.assertTrue(all(key.startswith("-sheet_") for key in section), section)
+        for name in ("sheet_length", "sheet: length"):
+            self.assertEqual(re.findall(r"^  (-\w+)", said(name), re.M), ["-sheet_length"])
+        self.assertIn("there is no section or key 'shett'", said("shett", code=2))
+
+
 class Results(NewcomerTest):
     def test_the_last_line_says_where_they_are(self):
         (self.folder / "scene.yaml").write_text(FLOATING)
