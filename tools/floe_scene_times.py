@@ -2,8 +2,8 @@
 
 Each scene is run by its own command, on one rank, in a folder of its own. The time is the
 processor's (user and system): on an idle core the clock shows the same, on a busy machine it says
-more than the clock. A run that takes longer than wanted is stopped, and its whole time follows from
-the part of it that was made.
+more than the clock. A run in time that takes longer than wanted is stopped, and its whole time
+follows from the part of it that was made.
 """
 import json
 import os
@@ -31,8 +31,16 @@ def seconds_so_far(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def timed(command, folder, environment, most):
-    """Processor time of a command [s], which is asked to stop after `most` of it."""
+def steps_in_time(out):
+    """Whether a run is dynamic and its history has a row after that of time 0."""
+    options, history = out / "options.yaml", out / "history.csv"
+    return (history.exists() and history.read_text().count("\n") > 2
+            and "integrator: quasistatic" not in options.read_text())
+
+
+def timed(command, folder, environment, most, out):
+    """Processor time of a command [s], which is asked to stop after `most` of it if it steps in
+    time."""
     process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL)
     asked = False
@@ -40,7 +48,7 @@ def timed(command, folder, environment, most):
         pid, _, usage = os.wait4(process.pid, os.WNOHANG)
         if pid:
             return usage.ru_utime + usage.ru_stime
-        if not asked and seconds_so_far(process.pid) > most:
+        if not asked and seconds_so_far(process.pid) > most and steps_in_time(out):
             process.send_signal(signal.SIGTERM)
             asked = True
         time.sleep(0.02)
@@ -65,11 +73,12 @@ def row(floe, root, scene, subject, environment, most):
             subprocess.run([root / "tools" / words[1], *words[2:]], cwd=folder, env=environment,
                            check=True,
                            stdout=subprocess.DEVNULL)
-        seconds = timed([floe, *last[1:]], folder, environment, most)
-        summary = json.loads((folder / f"out/{scene}/summary.json").read_text())
+        out = folder / "out" / scene
+        seconds = timed([floe, *last[1:]], folder, environment, most, out)
+        summary = json.loads((out / "summary.json").read_text())
         about = ""
         if summary["status"] == "stopped":
-            options = (folder / f"out/{scene}/options.yaml").read_text()
+            options = (out / "options.yaml").read_text()
             end = float(re.search(r"^time:.*?^  end: (\S+)", options, re.MULTILINE | re.DOTALL)[1])
             seconds, about = seconds * end / summary["time"], "about "
         cells = (f"`{scene}`", subject, summary["integrator"], str(summary["bodies"]),
