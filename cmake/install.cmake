@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, so that it works wherever the prefix is and is moved to. Two components: `program`,
-# and `development` for find_package(floe) (two packages in Debian).
+# What `cmake --install` puts where, so that it works wherever the prefix is and is moved to. Two
+# components: `program`, and `development` for find_package(floe) (two packages in Debian).
 include(CMakePackageConfigHelpers)
 
 # -- the program and its library ------------------------------------------------------------------
@@ -7,10 +7,12 @@ file(RELATIVE_PATH lib_from_bin ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FUL
 set_target_properties(floe PROPERTIES INSTALL_RPATH "$ORIGIN/${lib_from_bin}")
 install(TARGETS floe RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 install(TARGETS libfloe floe_usage EXPORT floe
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program NAMELINK_COMPONENT development)
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program
+                NAMELINK_COMPONENT development)
 foreach(level IN LISTS levels)
   install(TARGETS libfloe_${level}
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} COMPONENT program NAMELINK_SKIP)
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} COMPONENT program
+                  NAMELINK_SKIP)
 endforeach()
 
 # -- its tools, scenes, manual and documentation --------------------------------------------------
@@ -30,23 +32,28 @@ add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/floe.1.gz
                    COMMAND floe -help_man > floe.1 COMMAND gzip -9nf floe.1
                    WORKING_DIRECTORY ${PROJECT_BINARY_DIR} DEPENDS floe VERBATIM)
 add_custom_target(manual ALL DEPENDS ${PROJECT_BINARY_DIR}/floe.1.gz)
-install(FILES ${PROJECT_BINARY_DIR}/floe.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/floe.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+        COMPONENT program)
 
 set(doc ${CMAKE_INSTALL_DATADIR}/doc/floe)
-install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/CITATION.cff
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+              ${PROJECT_SOURCE_DIR}/CITATION.cff
               ${PROJECT_SOURCE_DIR}/LICENSE
         DESTINATION ${doc} COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${doc} COMPONENT program)
 
 # -- for programs that use the library ------------------------------------------------------------
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/floe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/floe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${doc} COMPONENT development)
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/floe)
-install(EXPORT floe NAMESPACE floe:: FILE floe-targets.cmake DESTINATION ${config} COMPONENT development)
+install(EXPORT floe NAMESPACE floe:: FILE floe-targets.cmake DESTINATION ${config}
+        COMPONENT development)
 # The headers show PETSc's own types, so a program needs the PETSc that the library was built with.
 string(REGEX MATCH "^[0-9]+\\.[0-9]+" FLOE_PETSC_VERSION ${PETSC_VERSION})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/floe-config.cmake.in floe-config.cmake
                               INSTALL_DESTINATION ${config})
 write_basic_package_version_file(floe-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/floe-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/floe-config-version.cmake
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/floe-config.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/floe-config-version.cmake
         DESTINATION ${config} COMPONENT development)

@@ -1,4 +1,5 @@
-# `cpack` in a build folder of the preset `package` makes the Debian packages floe and libfloe-dev (tools/package).
+# `cpack` in a build folder of the preset `package` makes the Debian packages floe and libfloe-dev
+# (tools/package).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME floe)
 set(CPACK_PACKAGE_CONTACT "The floe developers <floe@localhost>")
@@ -21,10 +22,13 @@ or many (MPI), with PETSc.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "python3:any, python3-h5py, python3-matplotlib, python3-numpy, python3-pil")
-# Without mpiexec there are runs on one process; on the reference BLAS they are about five times slower.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS
+    "python3:any, python3-h5py, python3-matplotlib, python3-numpy, python3-pil")
+# Without mpiexec there are runs on one process; on the reference BLAS they are about five times
+# slower.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "openmpi-bin, libopenblas0-serial | libopenblas0")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libfloe-dev, python3-paraview, xvfb, xauth, libgl1-mesa-dri, ffmpeg")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS
+    "libfloe-dev, python3-paraview, xvfb, xauth, libgl1-mesa-dri, ffmpeg")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/postinst
                                                ${PROJECT_SOURCE_DIR}/cmake/debian/prerm
                                                ${PROJECT_SOURCE_DIR}/cmake/debian/triggers)

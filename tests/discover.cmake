@@ -1,8 +1,10 @@
-# Run by ctest before it looks at its tests: adds an entry for each case of the GoogleTest programs for several ranks, at
-# 1, 2 and 3 ranks (some at 4), and for each case of the Python tests. What is set here comes from CMakeLists.txt: source,
-# mpi_tests (folder and program, by a blank), mpiexec, environment, floe, hangs [s].
+# Run by ctest before it looks at its tests: adds an entry for each case of the GoogleTest programs
+# for several ranks, at 1, 2 and 3 ranks (some at 4), and for each case of the Python tests. What is
+# set here comes from CMakeLists.txt: source, mpi_tests (folder and program, by a blank), mpiexec,
+# environment, floe, hangs [s].
 
-# Long forms take long. (CMake's own function, which comes first, leaves the names of its tests in PROGRAM_TESTS.)
+# Long forms take long. (CMake's own function, which comes first, leaves the names of its tests in
+# PROGRAM_TESTS.)
 if("$ENV{FLOE_FULL}")
   set(hangs 36000)
   foreach(test IN LISTS unit_tests_TESTS verification_tests_TESTS)
@@ -20,7 +22,8 @@ foreach(test IN LISTS mpi_tests)
     endforeach()
     continue()
   endif()
-  execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY TIMEOUT 600)
+  execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed
+                  COMMAND_ERROR_IS_FATAL ANY TIMEOUT 600)
   string(REGEX REPLACE " +#[^\n]*" "" listed "${listed}")
   string(REPLACE "\n" ";" listed "${listed}")
   foreach(line IN LISTS listed)
@@ -33,7 +36,8 @@ foreach(test IN LISTS mpi_tests)
       foreach(ranks IN LISTS all_ranks)
         set(name ${folder}.np${ranks}.${suite}${case})
         add_test(${name} ${mpiexec} -n ${ranks} ${program} --gtest_filter=${suite}${case})
-        set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks} TIMEOUT ${hangs} ENVIRONMENT "${environment}"
+        set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks} TIMEOUT ${hangs}
+                             ENVIRONMENT "${environment}"
                              SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
       endforeach()
     elseif(line MATCHES "\\.$")
@@ -43,7 +47,8 @@ foreach(test IN LISTS mpi_tests)
 endforeach()
 
 # Debian's Python: h5py and numpy are its packages, whatever other Python stands first on the PATH.
-execute_process(COMMAND /usr/bin/python3 ${source}/list_cases.py OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY
+execute_process(COMMAND /usr/bin/python3 ${source}/list_cases.py OUTPUT_VARIABLE listed
+                COMMAND_ERROR_IS_FATAL ANY
                 TIMEOUT 600 OUTPUT_STRIP_TRAILING_WHITESPACE)
 string(REPLACE "\n" ";" listed "${listed}")
 foreach(line IN LISTS listed)
@@ -52,13 +57,15 @@ foreach(line IN LISTS listed)
   set(case ${CMAKE_MATCH_2})
   get_filename_component(name ${script} NAME_WE)
   set(processors 1)
-  if(name MATCHES "_ranks$")  # at every step each of two ranks waits for the other, and both for a core if another test has it
+  # At every step each of two ranks waits for the other, and both for a core if another test has it.
+  if(name MATCHES "_ranks$")
     set(processors 2)
   endif()
   if(case)
     string(APPEND name .${case})
   endif()
   add_test(${name} /usr/bin/python3 ${script} ${case})
-  set_tests_properties(${name} PROPERTIES PROCESSORS ${processors} TIMEOUT ${hangs} ENVIRONMENT "${environment};FLOE=${floe}"
+  set_tests_properties(${name} PROPERTIES PROCESSORS ${processors} TIMEOUT ${hangs}
+                       ENVIRONMENT "${environment};FLOE=${floe}"
                        SKIP_REGULAR_EXPRESSION "OK \\(skipped=1\\)")
 endforeach()

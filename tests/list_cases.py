@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Lists the cases of the Python tests, one a line: folder/module Class.method. A module that cannot be imported is a line
-without a case: run as a whole, it fails and says why."""
+"""Lists the cases of the Python tests, one a line: folder/module Class.method. A module that cannot
+be imported is a line without a case: run as a whole, it fails and says why."""
 import importlib.util
 import sys
 import unittest
@@ -21,7 +21,8 @@ def cases_of(script):
         return [""]
     loader = unittest.TestLoader()
     classes = [c for c in vars(module).values()
-               if isinstance(c, type) and issubclass(c, unittest.TestCase) and c.__module__ == script.stem]
+               if isinstance(c, type) and issubclass(c, unittest.TestCase)
+               and c.__module__ == script.stem]
     return [f"{c.__name__}.{name}" for c in classes for name in loader.getTestCaseNames(c)]
 
 

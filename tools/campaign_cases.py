@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The paper's cases: sheets, meshes, tests, how each is run and what is kept of it. Used by floe campaign and
-floe campaign_report. SI units."""
+"""The paper's cases: sheets, meshes, tests, how each is run and what is kept of it. Used by floe
+campaign and floe campaign_report. SI units."""
 import math
 from dataclasses import dataclass
 from typing import Callable
@@ -46,15 +46,20 @@ class Sheet:
         return 6 if (self.length, self.thickness, self.factor) == (160, 0.5, 2) else 10
 
 
-SHEETS = [Sheet(length, thickness, factor) for length in LENGTHS for thickness in THICKNESSES for factor in FACTORS]
+SHEETS = [Sheet(length, thickness, factor) for length in LENGTHS for thickness in THICKNESSES
+          for factor in FACTORS]
 
 
 def gauge(output, axis):
-    """Distance of the mean places of a pair of opposite edge sets at rest, and its change by the end [m]."""
+    """Distance of the mean places of a pair of opposite edge sets at rest, and its change by the
+    end [m]."""
     k = "xyz".index(axis)
     low, high = (output.sets[name] for name in SIDES[axis])
     moved = output.field("bodies_displacement", output.times[-1])[:, k]
-    return output.position[high, k].mean() - output.position[low, k].mean(), moved[high].mean() - moved[low].mean()
+    return output.position[high,
+                           k].mean() - output.position[low,
+                                                       k].mean(), moved[high].mean() - moved[
+                                                           low].mean()
 
 
 def strain(output, axis):
@@ -71,19 +76,23 @@ def stress(output, sheet, boundary, axis):
 def pulled(sheet, integrator, start):
     if integrator == "quasistatic":
         return {"boundary_right_displacement": f"{STRAIN * sheet.length:.12g},0,0"}
-    # Waves run between the two edges and back in 2 L/c: a speed that rises over a whole number of these periods
-    # leaves no ringing behind.
+    # Waves run between the two edges and back in 2 L/c: a speed that rises over a whole number of
+    # these periods leaves no ringing behind.
     ramp = round(4 * sheet.length / math.sqrt(0.8 * YOUNG / ICE), 6) if start == "smooth" else 0
     return {"boundary_right_ramp": ramp, "time_end": STRAIN * sheet.length / SPEED + ramp / 2}
 
 
 def young(output, sheet):
-    """E as the paper has it, with the strain over the gauge length, and of the springs alone: what they store,
-    (1/2) E eps^2 L^2 h, knows nothing of the dashpots' force, and ringing adds its own small energy only (it does no
-    work against the static state: the edges do not take part in it)."""
-    row = {key: float(output.summary[key]) for key in ("E", "E_over_Eb", "E_over_Estar", "E_gauge_over_Eb")}
+    """E as the paper has it, with the strain over the gauge length, and of the springs alone: what
+    they store, (1/2) E eps^2 L^2 h, knows nothing of the dashpots' force, and ringing adds its own
+    small energy only (it does no work against the static state: the edges do not take part in
+    it)."""
+    row = {key: float(output.summary[key]) for key in ("E", "E_over_Eb", "E_over_Estar",
+                                                       "E_gauge_over_Eb")}
     over_length = gauge(output, "x")[1] / sheet.length
-    row["E_stored_over_Eb"] = 2 * output.summary["energy"]["strain"] / (over_length**2 * sheet.length**2 * sheet.thickness * YOUNG)
+    row["E_stored_over_Eb"] = 2 * output.summary["energy"]["strain"] / (over_length**2
+                                                                        * sheet.length**2
+                                                                        * sheet.thickness * YOUNG)
     row["poisson"] = -strain(output, "y") / strain(output, "x")
     return {"row": row}
 
@@ -91,9 +100,11 @@ def young(output, sheet):
 def loaded(sheet, integrator, start):
     if integrator == "quasistatic":
         return {}
-    # Drag is critical for heaving, 2 sqrt(rho_w g rho_i h) per area; all slower than it has died out after 14/omega.
+    # Drag is critical for heaving, 2 sqrt(rho_w g rho_i h) per area; all slower than it has died
+    # out after 14/omega.
     omega = math.sqrt(WATER * GRAVITY / (ICE * sheet.thickness))
-    return {"water_drag_linear": round(2 * omega * ICE * sheet.thickness, 1), "time_end": round(1 + 14 / omega, 2)}
+    return {"water_drag_linear": round(2 * omega * ICE * sheet.thickness, 1),
+            "time_end": round(1 + 14 / omega, 2)}
 
 
 def deflection(output, sheet):
@@ -101,7 +112,8 @@ def deflection(output, sheet):
     length, w0 = plate(output.options())
     r, w = profile(output, output.options())
     r, w = np.concatenate([[0], r]), np.concatenate([[output.summary["deflection_max"]], w])
-    return {"row": {key: float(output.summary[key]) for key in ("deflection_max", "deflection_over_wyman")},
+    return {"row": {key: float(output.summary[key])
+                    for key in ("deflection_max", "deflection_over_wyman")},
             "profile": np.stack([r / length, w / w0, r / (sheet.length / 2)], axis=1).tolist()}
 
 
@@ -113,13 +125,17 @@ def both_ways(sign):
     """All four edges moved out in x by half the strain, in y too (sign 1) or in (sign -1)."""
     def options(sheet, integrator, start):
         half = STRAIN * sheet.length / 2
-        moved = {"left": (-half, 0), "right": (half, 0), "bottom": (0, -sign * half), "top": (0, sign * half)}
-        return {f"boundary_{side}_displacement": f"{x:.12g},{y:.12g},0" for side, (x, y) in moved.items()}
+        moved = {"left": (-half, 0), "right": (half, 0), "bottom": (0, -sign * half),
+                 "top": (0, sign * half)}
+        return {f"boundary_{side}_displacement": f"{x:.12g},{y:.12g},0"
+                for side, (x, y) in moved.items()}
     return options
 
 
 def two_stresses(output, sheet):
-    return stress(output, sheet, "right", "x"), stress(output, sheet, "top", "y"), strain(output, "x"), strain(output, "y")
+    return stress(output, sheet, "right", "x"), stress(output, sheet, "top",
+                                                       "y"), strain(output, "x"), strain(output,
+                                                                                         "y")
 
 
 def bulk(output, sheet):
@@ -139,8 +155,8 @@ def slid(sheet, integrator, start):
 
 
 def sliding(output, sheet):
-    """Mean shear stress of the moved edge over its slope to the held one, over the gauge length. The other two sides are free, so a
-    continuum has less than G too (floe_plate.simple_shear)."""
+    """Mean shear stress of the moved edge over its slope to the held one, over the gauge length.
+    The other two sides are free, so a continuum has less than G too (floe_plate.simple_shear)."""
     length = gauge(output, "y")[0]
     slope = output.history("top_displacement_x")[-1] / length
     return {"row": {"slide_over_Eb": stress(output, sheet, "top", "x") / slope / YOUNG}}
@@ -161,8 +177,10 @@ def moving(scene):
 
 
 TESTS = {
-    "tension": Test({"quasistatic": "input/tension.yaml", **moving("input/tension_explicit.yaml")}, pulled, young),
-    "bending": Test({"quasistatic": "input/bending.yaml", **moving("input/bending_explicit.yaml")}, loaded, deflection, 20),
+    "tension": Test({"quasistatic": "input/tension.yaml", **moving("input/tension_explicit.yaml")},
+                    pulled, young),
+    "bending": Test({"quasistatic": "input/bending.yaml", **moving("input/bending_explicit.yaml")},
+                    loaded, deflection, 20),
     "compression": Test({"quasistatic": "input/compression.yaml"}, shortened, young),
     "biaxial": Test({"quasistatic": "input/biaxial.yaml"}, both_ways(1), bulk),
     "shear": Test({"quasistatic": "input/shear.yaml"}, both_ways(-1), rigidity),
@@ -198,25 +216,31 @@ class Case:
     def scene(self, integrator, start):
         """Scene file and command-line options."""
         sheet = self.sheet
-        options = {"sheet_length": sheet.length, "sheet_width": sheet.length, "sheet_thickness": sheet.thickness,
+        options = {"sheet_length": sheet.length, "sheet_width": sheet.length,
+                   "sheet_thickness": sheet.thickness,
                    "sheet_element_size": sheet.element_size, "sheet_seed": self.seed}
         options |= TESTS[self.test].options(sheet, integrator, start)
         if integrator == "implicit":
             options["integrator"] = integrator
-        return TESTS[self.test].scenes[integrator], [word for key, value in options.items() for word in (f"-{key}", f"{value}")]
+        return TESTS[self.test].scenes[integrator], [word for key, value in options.items()
+                                                     for word in (f"-{key}", f"{value}")]
 
     def evaluate(self, output):
         """What is kept of a run: a row of numbers, and for bending a profile."""
         summary = output.summary
-        row = {"case": self.name, "L": float(self.sheet.length), "h": float(self.sheet.thickness), "l": float(self.sheet.element_size),
-               "N": int(summary["bodies"]), "seed": self.seed, "integrator": summary["integrator"], "version": summary["version"]}
+        row = {"case": self.name, "L": float(self.sheet.length), "h": float(self.sheet.thickness),
+               "l": float(self.sheet.element_size),
+               "N": int(summary["bodies"]), "seed": self.seed, "integrator": summary["integrator"],
+               "version": summary["version"]}
         found = TESTS[self.test].evaluate(output, self.sheet)
         return found | {"row": row | found["row"], "wall_s": summary["wall_s"]}
 
 
 def select(only="", meshes=0, tests=PAPER):
-    """Cases whose name contains one of the texts in `only`; `meshes` per sheet instead of the paper's number."""
+    """Cases whose name contains one of the texts in `only`; `meshes` per sheet instead of the
+    paper's number."""
     texts = [text for text in only.split(",") if text]
     chosen = [Case(test, sheet, number) for test in tests for sheet in SHEETS
-              for number in range(1, (meshes or sheet.meshes) + 1) if sheet.length >= TESTS[test].smallest]
+              for number in range(1, (meshes or sheet.meshes) + 1)
+              if sheet.length >= TESTS[test].smallest]
     return [case for case in chosen if not texts or any(text in case.name for text in texts)]

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Reads an output folder of floe: summary.json, options.yaml, lattice.h5, history.csv, fields. SI units everywhere.
+"""Reads an output folder of floe: summary.json, options.yaml, lattice.h5, history.csv, fields. SI
+units everywhere.
 
 Also that of a run that is under way, was killed or has failed: what is there is whole.
 """
@@ -51,9 +52,11 @@ class Lattice:
             self.shapes = {name: data[:] for name, data in file.get("shapes", {}).items()}
 
     def plans(self):
-        """Per body the corners k x 2 [m], seen from above, of its most upward face, in the reference state."""
+        """Per body the corners k x 2 [m], seen from above, of its most upward face, in the
+        reference state."""
         body_of = np.repeat(np.arange(len(self.position)), np.diff(self.shapes["vertex_of"]))
-        placed = np.einsum("vij,vj->vi", matrices(self.orientation)[body_of], self.shapes["vertices"])
+        placed = np.einsum("vij,vj->vi", matrices(self.orientation)[body_of],
+                           self.shapes["vertices"])
         placed += self.position[body_of]
         first, corners = self.shapes["corner_of"][:-1], self.shapes["corners"]
         a, b, c = (placed[corners[first + k]] for k in range(3))
@@ -67,7 +70,8 @@ class Lattice:
 
 
 def frames_of(folder):
-    """All frames in a folder, in order of time: [(time, file, group)]. None is ever there in part."""
+    """All frames in a folder, in order of time: [(time, file, group)]. None is ever there in
+    part."""
     folder = Path(folder)
     files = [file for file in folder.glob("fields/*.h5") if file.stem.isdigit()]
     if not (folder / "fields").is_dir():  # of floe 0.1: a single file
@@ -75,12 +79,14 @@ def frames_of(folder):
     frames = []
     for path in files:
         with reading(path), h5py.File(path) as file:
-            frames += [(float(group.attrs["time"]), path, name) for name, group in file.items() if "time" in group.attrs]
+            frames += [(float(group.attrs["time"]), path, name) for name, group in file.items()
+                       if "time" in group.attrs]
     return sorted(frames)
 
 
 def rows_of(folder):
-    """Rows of history.csv as {column: text}; of a run that is under way without a last one that is not whole yet."""
+    """Rows of history.csv as {column: text}; of a run that is under way without a last one that is
+    not whole yet."""
     path = Path(folder) / "history.csv"
     with reading(path), open(path, newline="") as file:
         rows = list(csv.DictReader(line for line in file if line.endswith("\n")))
@@ -106,7 +112,8 @@ class Output(Lattice):
         self.times = np.array([time for time, _, _ in self._frames])
 
     def nearest(self, time, parser):
-        """Time of the frame nearest to `time` (None: the last one); ends the tool if the run has none, or none so late."""
+        """Time of the frame nearest to `time` (None: the last one); ends the tool if the run has
+        none, or none so late."""
         if not self._frames:
             parser.error(f"{self.folder} has no frame yet")
         last = self.times[-1]
@@ -132,7 +139,9 @@ class Output(Lattice):
         """Values m [Pa] of a quantity of BEAM_STRESSES, and its label."""
         if name == "axial":
             return self.field("beams_force", time)[:, 0] / self.beams["area"], BEAM_STRESSES[name]
-        return self.field("beams_stress", time)[:, {"tensile": 0, "shear": 1}[name]], BEAM_STRESSES[name]
+        return self.field("beams_stress", time)[:,
+                                                {"tensile": 0,
+                                                 "shear": 1}[name]], BEAM_STRESSES[name]
 
     def history(self, name):
         """One column of history.csv."""
@@ -162,8 +171,10 @@ class Output(Lattice):
 
 
 def scaled(values, unit):
-    """The values in a unit that suits their size, and its name: Pa -> kPa, MPa; m -> mm, um; rad -> mrad."""
-    steps = {"Pa": [(1e6, "MPa"), (1e3, "kPa"), (1, "Pa")], "m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm")],
+    """The values in a unit that suits their size, and its name: Pa -> kPa, MPa; m -> mm, um; rad ->
+    mrad."""
+    steps = {"Pa": [(1e6, "MPa"), (1e3, "kPa"), (1, "Pa")],
+             "m": [(1, "m"), (1e-3, "mm"), (1e-6, "µm")],
              "rad": [(1, "rad"), (1e-3, "mrad"), (1e-6, "µrad")]}[unit]
     largest = np.max(np.abs(values), initial=0)
     for size, name in steps:

@@ -6,7 +6,8 @@ import sys
 from paraview import simple as pv
 
 # Height above the water [m], red, green, blue: dark keels, pale sails.
-ICE = [-3.0, 0.05, 0.16, 0.30, -0.5, 0.20, 0.45, 0.62, -0.05, 0.62, 0.78, 0.88, 0.05, 0.86, 0.92, 0.96,
+ICE = [-3.0, 0.05, 0.16, 0.30, -0.5, 0.20, 0.45, 0.62, -0.05, 0.62, 0.78, 0.88, 0.05, 0.86, 0.92,
+       0.96,
        0.6, 0.97, 0.98, 1.0, 3.0, 1.0, 0.97, 0.90]
 GREY, BLUE = [0.45, 0.43, 0.41], [0.25, 0.5, 0.7]
 
@@ -31,7 +32,8 @@ def place_camera(view, job):
     """Parallel projection: lengths across the view are true."""
     azimuth, elevation = (math.radians(a) for a in job["view"])
     far = 10 * job["extent"]
-    towards = (math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation))
+    towards = (math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth),
+               math.sin(elevation))
     view.CameraFocalPoint = job["centre"]
     view.CameraPosition = [c + far * t for c, t in zip(job["centre"], towards)]
     view.CameraViewUp = [0, 0, 1] if abs(elevation) < 1.5 else [0, 1, 0]
@@ -90,15 +92,18 @@ def show_surroundings(job, view, towards):
         if o["plane"]:
             a, b, c = o["points"][:3]
             u, w = ([q - p for p, q in zip(a, end)] for end in (b, c))
-            normal = (u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0])
-            # It would hide the ice. (math.fsum: ParaView puts a sum of its own in the place of Python's.)
+            normal = (u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2],
+                      u[0] * w[1] - u[1] * w[0])
+            # It would hide the ice. (math.fsum: ParaView puts a sum of its own in the place of
+            # Python's.)
             behind = math.fsum(n * t for n, t in zip(normal, towards)) < 0
             display.Opacity = 0.12 if behind else 0.6
         if o["placements"]:
             moving.append((display, o["placements"]))
     if job["water"]:
         low, high = job["low"], job["high"]
-        level = [[low[0], low[1], 0], [high[0], low[1], 0], [high[0], high[1], 0], [low[0], high[1], 0]]
+        level = [[low[0], low[1], 0], [high[0], low[1], 0], [high[0], high[1], 0],
+                 [low[0], high[1], 0]]
         display = pv.Show(polygons(level, [[0, 1, 2, 3]]), view)
         display.SetRepresentationType("Surface")
         display.DiffuseColor = display.AmbientColor = BLUE

@@ -88,6 +88,7 @@ struct Scene {
     double energy_error = 0.1;          ///< of the energies that moved
     double steps = 1e11, frames = 1e5;  ///< a run that needs more is refused
     double disk = 1000;                 ///< [GB]
+    double memory = 0;                  ///< [GB]; 0: by what is free
   } limit;
   std::vector<Initial> initials;
   struct {

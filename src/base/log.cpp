@@ -14,6 +14,9 @@
 namespace floe {
 namespace {
 
+// Progress: nothing before, and at least between two lines of a terminal's bar or of other output.
+constexpr double quiet_seconds = 1, bar_seconds = 0.2, line_seconds = 5;
+
 constexpr int number_of_events = static_cast<int>(Event::count);
 
 std::array<double, number_of_events>& totals() {
@@ -83,22 +86,41 @@ Progress::~Progress() {
 
 void Progress::update(double done, std::string_view note) {
   if (!active_) return;
-  constexpr double quiet_seconds = 1, bar_seconds = 0.2, line_seconds = 5;
   const double now = MPI_Wtime();
+  if (announced_ > 0) took_ = now - announced_;
+  announced_ = 0;
   if (now - start_ < quiet_seconds) return;
   if (now - last_print_ < (terminal_ ? bar_seconds : line_seconds)) return;
+  print(done, note, now);
+}
+
+void Progress::announce(double done, std::string_view note, double seconds) {
+  update(done, note);
+  if (!active_) return;
+  announced_ = MPI_Wtime();
+  const double expected = took_ > 0 ? took_ : seconds;
+  if (expected < line_seconds) return;
+  std::array<char, 32> time{};
+  std::snprintf(time.data(), time.size(), ", about %.2g s", expected);
+  print(done, std::string(note) + time.data(), announced_);
+}
+
+void Progress::print(double done, std::string_view note, double now) {
   last_print_ = now;
   shown_ = true;
   std::string plain = std::string(what_) + ": ", drawn = plain;
   if (total_ > 0) {
     const double share = std::clamp(done / total_, 0.0, 1.0);
-    const double left = share > 0 ? (now - start_) * (1 - share) / share : 0;
+    std::array<char, 32> left{};
+    if (share > 0)
+      std::snprintf(left.data(), left.size(), ", %.0f s left",
+                    (now - start_) * (1 - share) / share);
     constexpr int bar_width = 30;
     const auto full = static_cast<std::size_t>(share * bar_width);
     std::array<char, 80> text{};
-    std::snprintf(text.data(), text.size(), "%.0f %%, %.0f s left  ", 100 * share, left);
+    std::snprintf(text.data(), text.size(), "%.0f %%%s  ", 100 * share, left.data());
     plain += text.data();
-    std::snprintf(text.data(), text.size(), "] %3.0f %%  %.0f s left  ", 100 * share, left);
+    std::snprintf(text.data(), text.size(), "] %3.0f %%%s  ", 100 * share, left.data());
     drawn = std::string(what_) + " [" + std::string(full, '#') +
             std::string(bar_width - full, '.') + text.data();
   }

@@ -1,11 +1,11 @@
 #include "output/cracks.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "floe/base/hdf5.h"
 #include "floe/base/on_root.h"
 #include "floe/base/petsc.h"
+#include "lattice/pieces.h"
 
 namespace floe {
 namespace {
@@ -57,33 +57,18 @@ double CrackLog::update() {
   return fragments;
 }
 
-/// Pieces joined by unbroken beams (union-find with path halving).
+/// Pieces joined by unbroken beams, the heaviest first.
 void CrackLog::find_fragments(const std::vector<Break>& breaks) {
   const auto n = lattice_.bodies.position.size();
-  std::vector<std::int32_t> parent(n);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t b) {
-    while (parent[static_cast<std::size_t>(b)] != b) {
-      auto& up = parent[static_cast<std::size_t>(b)];
-      up = parent[static_cast<std::size_t>(up)];
-      b = up;
-    }
-    return b;
-  };
   std::vector<std::uint8_t> broken(lattice_.beams.bodies.size(), 0);
   for (const Break& b : breaks) broken[static_cast<std::size_t>(b.beam)] = 1;
-  for (std::size_t m = 0; m < broken.size(); ++m) {
-    if (broken[m] != 0) continue;
-    const auto [i, j] = lattice_.beams.bodies[m];
-    const std::int32_t a = root(i), b = root(j);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
+  const std::vector<std::int32_t> piece = connected_pieces(lattice_, broken);
   std::vector<double> mass(n, 0);
   for (std::size_t b = 0; b < n; ++b)
-    mass[static_cast<std::size_t>(root(static_cast<std::int32_t>(b)))] += lattice_.bodies.mass[b];
+    mass[static_cast<std::size_t>(piece[b])] += lattice_.bodies.mass[b];
   std::vector<std::int32_t> roots;
   for (std::size_t b = 0; b < n; ++b) {
-    if (parent[b] == static_cast<std::int32_t>(b)) roots.push_back(static_cast<std::int32_t>(b));
+    if (piece[b] == static_cast<std::int32_t>(b)) roots.push_back(static_cast<std::int32_t>(b));
   }
   std::stable_sort(roots.begin(), roots.end(), [&](std::int32_t a, std::int32_t b) {
     return mass[static_cast<std::size_t>(a)] > mass[static_cast<std::size_t>(b)];
@@ -96,7 +81,7 @@ void CrackLog::find_fragments(const std::vector<Break>& breaks) {
   mass_.clear();
   for (const std::int32_t r : roots) mass_.push_back(mass[static_cast<std::size_t>(r)]);
   for (std::size_t b = 0; b < n; ++b) {
-    fragment_of_[b] = index[static_cast<std::size_t>(root(static_cast<std::int32_t>(b)))];
+    fragment_of_[b] = index[static_cast<std::size_t>(piece[b])];
     ++bodies_[static_cast<std::size_t>(fragment_of_[b])];
   }
 }

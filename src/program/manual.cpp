@@ -29,10 +29,10 @@ floe \- floating sea ice as rigid bodies joined by beams
 .B floe help
 .RI [ TOPIC ]
 .SH DESCRIPTION
-A scene is a YAML file that says which sheet or blocks there are, what holds, moves and loads them, and how the time
-goes on. A first word that is a file, or has '/' or '.' in it, is a scene. Results go to the folder out/SCENE:
-summary.json, history.csv, lattice.h5, fields.h5 with fields.xmf for ParaView, options.yaml, which repeats the run, and
-floe.log, which has all that the run said.
+A scene is a YAML file that says which sheet or blocks there are, what holds, moves and loads them,
+and how the time goes on. A first word that is a file, or has '/' or '.' in it, is a scene. Results
+go to the folder out/SCENE: summary.json, history.csv, lattice.h5, fields.h5 with fields.xmf for
+ParaView, options.yaml, which repeats the run, and floe.log, which has all that the run said.
 Paths in a scene are relative to the current folder.
 .TP
 .BR \-v ", " \-\-version
@@ -55,9 +55,10 @@ constexpr auto after_tools = R"(.P
 .B \-\-help
 says more about each.
 .SH OPTIONS
-Options nest in a scene (sheet: {length: 40}) and join with '_' on the command line (\-sheet_length 40), which wins.
-Lists are separated by commas or blanks. NAME stands for each name of the section's list of names. An option that
-would have no effect is an error. Solver options are PETSc's own (\-snes_*, \-ksp_*, \-pc_*, \-log_view, ...).
+Options nest in a scene (sheet: {length: 40}) and join with '_' on the command line
+(\-sheet_length 40), which wins. Lists are separated by commas or blanks. NAME stands for each name
+of the section's list of names. An option that would have no effect is an error. Solver options are
+PETSc's own (\-snes_*, \-ksp_*, \-pc_*, \-log_view, ...).
 )";
 
 constexpr auto after_options = R"(.SH EXIT STATUS

@@ -14,6 +14,8 @@
 #include "lattice_command.h"
 #include "mesh_file.h"
 #include "reading.h"
+#include "scene/plan.h"
+#include "solve/expected_cost.h"
 
 namespace floe {
 namespace {
@@ -33,6 +35,7 @@ double mid_plane(const Scene& scene) {
 Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor,
                              scene.torsion};
+  check_size(scene, free_memory(comm), size(comm));
   Tessellation cells;
   {
     const Timed timed(Event::mesh);

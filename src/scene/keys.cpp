@@ -227,6 +227,9 @@ constexpr std::array table{
                "the same for frames of fields.h5"},
     OptionSpec{"limit: disk", number, "1000", "GB", ">= 1e-6, <= 1e15",
                "the same for the room on disk"},
+    OptionSpec{"limit: memory", number, "(auto)", "GB", ">= 1e-3, <= 1e9",
+               "a sheet whose run would take more memory, by an estimate, is refused before it is "
+               "meshed, more than is free is a warning; auto: three times what is free"},
 
     OptionSpec{"output: dir", text, "(out/SCENE)", "", "", "folder of the results"},
     OptionSpec{"output: overwrite", flag, "false", "", "",
@@ -251,7 +254,8 @@ constexpr std::array table{
         "dynamics: the checkpoint.h5 to go on from, in the same output folder, or auto: the newest "
         "good one of the output folder, if there is one; options that are not given anew are the "
         "checkpoint's (docs/restarts.md); the same to the last bit on as many ranks, but for "
-        "implicit runs on several, which MUMPS rounds differently each time (1e-14)"},
+        "implicit runs on several, which MUMPS rounds differently each time (displacements by up "
+        "to 2e-15 of the largest)"},
 };
 
 }  // namespace

@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <limits>
 
+#include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/build.h"
+#include "solve/expected_cost.h"
 
 namespace floe {
 namespace {
@@ -93,10 +95,35 @@ std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize&
                      bytes(1e9 * scene.limit.disk) + " are taken (limit: disk)");
   std::string lines = "plan: " + steps_text(scene, plan) + "\n";
   lines += "plan: about " + disk + "; " + bytes(memory) + " of memory so far";
-  if (plan.seconds_a_step > 0 && plan.steps > 0)
-    lines += "; about " + duration((plan.steps - plan.done) * plan.seconds_a_step) + " (by " +
-             plan.measured + ")";
+  if (plan.bytes > 0) lines += ", about " + bytes(memory + plan.bytes) + " with the solver's";
+  if (plan.seconds_a_step > 0)
+    lines += "; about " +
+             (plan.steps > 0 ? duration((plan.steps - plan.done) * plan.seconds_a_step)
+                             : duration(plan.seconds_a_step) + " a step") +
+             " (by " + plan.measured + ")";
   return lines + "\n";
+}
+
+void check_size(const Scene& scene, double free, int ranks) {
+  const auto bodies = static_cast<double>(number_of_cells(scene.sheet));
+  double needed = lattice_bytes(bodies, ranks);
+  if (scene.integrator != Integrator::leapfrog) {
+    const bool flat = scene.integrator == Integrator::quasistatic && !scene.forces.gravity &&
+                      !scene.forces.fracture && scene.planar != Planarity::never;
+    const double unknowns = bodies * (flat ? Planar::unknowns : Spatial::unknowns);
+    needed += factorisation_cost(unknowns, ranks).bytes;
+  }
+  constexpr double honest = 3;  // a factor of what estimates are good to
+  const double most = scene.limit.memory > 0 ? 1e9 * scene.limit.memory : honest * free;
+  const std::string what =
+      "sheet: about " + count(bodies) + " bodies would take about " + bytes(needed) + " of memory";
+  if (needed > most)
+    throw InputError(what + ", " +
+                     (scene.limit.memory > 0 ? "at most " + bytes(most) + " are taken"
+                                             : bytes(free) + " are free") +
+                     " (limit: memory)");
+  if (rank() == 0 && needed > free)
+    warn(what + " (to a factor of 3), " + bytes(free) + " are free");
 }
 
 }  // namespace floe

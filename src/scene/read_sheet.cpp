@@ -24,6 +24,7 @@ void read_sheet(Options& options, Scene& scene) {
     scene.inputs.emplace_back("sheet: mesh_file", scene.mesh_file);
   }
   scene.thickness = options.number("sheet: thickness");
+  scene.limit.memory = options.number("limit: memory", {}, 0.0);
 
   const double shorter = std::min(plan.length, plan.width);
   if (plan.element_size > shorter)
@@ -80,6 +81,7 @@ void read_lattice_source(Options& options, Scene& scene) {
     constexpr auto said_by_file = "would have no effect: 'lattice_file' says it";
     for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);
+    options.refuse("limit: memory", "would have no effect: only a sheet is judged by it");
     options.refuse("fracture: calibrate",
                    "needs 'sheet': a lattice file says nothing of a sheet's section");
   }

@@ -115,6 +115,10 @@ class DynamicRun {
   void show_every(std::int64_t steps) { show_every_ = steps; }
   /// Progress within a step.
   void show(const std::string& what) { progress_->update(time_, step_text() + ", " + what); }
+  /// The same before work that takes about so long.
+  void announce_work(const std::string& what, double seconds) {
+    progress_->announce(time_, step_text() + ", " + what, seconds);
+  }
   /// The next step [s].
   void set_dt(double dt) { dt_ = dt; }
   /// Says why a run ends that did not come to its end.

@@ -143,6 +143,7 @@ void Equilibrium<Space>::assemble(std::span<const double> increments) {
   }
   tangent_.end();
   ++assemblies_;
+  on_factorisation_();
 }
 
 template <class Space>
@@ -459,6 +460,7 @@ void Equilibrium<Space>::assemble_out_of_plane(const OutOfPlane& rest) {
     for (const auto& force : rest.forces) (void)force->add_tangent(all, tangent);
     tangent.end();
     ++assemblies_;
+    on_factorisation_();
   }
 }
 

@@ -42,6 +42,10 @@ class Equilibrium {
   void set_on_iteration(std::function<void(std::int64_t)> on_iteration) {
     on_iteration_ = std::move(on_iteration);
   }
+  /// Called before each factorisation.
+  void set_on_factorisation(std::function<void()> on_factorisation) {
+    on_factorisation_ = std::move(on_factorisation);
+  }
 
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
@@ -136,6 +140,7 @@ class Equilibrium {
   std::int64_t iterations_ = 0, assemblies_ = 0;
   bool constant_ = false;  ///< the assembled tangent is that of any state
   std::function<void(std::int64_t)> on_iteration_ = [](std::int64_t) {};
+  std::function<void()> on_factorisation_ = [] {};
   std::string why_;
   bool collapsed_ = false, stopped_ = false;
 };

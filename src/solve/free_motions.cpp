@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "floe/base/petsc.h"
 #include "floe/solve/model.h"
+#include "lattice/pieces.h"
 
 namespace floe {
 namespace {
@@ -19,27 +19,6 @@ struct Basis {
   Eigen::Matrix<double, 6, 6> columns = Eigen::Matrix<double, 6, 6>::Zero();
   int count = 0;
 };
-
-/// Connected pieces of the lattice, numbered by their first body (union-find).
-std::vector<std::int32_t> connected_pieces(const Lattice& lattice) {
-  std::vector<std::int32_t> parent(static_cast<std::size_t>(lattice.bodies.size()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int32_t b) {
-    while (parent[static_cast<std::size_t>(b)] != b) {
-      auto& up = parent[static_cast<std::size_t>(b)];
-      up = parent[static_cast<std::size_t>(up)];
-      b = up;
-    }
-    return b;
-  };
-  for (const auto& [i, j] : lattice.beams.bodies) {
-    const std::int32_t a = root(i), b = root(j);
-    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-  }
-  std::vector<std::int32_t> piece(parent.size());
-  for (std::size_t b = 0; b < parent.size(); ++b) piece[b] = root(static_cast<std::int32_t>(b));
-  return piece;
-}
 
 /// One piece, and how its bodies' unknowns depend on a rigid motion (t, r radius) of it.
 class Piece {

@@ -9,6 +9,7 @@
 
 #include "base/format.h"
 #include "solve/dynamic_run.h"
+#include "solve/expected_cost.h"
 #include "solve/liealpha.h"
 #include "solve/motion_equations.h"
 #include "solve/newton.h"
@@ -74,6 +75,17 @@ class ImplicitRun final : public DynamicRun<Space> {
   void add_to(RunPlan& plan) const override {
     plan.adaptive = !fixed_;
     if (fixed_) plan.steps = std::ceil(plan.end / plan_.given() * (1 - 1e-12));
+    plan.bytes = cost_.bytes;
+    const Part& part = model().part();
+    if (!is_like_a_sheet(static_cast<double>(part.global_bodies),
+                         static_cast<double>(part.global_beams)))
+      return;
+    // Two iterations a step, and a factorisation now and then.
+    plan.seconds_a_step = 3 * cost_.solve_seconds + 0.2 * cost_.seconds;
+    plan.measured = sheets_like_it;
+  }
+  void announce_factorisation() {
+    this->announce_work("factorising " + text(unknowns_) + " unknowns", cost_.seconds);
   }
   void remember_own(Memory& memory) override;
   std::vector<PetscObject> objects() const override;
@@ -90,7 +102,9 @@ class ImplicitRun final : public DynamicRun<Space> {
   static PetscErrorCode jacobian(TS, PetscReal t, Vec x, Vec v, Vec a, PetscReal by_v,
                                  PetscReal by_a, Mat, Mat, void* self) noexcept {
     auto& run = *static_cast<ImplicitRun*>(self);
-    if (!run.keeps_factorisation(by_a)) run.equations_.assemble(t, x, v, a, by_v, by_a);
+    if (run.keeps_factorisation(by_a)) return 0;
+    run.equations_.assemble(t, x, v, a, by_v, by_a);
+    run.announce_factorisation();
     return 0;
   }
   static PetscErrorCode converged(SNES, PetscInt it, PetscReal, PetscReal, PetscReal norm,
@@ -115,6 +129,8 @@ class ImplicitRun final : public DynamicRun<Space> {
   Equations equations_;
   LieAlphaProblem problem_;
   StepPlan plan_;
+  const double unknowns_ = static_cast<double>(this->model().part().global_bodies) * Equations::n;
+  const FactorisationCost cost_ = factorisation_cost(unknowns_, size(this->model().part().comm));
   Handle<Vec> x_, v_, x_before_, v_before_, expected_;
   Handle<TS> ts_;
   bool adaptive_ = true;  // whether we decide on factorisations (not if the user set a lag)
@@ -188,6 +204,7 @@ void ImplicitRun<Space>::expect_motion() {
   const double by_velocity = 2 / span, by_acceleration = 4 / (span * span);  // trapezoidal rule
   equations_.residual(span, x_, zero, zero, force);
   equations_.assemble(span, x_, zero, zero, by_velocity, by_acceleration);
+  announce_factorisation();
   SNES snes = nullptr;
   KSP ksp = nullptr;
   check(TSGetSNES(ts_, &snes));

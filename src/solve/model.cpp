@@ -1,7 +1,11 @@
 #include "floe/solve/model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
+#include <string_view>
 
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
@@ -18,39 +22,54 @@ std::uint8_t bits_of_unknowns(std::uint8_t components) {
   return static_cast<std::uint8_t>(bits);
 }
 
+constexpr std::array<const char*, 6> component_names{"x", "y", "z", "rx", "ry", "rz"};
+
+const std::vector<std::int32_t>& set_of(const Boundary& boundary, const Lattice& lattice) {
+  return lattice.set(boundary.set, "boundary: " + boundary.name + ": set");
+}
+
+/// \throws InputError if two boundaries that share bodies move one component differently
+void require_same_motion(const Boundary& a, const Boundary& b, std::size_t component,
+                         const Lattice& lattice) {
+  const double later = std::max({1.0, a.ramp.seconds, b.ramp.seconds});
+  for (const double time : {0.0, 0.5 * b.ramp.seconds, later, 2 * later}) {
+    if (a.value(time)[component] == b.value(time)[component]) continue;
+    std::vector<std::int32_t> common;
+    const auto &one = set_of(a, lattice), &other = set_of(b, lattice);
+    std::set_intersection(one.begin(), one.end(), other.begin(), other.end(),
+                          std::back_inserter(common));
+    throw InputError("boundary: " + b.name + ": prescribes " + component_names[component] + " of " +
+                     std::to_string(common.size()) + " bodies that boundary: " + a.name +
+                     " prescribes differently");
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
                                                 const std::vector<Boundary>& boundaries) {
   std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.bodies.size()), 0);
-  for (std::size_t b = 0; b < boundaries.size(); ++b) {
-    const Boundary& boundary = boundaries[b];
-    const auto& set = lattice.set(boundary.set, "boundary: " + boundary.name + ": set");
-    // Boundaries before this one that prescribe the same component of one of its bodies must agree
-    // with it.
-    for (std::size_t a = 0; a < b; ++a) {
-      const auto& other =
-          lattice.set(boundaries[a].set, "boundary: " + boundaries[a].name + ": set");
-      std::vector<std::int32_t> common;
-      std::set_intersection(set.begin(), set.end(), other.begin(), other.end(),
-                            std::back_inserter(common));
-      if (common.empty()) continue;
-      constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (!boundary.fixed[k] || !boundaries[a].fixed[k]) continue;
-        const double later = std::max({1.0, boundary.ramp.seconds, boundaries[a].ramp.seconds});
-        for (const double time : {0.0, 0.5 * boundary.ramp.seconds, later, 2 * later}) {
-          if (boundary.value(time)[k] != boundaries[a].value(time)[k])
-            throw InputError("boundary: " + boundary.name + ": prescribes " + names[k] + " of " +
-                             std::to_string(common.size()) + " bodies that boundary: " +
-                             boundaries[a].name + " prescribes differently");
-        }
+  std::vector<const Boundary*> first;  // per body, that prescribes the component
+  for (std::size_t k = 0; k < component_names.size(); ++k) {
+    first.assign(held.size(), nullptr);
+    std::map<std::string_view, const Boundary*> on_set;
+    for (const Boundary& boundary : boundaries) {
+      const auto& set = set_of(boundary, lattice);
+      if (!boundary.fixed[k]) continue;
+      if (const auto [other, is_new] = on_set.try_emplace(boundary.set, &boundary); !is_new) {
+        require_same_motion(*other->second, boundary, k, lattice);
+        continue;
       }
-    }
-    for (const std::int32_t body : set) {
-      for (std::size_t k = 0; k < 6; ++k) {
-        if (boundary.fixed[k])
+      const Boundary* same = nullptr;  // of those before it, the last that it was compared with
+      for (const std::int32_t body : set) {
+        const Boundary*& other = first[static_cast<std::size_t>(body)];
+        if (other == nullptr) {
+          other = &boundary;
           held[static_cast<std::size_t>(body)] |= static_cast<std::uint8_t>(1U << k);
+        } else if (other != same) {
+          require_same_motion(*other, boundary, k, lattice);
+          same = other;
+        }
       }
     }
   }

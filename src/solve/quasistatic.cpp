@@ -7,6 +7,7 @@
 #include "floe/base/log.h"
 #include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
+#include "solve/expected_cost.h"
 
 namespace floe {
 namespace {
@@ -16,6 +17,22 @@ constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, before a
 constexpr double overload_tolerance = 0.005;
 constexpr double pin_tolerance =
     1e-6;  // of the forces in balance: more means a free motion is loaded
+
+/// What a plan says of time and memory: of scenes whose tangent is one and the same, and others.
+template <class Space>
+void add_cost(const Model<Space>& model, const FactorisationCost& cost, RunPlan& plan) {
+  plan.bytes = cost.bytes;
+  const Part& part = model.part();
+  if (!is_like_a_sheet(static_cast<double>(part.global_bodies),
+                       static_cast<double>(part.global_beams)))
+    return;
+  const bool linear = model.kinematics() == Kinematics::linear && model.fracture() == nullptr;
+  constexpr double at_the_ends = 2;  // at time 0, and for stability
+  const double once = (linear ? 1 : at_the_ends) * cost.seconds;
+  const double each = linear ? 2 * cost.solve_seconds : 1.5 * cost.seconds;
+  plan.seconds_a_step = once / plan.steps + each;
+  plan.measured = sheets_like_it;
+}
 
 }  // namespace
 
@@ -29,6 +46,9 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
   plan.dt = given;
   plan.given = time.dt > 0;
   plan.steps = std::ceil(time.end / given * (1 - 1e-12));
+  const double unknowns = static_cast<double>(model.part().global_bodies) * Space::unknowns;
+  const FactorisationCost cost = factorisation_cost(unknowns, size(model.part().comm));
+  add_cost(model, cost, plan);
   if (!(plan.steps <= time.most_steps))
     throw InputError("time: dt: " + text(given) + " would take " + text(plan.steps) +
                      " load steps to time: end " + text(time.end) + ", at most " +
@@ -59,6 +79,12 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
 
   Progress progress("load steps", time.end);
   double now = 0, dt = given;
+  equilibrium.set_on_factorisation([&] {
+    progress.announce(now,
+                      "step " + std::to_string(result.steps + 1) + ", factorising " +
+                          text(unknowns) + " unknowns",
+                      cost.seconds);
+  });
   equilibrium.set_on_iteration([&](std::int64_t it) {
     progress.update(
         now, "step " + std::to_string(result.steps + 1) + ", iteration " + std::to_string(it));

@@ -7,6 +7,8 @@ import os
 import re
 import resource
 import subprocess
+import tempfile
+import unittest
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -24,7 +26,21 @@ ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1", **o
 # What the launcher of Open MPI 5 adds to the errors of a run that fails: it has no way to keep it quiet.
 BANNER = re.compile(r"^-{60,}\n(?:prterun |MPI_ABORT was invoked)(?:.*\n)*?-{60,}\n|^\[\S+:\d+\] PMIX ERROR: .*\n", re.M)
 
-PROGRESS = re.compile(r"^(?:[\w ]+: +\d+ %, \d+ s left  .*|stable step: iteration \d+)\n", re.M)
+PROGRESS = re.compile(r"^(?:[\w ]+: +\d+ %(?:, \d+ s left)?  .*|stable step: iteration \d+)\n", re.M)
+
+
+class FolderTest(unittest.TestCase):
+    """Each test has a temporary folder of its own."""
+
+    def setUp(self):
+        self.folder = temporary_folder(self.addCleanup)
+
+
+def temporary_folder(cleanup):
+    """A folder that goes where `cleanup` (of a test or of its class) says, whatever still writes into it."""
+    temporary = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+    cleanup(temporary.cleanup)
+    return Path(temporary.name)
 
 
 def on_ranks(ranks, command):

@@ -1,45 +1,30 @@
-"""Runs that a test looks at while they run: started in a temporary folder, waited for by what they write."""
+"""Runs that a test looks at while they run: started in a temporary folder, waited for by what they
+write."""
 import json
 import subprocess
-import tempfile
 import time
-import unittest
 from pathlib import Path
 
-from launch import ENVIRONMENT, FLOE, on_ranks, own_words
+from launch import ENVIRONMENT, FLOE, FolderTest, on_ranks, own_words
+from small_scenes import AFLOAT
 
 DONE, FAILED, BAD_INPUT, STOPPED = range(4)
 
-# A small sheet on water, a hundred thousand steps long; at end 1 it takes no time.
-AFLOAT = """integrator: explicit
-forces: [beam, gravity, buoyancy]
-sheet: {length: 6, thickness: 0.5, element_size: 2, iterations: 5}
-beam: {damping_ratio: 1}
-time: {end: 100000}
-output: {history: 0.002}
-"""
-# As many load steps as anybody has time for.
-LOADED = """forces: [beam]
-sheet: {length: 6, thickness: 0.5, element_size: 2, iterations: 5}
-boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
-load: {names: [b], b: {set: right, force: [0, 0, 1e4], ramp: 1}}
-time: {end: 1, dt: 1e-7}
-"""
 
 
-class RunningTest(unittest.TestCase):
+class RunningTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        super().setUp()
         self.write(AFLOAT)
 
     def write(self, scene, name="scene.yaml"):
         (self.folder / name).write_text(scene)
 
     def begin(self, *words, scene="scene.yaml", ranks=1, environment={}, **how):
-        process = subprocess.Popen(on_ranks(ranks, [FLOE, scene, *words]), cwd=self.folder, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True, env={**ENVIRONMENT, **environment}, **how)
+        process = subprocess.Popen(on_ranks(ranks, [FLOE, scene, *words]), cwd=self.folder,
+                                   stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True,
+                                   env={**ENVIRONMENT, **environment}, **how)
         self.addCleanup(self.end, process)
         return process
 

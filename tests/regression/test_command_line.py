@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""What floe answers beside running scenes: usage, versions, help, tools, and names that are nearly right."""
+"""What floe answers beside running scenes: usage, versions, help, tools, and names that are nearly
+right."""
 import os
 import re
 import shutil
 import subprocess
-import tempfile
 import unittest
 from pathlib import Path
 
-from launch import ENVIRONMENT, FLOE, REPOSITORY, on_ranks, own_words
+from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest, on_ranks, own_words
 
 SCENES = REPOSITORY / "input"
 LOADER = Path("/lib64/ld-linux-x86-64.so.2")
@@ -20,15 +20,11 @@ def tools():
     return re.findall(r"^  (\w+) +(\S.*)$", text.split("Tools")[1], re.MULTILINE)
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
-
+class CommandLine(FolderTest):
     def run_it(self, *words, ranks=1, code=0, floe=(FLOE,)):
         """Runs floe in the folder: its standard output and error."""
-        run = subprocess.run(on_ranks(ranks, [*floe, *words]), cwd=self.folder, env=ENVIRONMENT, capture_output=True,
+        run = subprocess.run(on_ranks(ranks, [*floe, *words]), cwd=self.folder, env=ENVIRONMENT,
+                             capture_output=True,
                              text=True)
         self.assertEqual(run.returncode, code, f"{words}: {run.stdout}{run.stderr}")
         return run.stdout, own_words(run.stderr)
@@ -95,12 +91,14 @@ class CommandLine(unittest.TestCase):
         shutil.copy(FLOE, self.folder / "alone")
         (self.folder / "lib").symlink_to(FLOE.parent / "lib")
         error = self.run_it("plot_load", code=1, floe=("./alone",))[1]
-        self.assertRegex(error, r"^floe plot_load: the tools that belong to \S*/alone are not there\n$")
+        self.assertRegex(error, r"^floe plot_load: the tools that belong to \S*/alone are not "
+                                r"there\n$")
 
     def test_a_file_is_a_scene(self):
         (self.folder / "render").write_text("sheet: 1\n")
         self.assertIn("sheet", self.refused("render"))
-        out = subprocess.run([str(FLOE), "plot_load", "--help"], cwd=REPOSITORY / "tools", capture_output=True, text=True)
+        out = subprocess.run([str(FLOE), "plot_load", "--help"], cwd=REPOSITORY / "tools",
+                             capture_output=True, text=True)
         self.assertEqual(out.returncode, 0, "beside the tools themselves: " + out.stderr)
 
     def test_names_that_are_nearly_right(self):
@@ -108,10 +106,13 @@ class CommandLine(unittest.TestCase):
         shipped = str(SCENES / "tension.yaml")
         for word, expected in {
                 "plotload": "the nearest subcommand is 'plot_load'", "mine": "is it 'mine.yaml'?",
-                "./mine": "is it './mine.yaml'?", "mine.yml": "is it 'mine.yaml'?", "mien.yaml": "is it 'mine.yaml'?",
+                "./mine": "is it './mine.yaml'?", "mine.yml": "is it 'mine.yaml'?",
+            "mien.yaml": "is it 'mine.yaml'?",
                 "tension": f"is it '{shipped}'?", "input/tension": f"is it '{shipped}'?",
-                "input/tension.yaml": f"is it '{shipped}'?", "/nowhere/tension.yaml": f"is it '{shipped}'?",
-                "tenson.yaml": f"is it '{shipped}'?", "qqqqqq": "floe help lists the subcommands"}.items():
+                "input/tension.yaml": f"is it '{shipped}'?",
+            "/nowhere/tension.yaml": f"is it '{shipped}'?",
+                "tenson.yaml": f"is it '{shipped}'?",
+            "qqqqqq": "floe help lists the subcommands"}.items():
             with self.subTest(word=word):
                 self.assertIn(expected, self.refused(word))
         self.assertIn("'plot_load'", self.refused("plotload", ranks=2))
@@ -124,7 +125,8 @@ class CommandLine(unittest.TestCase):
         for tool, line in tools():
             self.assertIn(f"\n.B {tool}\n{line}\n", page)
         if shutil.which("groff"):
-            run = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z"], input=page, capture_output=True, text=True)
+            run = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z"], input=page,
+                                 capture_output=True, text=True)
             self.assertEqual(run.stderr, "")
 
 

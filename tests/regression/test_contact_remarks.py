@@ -1,16 +1,12 @@
 #!/usr/bin/python3
-"""Contacts that cannot be right are said: overlaps at the start, speeds that jump over bodies, bodies pressed through
-others. Each run as a user would run it, at 1 and at 2 ranks."""
-import json
-import os
-import subprocess
+"""Contacts that cannot be right are said: overlaps at the start, speeds that jump over bodies,
+bodies pressed through others. Each run as a user would run it, at 1 and at 2 ranks."""
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+from launch import REPOSITORY
+from one_run import OneRun
+
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 
@@ -21,33 +17,30 @@ fracture: {tensile_strength: 6e5, energy: 15}
 contact: {young: 1e8, restitution: 0.5}
 time: {end: 0.02}
 """
-LEG = "obstacle: {{names: [leg], leg: {{shape: cylinder, base: [{x}, 0, -3], radius: 2, height: 6}}}}\n"
+LEG = ("obstacle: {{names: [leg], leg: {{shape: cylinder, base: [{x}, 0, -3], radius: 2, "
+       "height: 6}}}}\n")
 CUBE = """integrator: explicit
 forces: [contact]
 lattice_file: cube.h5
 contact: {young: 1e7}
 """
-PLATE = "obstacle: {names: [plate], plate: {shape: box, centre: [0, 0, -1.03], size: [4, 4, 0.05]}}\n"
+PLATE = ("obstacle: {names: [plate], "
+         "plate: {shape: box, centre: [0, 0, -1.03], size: [4, 4, 0.05]}}\n")
 
 
-class Run:
-    """One run: `code`, `error` (standard error), `summary` or None."""
+def cubes(folder):
+    """Two cubes for scenes that ask for them."""
+    fl.blocks([[1, 1, 1], [1, 1, 1]], [[0, 0, 0], [100, 0, 50]]).write(folder / "cube.h5")
 
+
+class Run(OneRun):
     def __init__(self, scene, *words, ranks=1):
-        with tempfile.TemporaryDirectory() as folder:
-            Path(folder, "s.yaml").write_text(scene)
-            if "cube.h5" in scene:
-                fl.blocks([[1, 1, 1], [1, 1, 1]], [[0, 0, 0], [100, 0, 50]]).write(str(Path(folder, "cube.h5")))
-            command = [str(FLOE), "s.yaml", *words]
-            if ranks > 1:
-                command = ["mpiexec", "-n", str(ranks), *command]
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-            self.code, self.error = done.returncode, done.stderr
-            summary = Path(folder, "out/s/summary.json")
-            self.summary = json.loads(summary.read_text()) if summary.exists() else None
+        super().__init__(scene, *words, ranks=ranks, prepare=cubes if "cube.h5" in scene
+                         else lambda folder: None)
 
     def warnings(self):
-        return [line for line in self.error.splitlines() if line.startswith("floe: warning: contact")]
+        return [line for line in self.error.splitlines()
+                if line.startswith("floe: warning: contact")]
 
 
 class Overlap(unittest.TestCase):
@@ -56,12 +49,14 @@ class Overlap(unittest.TestCase):
             run = Run(SHEET + LEG.format(x=11.5), ranks=ranks)
             self.assertEqual(run.code, 2, run.error)
             self.assertIsNone(run.summary)
-            for word in ("obstacle 'leg'", "overlap by 0.", "at most 0.1", "initial_overlap: stress_free"):
+            for word in ("obstacle 'leg'", "overlap by 0.", "at most 0.1",
+                         "initial_overlap: stress_free"):
                 self.assertIn(word, run.error)
 
     def test_taken_as_rest_it_breaks_nothing(self):
         for ranks in (1, 2):
-            run = Run(SHEET + LEG.format(x=11.5), "-contact_initial_overlap", "stress_free", ranks=ranks)
+            run = Run(SHEET + LEG.format(x=11.5), "-contact_initial_overlap", "stress_free",
+                      ranks=ranks)
             self.assertEqual(run.code, 0, run.error)
             self.assertEqual(run.summary["beams_broken"], 0)
             self.assertLess(run.summary["energy"]["contact"], 1)
@@ -108,7 +103,8 @@ class Passing(unittest.TestCase):
         self.assertIn("speed of obstacle 'leg'", run.error)
 
     def test_a_cube_that_a_plate_cannot_hold(self):
-        scene = CUBE + "time: {end: 0.1}\ninitial: {names: [i], i: {set: all, velocity: [0, 0, -50]}}\n" + PLATE
+        scene = (CUBE + PLATE + "time: {end: 0.1}\n"
+                 "initial: {names: [i], i: {set: all, velocity: [0, 0, -50]}}\n")
         for ranks in (1, 2):
             run = Run(scene, ranks=ranks)
             self.assertEqual(run.code, 0, run.error)
@@ -118,7 +114,8 @@ class Passing(unittest.TestCase):
                 self.assertIn(word, run.warnings()[0])
 
     def test_a_floor_that_rises_through_a_soft_cube(self):
-        floor = "obstacle: {names: [floor], floor: {shape: halfspace, point: [0, 0, -0.6], velocity: [0, 0, 5]}}\n"
+        floor = ("obstacle: {names: [floor], "
+                 "floor: {shape: halfspace, point: [0, 0, -0.6], velocity: [0, 0, 5]}}\n")
         held = "boundary: {names: [b], b: {set: all, fix: x y z rx ry rz}}\n"
         run = Run(CUBE + "time: {end: 0.5}\n" + floor + held)
         self.assertEqual(run.code, 0, run.error)

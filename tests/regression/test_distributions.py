@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""tools/check_distribution and tools/in_debian refuse what they cannot do in one line, before they make anything. (That they do
-what they should is what they show when they run: they need root, packages from the network and half an hour.)
+"""tools/check_distribution and tools/in_debian refuse what they cannot do in one line, before they
+make anything. (That they do what they should is what they show when they run: they need root,
+packages from the network and half an hour.)
 """
 import os
 import subprocess
@@ -9,7 +10,8 @@ import unittest
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-NOBODY = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
+NOBODY = ["setpriv", "--reuid=65534", "--regid=65534",
+          "--clear-groups"] if os.geteuid() == 0 else []
 
 
 class Refused(unittest.TestCase):
@@ -35,7 +37,8 @@ class Refused(unittest.TestCase):
         self.refused(["in_debian", "trixie", "a"], "COMMAND")
 
     def test_who_is_not_root_is_told_how(self):
-        self.refused(["check_distribution", "trixie"], "sudo tools/check_distribution trixie", NOBODY)
+        self.refused(["check_distribution", "trixie"], "sudo tools/check_distribution trixie",
+                     NOBODY)
         self.refused(["in_debian", "trixie", "a", "true"], "sudo tools/in_debian", NOBODY)
 
 

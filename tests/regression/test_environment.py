@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Options that lie around (PETSC_OPTIONS, petscrc files) change no key of a scene and stop no run; those of PETSc's
-families are taken from there, below the scene and the command line, and named in the first line. Scenes with more
-options than PETSc's own table holds run.
+"""Options that lie around (PETSC_OPTIONS, petscrc files) change no key of a scene and stop no run;
+those of PETSc's families are taken from there, below the scene and the command line, and named in
+the first line. Scenes with more options than PETSc's own table holds run.
 """
 import json
 import os
@@ -30,7 +30,8 @@ class Case(unittest.TestCase):
     def run_floe(self, scene, *words, ranks=1, code=0, **variables):
         (self.folder / "s.yaml").write_text(scene)
         launcher = ["mpiexec", "-n", str(ranks)] if ranks > 1 else []
-        run = subprocess.run([*launcher, str(FLOE), "s.yaml", *words], cwd=self.folder, capture_output=True, text=True,
+        run = subprocess.run([*launcher, str(FLOE), "s.yaml", *words], cwd=self.folder,
+                             capture_output=True, text=True,
                              env={**os.environ, "HOME": str(self.folder / "home"), **variables})
         self.assertEqual(run.returncode, code, run.stdout + run.stderr)
         return run
@@ -43,10 +44,12 @@ class Environment(Case):
     def test_scene_keys_are_not_taken_and_foreign_options_do_not_stop(self):
         self.run_floe(SCENE)
         plain, history = self.bodies(), (self.folder / "out/s/history.csv").read_text()
-        (self.folder / ".petscrc").write_text("-sheet_length 20\n-integrator explicit\n-my_option 3\n-options_file none\n")
+        (self.folder / ".petscrc").write_text("-sheet_length 20\n-integrator explicit\n"
+                                              "-my_option 3\n-options_file none\n")
         (self.folder / "home/.petscrc").write_text("junk that is no option\n-forces\n")
         for ranks in (1, 2):
-            run = self.run_floe(SCENE, ranks=ranks, PETSC_OPTIONS="-sheet_thickness 7 stray -ts_type bdf -help")
+            run = self.run_floe(SCENE, ranks=ranks,
+                                PETSC_OPTIONS="-sheet_thickness 7 stray -ts_type bdf -help")
             self.assertNotIn("floe:", run.stderr)  # progress may be there: the machine may be slow
             first = run.stdout.splitlines()[0]
             self.assertIn("options of the environment: none taken; not taken: ", first)
@@ -67,7 +70,8 @@ class Environment(Case):
         self.assertEqual(line_of("snes_rtol"), "snes_rtol: 1e-4")
         self.assertEqual(line_of("snes_rtol", PETSC_OPTIONS="-snes_rtol 1e-5"), "snes_rtol: 1e-5")
         scene = SCENE + "snes_rtol: 1e-6\n"
-        self.assertEqual(line_of("snes_rtol", PETSC_OPTIONS="-snes_rtol 1e-5", scene=scene), "snes_rtol: 1e-6")
+        self.assertEqual(line_of("snes_rtol", PETSC_OPTIONS="-snes_rtol 1e-5", scene=scene),
+                         "snes_rtol: 1e-6")
         self.assertEqual(line_of("snes_rtol", "-snes_rtol", "1e-7", scene=scene), "snes_rtol: 1e-7")
         self.assertEqual(line_of("snes_max_it"), "snes_max_it: 33")
         self.assertEqual(line_of("snes_rtol", "-skip_petscrc"), "")
@@ -76,7 +80,8 @@ class Environment(Case):
     def test_they_act(self):
         """PETSc's own log, which PETSc decides on while it begins, by each of the ways."""
         def logs(*words, scene=SCENE, ranks=1, **variables):
-            return "Performance Summary" in self.run_floe(scene, *words, ranks=ranks, **variables).stdout
+            return "Performance Summary" in self.run_floe(scene, *words, ranks=ranks,
+                                                          **variables).stdout
 
         self.assertFalse(logs())
         self.assertTrue(logs("-log_view"))
@@ -89,8 +94,11 @@ class Environment(Case):
 
     def test_solver_options_do_not_stop_a_run_without_solver(self):
         moving = "integrator: explicit\nbeam: {damping_ratio: 1}\ntime: {end: 0.001}\n" + SCENE
-        run = self.run_floe(moving, PETSC_OPTIONS="-ksp_monitor -ksp_type cg -fieldsplit_0_pc_type lu -ts_rtol 1e-3")
-        self.assertIn("not taken: -ksp_monitor (PETSC_OPTIONS), -ksp_type (PETSC_OPTIONS), -ts_rtol (PETSC_OPTIONS)",
+        run = self.run_floe(moving,
+                            PETSC_OPTIONS="-ksp_monitor -ksp_type cg -fieldsplit_0_pc_type lu "
+                                          "-ts_rtol 1e-3")
+        self.assertIn("not taken: -ksp_monitor (PETSC_OPTIONS), -ksp_type (PETSC_OPTIONS), "
+                      "-ts_rtol (PETSC_OPTIONS)",
                       run.stdout.splitlines()[0])
         run = self.run_floe(moving, "-ksp_type", "cg", code=2)
         self.assertIn("ksp_type", run.stderr)
@@ -101,15 +109,18 @@ class ManyOptions(Case):
         """255 cuts and 130 obstacles: 900 options."""
         cuts = [f"c{k}" for k in range(255)]
         obstacles = [f"o{k}" for k in range(130)]
-        scene = "integrator: explicit\nforces: [beam, contact]\nsheet: {length: 10, element_size: 1, iterations: 5}\n"
+        scene = ("integrator: explicit\nforces: [beam, contact]\n"
+                 "sheet: {length: 10, element_size: 1, iterations: 5}\n")
         scene += f"cut:\n  names: [{', '.join(cuts)}]\n"
         for k, name in enumerate(cuts):
             at = -3 + 6 * k / len(cuts)
-            scene += f"  {name}: {{from: [-6, {at}], to: [6, {at}]}}\n" if k == 0 else \
-                     f"  {name}: {{from: [{-4 + (k % 4) * 2}, {at}], to: [{-4 + (k % 4) * 2 + 0.001}, {at + 0.5}]}}\n"
+            x = -4 + (k % 4) * 2
+            ends = ((-6, at), (6, at)) if k == 0 else ((x, at), (x + 0.001, at + 0.5))
+            scene += f"  {name}: {{from: {list(ends[0])}, to: {list(ends[1])}}}\n"
         scene += f"obstacle:\n  names: [{', '.join(obstacles)}]\n"
         for k, name in enumerate(obstacles):
-            scene += f"  {name}: {{shape: box, centre: [{20 + 2 * k}, 0, 0], velocity: [0.1, 0, 0], ramp: 1}}\n"
+            place = f"centre: [{20 + 2 * k}, 0, 0]"
+            scene += f"  {name}: {{shape: box, {place}, velocity: [0.1, 0, 0], ramp: 1}}\n"
         scene += "time: {end: 1e-4}\n"
         for ranks in (1, 2):
             # Cuts that cross no beam any more are no error under another sheet.

@@ -1,44 +1,20 @@
 #!/usr/bin/python3
-"""Explicit runs that must not go on: a step above the stable one, a run that blows up, options of solvers.
+"""Explicit runs that must not go on: a step above the stable one, a run that blows up, options of
+solvers.
 
 Each runs in a temporary folder of its own, as a user would run it, at 1 and at 2 ranks.
 """
-import json
 import re
-import tempfile
 import unittest
-from pathlib import Path
 
-import launch
-
-PULL = """integrator: explicit
-forces: [beam]
-sheet: {length: 10, thickness: 0.5, element_size: 1.5, iterations: 10}
-boundary:
-  names: [left, right]
-  left: {set: left, fix: x}
-  right: {set: right, fix: x, velocity: [0.1, 0, 0]}
-time: {end: 0.01}
-"""
-
-
-class Run:
-    """One run: `code`, `error` (standard error without warnings), `summary` or None."""
-
-    def __init__(self, scene, *words, ranks=1):
-        with tempfile.TemporaryDirectory() as folder:
-            Path(folder, "s.yaml").write_text(scene)
-            done = launch.run("s.yaml", *words, ranks=ranks, cwd=folder)
-            self.code, self.error = done.returncode, done.stderr
-            summary = Path(folder, "out/s/summary.json")
-            self.summary = json.loads(summary.read_text()) if summary.exists() else None
-            self.has_folder = Path(folder, "out").exists()
+from one_run import OneRun
+from small_scenes import PULL
 
 
 class ExplicitLimits(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        run = Run(PULL)
+        run = OneRun(PULL)
         assert run.code == 0, run.error
         cls.stable = run.summary["stable_dt"]
         cls.good = run.summary
@@ -50,7 +26,7 @@ class ExplicitLimits(unittest.TestCase):
 
     def test_a_step_above_the_stable_one_is_refused(self):
         for ranks in (1, 2):
-            run = Run(PULL, "-time_dt", repr(1.01 * self.stable), ranks=ranks)
+            run = OneRun(PULL, "-time_dt", repr(1.01 * self.stable), ranks=ranks)
             self.assertEqual(run.code, 2, run.error)
             self.assertFalse(run.has_folder)
             lines = run.error.strip().splitlines()
@@ -61,13 +37,13 @@ class ExplicitLimits(unittest.TestCase):
             self.assertAlmostEqual(number / self.stable, 1, delta=1e-4)
 
     def test_a_step_just_below_it_is_taken(self):
-        run = Run(PULL, "-time_dt", repr(0.99 * self.stable), "-beam_damping_ratio", "0")
+        run = OneRun(PULL, "-time_dt", repr(0.99 * self.stable), "-beam_damping_ratio", "0")
         self.assertEqual(run.code, 0, run.error)
 
     def test_a_run_that_blows_up_stops_and_says_where(self):
         for ranks in (1, 2):
-            run = Run(PULL, "-time_dt", repr(1.05 * self.stable), "-time_allow_unstable", "-time_end", "0.5",
-                      ranks=ranks)
+            run = OneRun(PULL, "-time_dt", repr(1.05 * self.stable), "-time_allow_unstable",
+                         "-time_end", "0.5", ranks=ranks)
             self.assertEqual(run.code, 1, run.error)
             last = [line for line in run.error.splitlines() if line.startswith("floe: ")][-1]
             self.assertRegex(last, r"at time \S+ s")
@@ -80,19 +56,21 @@ class ExplicitLimits(unittest.TestCase):
 
     def test_a_number_that_is_not_finite_stops_it(self):
         # Too wide a limit to stop a velocity before it is infinite.
-        run = Run(PULL, "-time_dt", repr(3 * self.stable), "-time_allow_unstable", "-time_end", "0.5",
-                  "-limit_velocity", "1e300", "-limit_energy_error", "1e300", "-output_history", "0.5")
+        run = OneRun(PULL, "-time_dt", repr(3 * self.stable), "-time_allow_unstable",
+                     "-time_end", "0.5", "-limit_velocity", "1e300", "-limit_energy_error", "1e300",
+                     "-output_history", "0.5")
         self.assertEqual(run.code, 1, run.error)
         self.assertRegex(run.error, r"not finite at time \S+ s, body \d+ at \(")
 
     def test_a_limit_of_the_user_stops_it(self):
-        run = Run(PULL, "-limit_velocity", "0.05")
+        run = OneRun(PULL, "-limit_velocity", "0.05")
         self.assertEqual(run.code, 1, run.error)
         self.assertIn("limit: velocity 0.05 m/s", run.error)
 
     def test_options_of_solvers_are_refused(self):
-        for option, value in (("-snes_rtol", "0.1"), ("-ksp_type", "cg"), ("-pc_type", "lu"), ("-mat_type", "aij")):
-            run = Run(PULL, option, value)
+        for option, value in (("-snes_rtol", "0.1"), ("-ksp_type", "cg"), ("-pc_type", "lu"),
+                              ("-mat_type", "aij")):
+            run = OneRun(PULL, option, value)
             self.assertEqual(run.code, 2, option + run.error)
             self.assertIn(option[1:], run.error)
             self.assertIn("explicit", run.error)
@@ -100,8 +78,9 @@ class ExplicitLimits(unittest.TestCase):
 
     def test_types_of_petsc_that_cannot_step_this_are_refused(self):
         for kind, reason in (("basicsymplectic", "angular momentum"), ("beuler", "implicit"),
-                             ("alpha2", "implicit"), ("euler", "unstable"), ("nonsense", "leapfrog")):
-            run = Run(PULL, "-ts_type", kind)
+                             ("alpha2", "implicit"), ("euler", "unstable"),
+                             ("nonsense", "leapfrog")):
+            run = OneRun(PULL, "-ts_type", kind)
             self.assertEqual(run.code, 2, kind + run.error)
             self.assertIn(kind, run.error)
             self.assertIn(reason, run.error)

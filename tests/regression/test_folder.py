@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Whose an output folder is: its lock, folders and files that a run must not take, and runs that are not done."""
+"""Whose an output folder is: its lock, folders and files that a run must not take, and runs that
+are not done."""
 import os
 import resource
 import shutil
@@ -10,7 +11,8 @@ from pathlib import Path
 
 import h5py
 
-from running import AFLOAT, BAD_INPUT, FAILED, LOADED, RunningTest
+from running import BAD_INPUT, FAILED, RunningTest
+from small_scenes import AFLOAT, LOADED
 
 SHORT = ["-time_end", "0.5"]
 WITHOUT_FLOCK = """#include <errno.h>
@@ -20,7 +22,8 @@ int flock(int file, int what) { (void)file, (void)what; errno = ENOLCK; return -
 
 class Lock(RunningTest):
     def check_locked(self, ranks=1, environment={}):
-        """A run in a folder in use is refused and touches nothing; the other one does not notice."""
+        """A run in a folder in use is refused and touches nothing; the other one does not
+        notice."""
         first = self.running(ranks=ranks, environment=environment)
         said = self.floe(code=BAD_INPUT, ranks=ranks, environment=environment)
         self.assertEqual(said.count("\n"), 1, said)
@@ -30,7 +33,8 @@ class Lock(RunningTest):
         self.assertEqual({len(row.split(",")) for row in rows}, {len(rows[0].split(","))})
         with h5py.File(self.folder / "out/scene/fields.h5") as file:
             self.assertIn("mesh", file)
-        self.floe("-checkpoint_restart", "out/scene/checkpoint.h5", "-time_end", "1e5", "-ts_max_steps", "1")
+        self.floe("-checkpoint_restart", "out/scene/checkpoint.h5", "-time_end", "1e5",
+                  "-ts_max_steps", "1")
 
     def test_one_run_at_a_time(self):
         self.check_locked()
@@ -54,7 +58,8 @@ class Lock(RunningTest):
     def test_a_check_beside_a_run(self):
         first = self.running()
         check = self.begin("-check")
-        self.assertIn("a run would be refused now: output: dir: out/scene is in use", check.communicate()[0])
+        self.assertIn("a run would be refused now: output: dir: out/scene is in use",
+                      check.communicate()[0])
         self.assertEqual(check.returncode, 0)
         self.stop(first)
 
@@ -79,8 +84,10 @@ class Lock(RunningTest):
 
     def test_a_file_system_without_flock(self):
         (self.folder / "none.c").write_text(WITHOUT_FLOCK)
-        subprocess.run(["cc", "-shared", "-fPIC", "none.c", "-o", "none.so"], cwd=self.folder, check=True)
-        without = {"environment": {"LD_PRELOAD": str(self.folder / "none.so"), "HDF5_USE_FILE_LOCKING": "FALSE"}}
+        subprocess.run(["cc", "-shared", "-fPIC", "none.c", "-o", "none.so"], cwd=self.folder,
+                       check=True)
+        without = {"environment": {"LD_PRELOAD": str(self.folder / "none.so"),
+                                   "HDF5_USE_FILE_LOCKING": "FALSE"}}
         first = self.running(**without)
         said = self.floe(code=BAD_INPUT, **without)
         self.assertIn("is in use by a run (process ", said)
@@ -93,7 +100,8 @@ class Lock(RunningTest):
         self.assertFalse((self.folder / "out/scene/.lock.held").exists())
         held = (self.folder / "out/scene/.lock.held")
         held.write_text("host elsewhere\nprocess 1\nsince 2025\n")
-        self.assertIn("(if it is gone, remove out/scene/.lock.held)", self.refused(*SHORT, **without))
+        self.assertIn("(if it is gone, remove out/scene/.lock.held)",
+                      self.refused(*SHORT, **without))
 
 
 class NotAFolder(RunningTest):
@@ -101,7 +109,8 @@ class NotAFolder(RunningTest):
         for dir in ("/", "//", "/..", str(Path.home())):
             self.assertIn("is no folder for results", self.refused("-output_dir", dir))
         home = {"environment": {"HOME": str(self.folder)}}
-        self.assertIn("is no folder for results", self.refused("-output_dir", ".", "-output_overwrite", **home))
+        self.assertIn("is no folder for results",
+                      self.refused("-output_dir", ".", "-output_overwrite", **home))
 
     def test_a_folder_of_others(self):
         (self.folder / "work").mkdir()
@@ -123,13 +132,16 @@ class Inputs(RunningTest):
         self.floe(*SHORT, "-output_dir", "keep")
 
     def test_lattice_file(self):
-        scene = AFLOAT.replace("sheet: {length: 6, thickness: 0.5, element_size: 2, iterations: 5}", "lattice_file: LATTICE")
+        scene = AFLOAT.replace("sheet: {length: 6, thickness: 0.5, element_size: 2, iterations: 5}",
+                               "lattice_file: LATTICE")
         (self.folder / "link.h5").symlink_to("keep/lattice.h5")
-        for name in ("keep/lattice.h5", "./keep/../keep/lattice.h5", "link.h5", str(self.folder / "keep/lattice.h5")):
+        for name in ("keep/lattice.h5", "./keep/../keep/lattice.h5", "link.h5",
+                     str(self.folder / "keep/lattice.h5")):
             self.write(scene.replace("LATTICE", name))
             for words in ([], ["-output_overwrite"]):
                 said = self.refused(*SHORT, "-output_dir", "keep", *words)
-                self.assertIn(f"lattice_file: {name} would be overwritten by the run's own lattice.h5", said)
+                self.assertIn(f"lattice_file: {name} would be overwritten by the run's own "
+                              "lattice.h5", said)
         self.floe(*SHORT, "-output_dir", "other")
 
     def test_mesh_file(self):
@@ -164,8 +176,10 @@ class NotDone(RunningTest):
         self.interrupted()
         for _ in range(2):
             said = self.refused()
-            self.assertIn("out/scene has the checkpoint of a run that is not done (its status is stopped); "
-                          "-checkpoint_restart out/scene/checkpoint.h5 goes on with it, -output_overwrite begins anew", said)
+            self.assertIn("out/scene has the checkpoint of a run that is not done (its status is "
+                          "stopped); "
+                          "-checkpoint_restart out/scene/checkpoint.h5 goes on with it, "
+                          "-output_overwrite begins anew", said)
         (self.folder / "out/scene/summary.json").unlink()
         self.assertIn("(it was interrupted)", self.refused())
         (self.folder / "out/scene/summary.json").write_text("{")
@@ -208,7 +222,8 @@ class MeshFile(RunningTest):
             return file["bodies/position"][:].tobytes()
 
     def test_four_runs_make_it_together(self):
-        runs = [self.begin(*SHORT, "-sheet_mesh_file", "mesh.h5", "-output_dir", f"run{k}") for k in range(4)]
+        runs = [self.begin(*SHORT, "-sheet_mesh_file", "mesh.h5", "-output_dir", f"run{k}")
+                for k in range(4)]
         for run in runs:
             self.finish(run)
         self.floe(*SHORT, "-sheet_mesh_file", "mesh.h5", "-output_dir", "again")
@@ -247,18 +262,21 @@ class Failed(RunningTest):
 
     def test_a_history_that_cannot_grow(self):
         for ranks in (1, 2):
-            self.check_failed(self.limited("history.csv", "-output_overwrite", ranks=ranks), "cannot write", "history.csv",
+            self.check_failed(self.limited("history.csv", "-output_overwrite", ranks=ranks),
+                              "cannot write", "history.csv",
                               "File too large")
 
     def test_a_full_disk(self):
         """The room for the summary has been kept."""
         disk = self.folder / "out/scene"
         disk.mkdir(parents=True)
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", disk], capture_output=True).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", disk],
+                          capture_output=True).returncode:
             self.skipTest("cannot mount a small file system (root may)")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
         process = self.running("-output_history", "0.001")
-        subprocess.run(["dd", "if=/dev/zero", f"of={disk}/filler", "bs=64K"], capture_output=True)  # until it is full
+        # until it is full
+        subprocess.run(["dd", "if=/dev/zero", f"of={disk}/filler", "bs=64K"], capture_output=True)
         self.check_failed(self.finish(process, FAILED), "history.csv", "No space left on device")
 
     def test_a_static_run(self):

@@ -9,14 +9,13 @@ import random
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
 
-from launch import ENVIRONMENT, FLOE, FULL, REPOSITORY, limited_memory, own_words, run
+from launch import (ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, limited_memory, own_words, run,
+                    temporary_folder)
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
@@ -29,12 +28,10 @@ OBSTACLE = ("integrator: explicit\nforces: [beam, contact]\nsheet: {length: 6, e
 KINDS = {"lattice_file": (LATTICE, "l.h5"), "sheet: mesh_file": (SHEET, "m.h5"), "obstacle: o: file": (OBSTACLE, "o.h5")}
 
 
-class HostileTest(unittest.TestCase):
+class HostileTest(FolderTest):
     @classmethod
     def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.good = Path(temporary.name)
+        cls.good = temporary_folder(cls.addClassCleanup)
         fl.straight_frame(4.0, 8, fl.Section(0.2, 0.1)).write(cls.good / "l.h5")
         fl.blocks([[1, 1, 1]], [[0, 0, 0]]).write(cls.good / "o.h5")
         (cls.good / "s.yaml").write_text(SHEET)
@@ -42,11 +39,6 @@ class HostileTest(unittest.TestCase):
         assert made.returncode == 0, made.stderr
         shutil.rmtree(cls.good / "out")
         assert (cls.good / "m.h5").exists()
-
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
 
     def start(self, key):
         """Lays a good file; the path of it."""

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""What `cmake --install` leaves: a floe that needs neither the source tree nor its first place, and a library that other
-projects find. The build folder is that of $FLOE, built as a whole (its man page too)."""
+"""What `cmake --install` leaves: a floe that needs neither the source tree nor its first place, and
+a library that other projects find. The build folder is that of $FLOE, built as a whole (its man
+page too)."""
 import os
 import re
 import shutil
@@ -12,11 +13,14 @@ from pathlib import Path
 
 import h5py
 
+import launch
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 BUILD = FLOE.parent
 # What a run needs from outside; nothing else of the shell's environment, least of all FLOE.
-KEEP = {name: value for name, value in os.environ.items() if name.startswith(("OMP", "OPENBLAS", "PRTE", "CCACHE", "HOME"))}
+KEEP = {name: value for name, value in os.environ.items()
+        if name.startswith(("OMP", "OPENBLAS", "PRTE", "CCACHE", "HOME"))}
 ENVIRONMENT = KEEP | {"PATH": "/usr/bin:/bin"}
 CMAKE = shutil.which("cmake")
 
@@ -26,23 +30,24 @@ project(user LANGUAGES C CXX)
 add_executable(user {example}/main.cpp)
 target_link_libraries(user PRIVATE floe::floe)
 get_target_property(built floe BINARY_DIR)
-message(STATUS "tests of floe: ${{FLOE_TESTS}}, rules to install: ${{FLOE_INSTALL}}, source: ${{CMAKE_SOURCE_DIR}}")
+message(STATUS "tests of floe: ${{FLOE_TESTS}}, rules to install: ${{FLOE_INSTALL}}, "
+               "source: ${{CMAKE_SOURCE_DIR}}")
 """
 
 
 def run(*words, cwd, code=0):
     """Standard output of a command."""
-    done = subprocess.run([str(word) for word in words], cwd=cwd, env=ENVIRONMENT, capture_output=True, text=True)
+    done = subprocess.run([str(word) for word in words], cwd=cwd, env=ENVIRONMENT,
+                          capture_output=True, text=True)
     if done.returncode != code:
-        raise AssertionError(f"{words} ended with {done.returncode}: {done.stdout[-3000:]}{done.stderr[-3000:]}")
+        raise AssertionError(f"{words} ended with {done.returncode}: "
+                             f"{done.stdout[-3000:]}{done.stderr[-3000:]}")
     return done.stdout + done.stderr
 
 
-class Installed(unittest.TestCase):
+class Installed(launch.FolderTest):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        super().setUp()
         self.prefix = self.folder / "a prefix"
         run(CMAKE, "--install", BUILD, "--prefix", self.folder / "first", cwd=self.folder)
         (self.folder / "first").rename(self.prefix)  # it works where it is moved to
@@ -59,11 +64,14 @@ class Installed(unittest.TestCase):
         self.assertTrue((work / "out/tension/sheet.png").exists())
         (work / "floe").symlink_to(self.floe)
         run("./floe", "make_lattice", "block", "block.h5", cwd=work)
-        run("./floe", "campaign", "--only", "tension_L10_h1_3h", "--meshes", "1", "--jobs", "1", "--no-report", cwd=work)
+        run("./floe", "campaign", "--only", "tension_L10_h1_3h", "--meshes", "1", "--jobs", "1",
+            "--no-report", cwd=work)
         self.assertTrue((work / "out/campaign_quasistatic/results.h5").exists())
         run(share / "tools/campaign_report", "out/campaign_quasistatic", cwd=work)
-        self.assertIn("source tree", run(self.floe, "campaign_report", "out/campaign_quasistatic", "--write", cwd=work, code=2))
-        self.assertIn(f"is it '{share}/input/tension.yaml'?", run(self.floe, "tension", cwd=work, code=2))
+        self.assertIn("source tree", run(self.floe, "campaign_report", "out/campaign_quasistatic",
+                                         "--write", cwd=work, code=2))
+        self.assertIn(f"is it '{share}/input/tension.yaml'?",
+                      run(self.floe, "tension", cwd=work, code=2))
 
     def test_files(self):
         page = self.prefix / "share/man/man1/floe.1.gz"
@@ -71,9 +79,11 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.prefix / "share/doc/floe/LICENSE").exists())
         for script in (self.prefix / "share/floe/tools").iterdir():
             self.assertEqual(os.access(script, os.X_OK), script.suffix == "", script)
-        # No script or configuration knows where it was made (binaries have the sources' names in their messages).
+        # No script or configuration knows where it was made (binaries have the sources' names in
+        # their messages).
         for path in self.prefix.rglob("*"):
-            if path.is_file() and path.suffix not in (".so", ".gz") and path.parent.name not in ("bin", "lib"):
+            if (path.is_file() and path.suffix not in (".so", ".gz")
+                    and path.parent.name not in ("bin", "lib")):
                 text = path.read_bytes()
                 for place in (REPOSITORY, BUILD, self.folder / "first"):
                     self.assertNotIn(str(place).encode(), text, path)
@@ -81,19 +91,24 @@ class Installed(unittest.TestCase):
     def test_library(self):
         example = self.prefix / "share/doc/floe/examples/measure_lattice"
         build = self.folder / "build"
-        run(CMAKE, "-S", example, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=self.folder)
+        run(CMAKE, "-S", example, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            cwd=self.folder)
         run(CMAKE, "--build", build, cwd=self.folder)
-        run(self.floe, self.prefix / "share/floe/input/tension.yaml", "-output_dir", "out", cwd=self.folder)
+        run(self.floe, self.prefix / "share/floe/input/tension.yaml", "-output_dir", "out",
+            cwd=self.folder)
         whole, sheet, cut = run(build / "measure_lattice", "out/lattice.h5", "0", "-30", "0", "30",
                                 cwd=self.folder).splitlines()
         with h5py.File(self.folder / "out/lattice.h5") as file:
             beams = len(file["beams/bodies"])
         # Its weight is 920 kg/m3 x 1600 m3.
-        self.assertEqual(whole, f"whole: 462 bodies, {beams} beams, 1 piece, the heaviest of 1.472e+06 kg")
-        # Young's modulus of a large sheet of this lattice, in those of its beams: near the 0.8 of the regular one.
+        self.assertEqual(whole, f"whole: 462 bodies, {beams} beams, 1 piece, the heaviest of "
+                                "1.472e+06 kg")
+        # Young's modulus of a large sheet of this lattice, in those of its beams: near the 0.8 of
+        # the regular one.
         self.assertAlmostEqual(float(sheet.split("=")[1].split(",")[0]), 0.8, delta=0.03)
         left = int(re.match(r"cut: 462 bodies, (\d+) beams, 2 pieces, ", cut)[1])
-        self.assertTrue(beams - 60 < left < beams - 15, "a cut through 20 cells meets about two beams of each")
+        self.assertTrue(beams - 60 < left < beams - 15,
+                        "a cut through 20 cells meets about two beams of each")
         error = run(build / "measure_lattice", "none.h5", cwd=self.folder, code=2)
         self.assertIn("none.h5", error)
 
@@ -103,20 +118,26 @@ class Installed(unittest.TestCase):
         project.mkdir()
         headers = sorted((self.prefix / "include").rglob("*.h"))
         self.assertGreater(len(headers), 40)
-        lines = [f'#include "{header.relative_to(self.prefix / "include")}"\n' for header in headers]
+        lines = [f'#include "{header.relative_to(self.prefix / "include")}"\n'
+                 for header in headers]
         for name, order in (("forward", lines), ("backward", reversed(lines))):
             (project / f"{name}.cpp").write_text("".join(order))
         (project / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.25)\nproject(headers LANGUAGES CXX)\nfind_package(floe REQUIRED)\n"
-            "add_library(headers OBJECT forward.cpp backward.cpp)\ntarget_link_libraries(headers PRIVATE floe::floe)\n"
-            "target_compile_options(headers PRIVATE -march=x86-64 -Wall -Wextra -Wpedantic -Wshadow -Werror)\n")
-        run(CMAKE, "-S", project, "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", cwd=self.folder)
+            "cmake_minimum_required(VERSION 3.25)\nproject(headers LANGUAGES CXX)\n"
+            "find_package(floe REQUIRED)\n"
+            "add_library(headers OBJECT forward.cpp backward.cpp)\n"
+            "target_link_libraries(headers PRIVATE floe::floe)\n"
+            "target_compile_options(headers PRIVATE -march=x86-64 -Wall -Wextra -Wpedantic "
+            "-Wshadow -Werror)\n")
+        run(CMAKE, "-S", project, "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            cwd=self.folder)
         run(CMAKE, "--build", "build", cwd=self.folder)
 
     def test_wrong_petsc(self):
         config = next(self.prefix.rglob("floe-config.cmake"))
         config.write_text(config.read_text().replace('MATCHES "^3', 'MATCHES "^2'))
-        error = run(CMAKE, "-S", REPOSITORY / "examples/measure_lattice", "-B", "build", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+        error = run(CMAKE, "-S", REPOSITORY / "examples/measure_lattice", "-B", "build",
+                    f"-DCMAKE_PREFIX_PATH={self.prefix}",
                     cwd=self.folder, code=1)
         self.assertIn("it was built with PETSc", error)
 
@@ -126,7 +147,9 @@ class Included(unittest.TestCase):
 
     def configure(self, how):
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "CMakeLists.txt").write_text(ADDED.format(how=how, example=REPOSITORY / "examples/measure_lattice"))
+            (Path(folder) / "CMakeLists.txt").write_text(ADDED.format(how=how,
+                                                                      example=REPOSITORY
+                                                                      / "examples/measure_lattice"))
             text = run(CMAKE, "-S", folder, "-B", f"{folder}/build", "-G", "Ninja", cwd=folder)
             self.assertIn(f"tests of floe: OFF, rules to install: OFF, source: {folder}", text)
             commands = run("ninja", "-C", f"{folder}/build", "-t", "commands", "user", cwd=folder)
@@ -137,7 +160,9 @@ class Included(unittest.TestCase):
         self.configure(f"add_subdirectory({REPOSITORY} floe)")
 
     def test_fetch_content(self):
-        self.configure(f"include(FetchContent)\nFetchContent_Declare(floe SOURCE_DIR {REPOSITORY})\nFetchContent_MakeAvailable(floe)")
+        self.configure("include(FetchContent)\n"
+                       f"FetchContent_Declare(floe SOURCE_DIR {REPOSITORY})\n"
+                       "FetchContent_MakeAvailable(floe)")
 
 
 if __name__ == "__main__":

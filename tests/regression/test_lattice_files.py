@@ -20,13 +20,15 @@ KINDS = {
     "rollup": ["rollup"],
     "elastica": ["elastica"],
     "cantilever": ["cantilever", "--elements", "5", "--young", "2e9"],
-    "triangles": ["triangles", "--columns", "5", "--rows", "7", "--spacing", "2", "--thickness", "0.5"],
+    "triangles": ["triangles", "--columns", "5", "--rows", "7", "--spacing", "2", "--thickness",
+                  "0.5"],
     "stack": ["stack", "--count", "3", "--size", "1", "2", "0.5", "--gap", "0.01"],
 }
 
 
 def volume_and_inertia(shapes, body):
-    """Volume and tensor of inertia per density 3 x 3 about the origin, by tetrahedra to the origin."""
+    """Volume and tensor of inertia per density 3 x 3 about the origin, by tetrahedra to the
+    origin."""
     volume, second = 0.0, np.zeros((3, 3))
     for face in range(shapes.face_of[body], shapes.face_of[body + 1]):
         corner = shapes.vertices[shapes.corners[shapes.corner_of[face]:shapes.corner_of[face + 1]]]
@@ -40,7 +42,8 @@ def volume_and_inertia(shapes, body):
 
 
 def planar_residual(lattice, displacement, shear_stiffness):
-    """Forces and moments n x 3 that beams of linear planar kinematics put on bodies that do not rotate.
+    """Forces and moments n x 3 that beams of linear planar kinematics put on bodies that do not
+    rotate.
 
     displacement n x 2 [m]; shear_stiffness(A, I_z, l) [N/m per unit of E].
     """
@@ -52,7 +55,8 @@ def planar_residual(lattice, displacement, shear_stiffness):
         t = np.array([-n[1], n[0]])
         stretch = displacement[j] - displacement[i]
         axial = young * beam["area"][m] / length * (n @ stretch)
-        shear = young * shear_stiffness(beam["area"][m], beam["inertia_z"][m], length) * (t @ stretch)
+        shear = young * shear_stiffness(beam["area"][m], beam["inertia_z"][m],
+                                        length) * (t @ stretch)
         force = axial * n + shear * t
         out[i, :2] += force
         out[j, :2] -= force
@@ -108,7 +112,8 @@ class Written(unittest.TestCase):
                 f"lattice_file: {self.make(kind)}\n"
                 "boundary:\n  names: [held]\n"
                 f"  held: {{set: {held}, fix: \"x y z rx ry rz\"}}\n")
-            run = subprocess.run([FLOE, scene, "-check"], capture_output=True, text=True, cwd=self.folder.name)
+            run = subprocess.run([FLOE, scene, "-check"], capture_output=True, text=True,
+                                 cwd=self.folder.name)
             self.assertEqual(run.returncode, 0, f"{kind}: {run.stdout}{run.stderr}")
 
     def test_a_calibrated_sheet_reads_back_with_its_stiffness(self):
@@ -120,18 +125,22 @@ class Written(unittest.TestCase):
                   "read": "lattice_file: out/made/lattice.h5\n"}
         for name, lattice in scenes.items():
             Path(self.folder.name, name + ".yaml").write_text("forces: [beam]\n" + lattice + pulled)
-            subprocess.run([FLOE, name + ".yaml"], capture_output=True, check=True, cwd=self.folder.name)
-        made, read = (Path(self.folder.name, "out", name, "history.csv").read_text() for name in scenes)
+            subprocess.run([FLOE, name + ".yaml"], capture_output=True, check=True,
+                           cwd=self.folder.name)
+        made, read = (Path(self.folder.name, "out", name, "history.csv").read_text()
+                      for name in scenes)
         self.assertEqual(made, read)
         with h5py.File(Path(self.folder.name, "out/made/lattice.h5")) as file:
             self.assertEqual(file["beams/shear_factor_y"].shape, file["beams/length"].shape)
             width, height = file["beams/width"][:], file["beams/height"][:]
             np.testing.assert_array_equal(file["beams/area"][:], width * height)
-            np.testing.assert_allclose(file["beams/inertia_y"][:], width * height**3 / 12, rtol=1e-15)
+            np.testing.assert_allclose(file["beams/inertia_y"][:], width * height**3 / 12,
+                                       rtol=1e-15)
 
     def test_bad_arguments_are_one_clear_line(self):
         file = os.path.join(self.folder.name, "x.h5")
-        run = subprocess.run([str(REPOSITORY / "tools/make_lattice"), "triangles", "--rows", "4", file],
+        run = subprocess.run([str(REPOSITORY / "tools/make_lattice"), "triangles", "--rows", "4",
+                              file],
                              capture_output=True, text=True)
         self.assertEqual(run.returncode, 2)
         self.assertIn("odd number of rows", run.stderr)
@@ -143,9 +152,11 @@ class Frames(unittest.TestCase):
         lattice = fl.bend45(16)
         radius = np.linalg.norm(lattice.position - [0, 100, 0], axis=1)
         np.testing.assert_allclose(radius, 100, rtol=1e-14)
-        np.testing.assert_allclose(lattice.position[-1], [100 * np.sqrt(0.5), 100 * (1 - np.sqrt(0.5)), 0])
+        np.testing.assert_allclose(lattice.position[-1],
+                                   [100 * np.sqrt(0.5), 100 * (1 - np.sqrt(0.5)), 0])
         beam = lattice.beam
-        self.assertAlmostEqual(beam["shear_factor"][0] * beam["shear_modulus"][0] * beam["area"][0], 4.1667e6, -3)
+        self.assertAlmostEqual(beam["shear_factor"][0] * beam["shear_modulus"][0] * beam["area"][0],
+                               4.1667e6, -3)
         self.assertAlmostEqual(beam["shear_modulus"][0] * beam["torsion"][0], 8.333e5, -3)
         softer = fl.bend45(16, torsion=0.141).beam
         self.assertAlmostEqual(softer["shear_modulus"][0] * softer["torsion"][0], 7.05e5, 3)
@@ -191,14 +202,18 @@ class Triangles(unittest.TestCase):
         np.testing.assert_allclose(lattice.position.mean(axis=0), 0, atol=1e-14)
         x = {name: np.unique(np.round(lattice.position[members, 0], 12))
              for name, members in lattice.sets.items()}
-        self.assertEqual((x["left"], x["leftinner"], x["rightinner"], x["right"]), (-2, -1.5, 1.5, 2))
+        self.assertEqual((x["left"], x["leftinner"], x["rightinner"], x["right"]),
+                         (-2, -1.5, 1.5, 2))
 
     def test_uniform_stress_is_an_exact_equilibrium(self):
-        """Stretched along its rows, only the held zigzags feel forces; the modulus is E* of the infinite lattice."""
+        """Stretched along its rows, only the held zigzags feel forces; the modulus is E* of the
+        infinite lattice."""
         lattice, strain = fl.triangles(7, 9, 2.0, 0.5), 1e-3
-        held = np.concatenate([lattice.sets[s] for s in ("left", "leftinner", "right", "rightinner")])
+        held = np.concatenate([lattice.sets[s]
+                               for s in ("left", "leftinner", "right", "rightinner")])
         free = np.setdiff1d(np.arange(len(lattice.position)), held)
-        variants = {"one_point": lambda a, i, l: 5 / 6 * a / 2.6 / l, "none": lambda a, i, l: 12 * i / l**3}
+        variants = {"one_point": lambda a, i, l: 5 / 6 * a / 2.6 / l, "none": lambda a, i,
+                    l: 12 * i / l**3}
         for name, ratio in (("one_point", 5 / 6 / 2.6), ("none", 1 / 3)):
             poisson = (1 - ratio) / (3 + ratio)
             affine = lattice.position[:, :2] * strain * [1, -poisson]
@@ -206,7 +221,8 @@ class Triangles(unittest.TestCase):
             scale = np.abs(out).max()
             self.assertLess(np.abs(out[free]).max(), 1e-12 * scale, name)
             self.assertLess(np.abs(out[held, 1]).max(), 1e-12 * scale, name)
-            force = -out[np.concatenate([lattice.sets["right"], lattice.sets["rightinner"]]), 0].sum()
+            force = -out[np.concatenate([lattice.sets["right"], lattice.sets["rightinner"]]),
+                         0].sum()
             width = 8 * np.sqrt(3)
             modulus = abs(force) / (width * 0.5 * strain * 4e9)
             self.assertAlmostEqual(modulus, 2 * (1 + ratio) / (3 + ratio), 12)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""sheet: mesh_file: the second scene of a sheet reads the mesh that the first one made, to the last bit."""
+"""sheet: mesh_file: the second scene of a sheet reads the mesh that the first one made, to the last
+bit."""
 import json
 import tempfile
 import unittest
@@ -9,7 +10,8 @@ import h5py
 
 import launch
 
-TENSION = [str(launch.REPOSITORY / "input/tension.yaml"), "-sheet_length", "20", "-sheet_width", "20"]
+TENSION = [str(launch.REPOSITORY / "input/tension.yaml"), "-sheet_length", "20", "-sheet_width",
+           "20"]
 
 
 class MeshFile(unittest.TestCase):
@@ -25,7 +27,8 @@ class MeshFile(unittest.TestCase):
 
     def lattice(self, folder):
         with h5py.File(self.root / folder / "lattice.h5") as file:
-            return [file[name][:].tobytes() for name in ("bodies/position", "bodies/inertia", "beams/bodies", "beams/area")]
+            return [file[name][:].tobytes() for name in ("bodies/position", "bodies/inertia",
+                                                         "beams/bodies", "beams/area")]
 
     def summary(self, folder):
         return json.loads((self.root / folder / "summary.json").read_text())
@@ -46,9 +49,11 @@ class MeshFile(unittest.TestCase):
 
     def test_mesh_of_another_sheet_is_refused(self):
         self.floe("-output_dir", "made", "-sheet_mesh_file", "mesh.h5")
-        for change, named in ((("-sheet_seed", "2"), "seed"), (("-sheet_element_size", "2.5"), "element_size"),
+        for change, named in ((("-sheet_seed", "2"), "seed"),
+                              (("-sheet_element_size", "2.5"), "element_size"),
                               (("-sheet_iterations", "10"), "iterations")):
-            message = self.floe("-output_dir", "other", "-sheet_mesh_file", "mesh.h5", *change, expect=2)
+            message = self.floe("-output_dir", "other", "-sheet_mesh_file", "mesh.h5", *change,
+                                expect=2)
             self.assertIn("sheet: mesh_file: 'mesh.h5' is the mesh of another sheet", message)
             self.assertIn(named, message)
         (self.root / "text.h5").write_text("not HDF5")

@@ -6,9 +6,7 @@ Small scenes run in a temporary folder. Numbers are compared with each other, ne
 import csv
 import json
 import re
-import tempfile
 import unittest
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -53,12 +51,7 @@ def by_quaternions(q, v):
     return v + 2 * np.cross(r, np.cross(r, v) + w * v)
 
 
-class OutputTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-
+class OutputTest(launch.FolderTest):
     def start(self, scene, *options, ranks=1, name="scene"):
         """Runs a scene text; the finished process."""
         path = self.folder / (name + ".yaml")

@@ -30,14 +30,17 @@ def leaves(data):
     while not at.IsDoneWithTraversal():
         block = at.GetCurrentDataObject()
         cells = block.GetCellData()
-        found["bodies" if cells.HasArray("body") else "cracks" if cells.HasArray("beam") else "beams"] = block
+        kind = ("bodies" if cells.HasArray("body") else
+                "cracks" if cells.HasArray("beam") else "beams")
+        found[kind] = block
         at.GoToNextItem()
     return found
 
 def describe(block):
     cells = block.GetCellData()
     arrays = [cells.GetArray(i) for i in range(cells.GetNumberOfArrays())]
-    ranges = {a.GetName(): [a.GetRange(k) for k in range(a.GetNumberOfComponents())] for a in arrays}
+    ranges = {a.GetName(): [a.GetRange(k) for k in range(a.GetNumberOfComponents())]
+              for a in arrays}
     return {"cells": block.GetNumberOfCells(), "bounds": block.GetBounds(), "ranges": ranges}
 
 reader = OpenDataFile(sys.argv[1])
@@ -53,7 +56,8 @@ with open(sys.argv[2], "w") as out:
 
 
 def count_polygons(topology):
-    """Number of cells in an XDMF Mixed stream of polygons: 3, n, then n vertices, again and again."""
+    """Number of cells in an XDMF Mixed stream of polygons: 3, n, then n vertices, again and
+    again."""
     cells, at = 0, 0
     while at < len(topology):
         if topology[at] != 3:
@@ -68,8 +72,10 @@ def count_polygons(topology):
 class ParaView(unittest.TestCase):
     def test_opens_fields(self):
         with tempfile.TemporaryDirectory() as folder:
-            run = subprocess.run([FLOE, str(REPOSITORY / "input/tension.yaml"), "-sheet_length", "12",
-                                  "-sheet_width", "10", "-sheet_iterations", "10", "-time_dt", "0.5",
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/tension.yaml"), "-sheet_length",
+                                  "12",
+                                  "-sheet_width", "10", "-sheet_iterations", "10", "-time_dt",
+                                  "0.5",
                                   "-output_fields", "0.5", "-output_dir", f"{folder}/out"],
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
@@ -79,21 +85,24 @@ class ParaView(unittest.TestCase):
     def test_cracks_appear(self):
         """The grid of cracks is there from the first break on."""
         with tempfile.TemporaryDirectory() as folder:
-            run = subprocess.run([FLOE, str(REPOSITORY / "input/notch.yaml"), "-sheet_element_size", "2",
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/notch.yaml"), "-sheet_element_size",
+                                  "2",
                                   "-output_fields", "0.05", "-output_dir", f"{folder}/out"],
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
             seen = self.look(Path(folder), Path(folder, "out/fields.xmf"))
             numbers = []
             with h5py.File(Path(folder, "out/fields.h5")) as fields:
-                samples = sorted((g for g in fields.values() if "time" in g.attrs), key=lambda g: g.attrs["time"])
+                samples = sorted((g for g in fields.values() if "time" in g.attrs),
+                                 key=lambda g: g.attrs["time"])
                 self.assertEqual(len(seen), len(samples))
                 for sample, group in zip(seen, samples):
                     broken = np.flatnonzero(group["damage"][:] == 1)
                     cracks = sample["blocks"].get("cracks")
                     numbers.append(cracks["cells"] if cracks else 0)
                     self.assertEqual(numbers[-1], 2 * len(broken))
-                    self.assertEqual(sample["blocks"]["beams"]["ranges"]["damage"][0][1], float(len(broken) > 0))
+                    self.assertEqual(sample["blocks"]["beams"]["ranges"]["damage"][0][1],
+                                     float(len(broken) > 0))
                     if cracks:
                         self.assertEqual(cracks["ranges"]["beam"], [[broken.min(), broken.max()]])
                         points = group["crack_points"][:]
@@ -105,13 +114,17 @@ class ParaView(unittest.TestCase):
     def test_render_draws(self):
         """Pictures at given times with ice, water and obstacles, and a film."""
         with tempfile.TemporaryDirectory() as folder:
-            run = subprocess.run([FLOE, str(REPOSITORY / "input/ice_cone.yaml"), "-sheet_iterations", "10", "-sheet_length",
-                                  "12", "-sheet_width", "10", "-sheet_element_size", "2", "-obstacle_cone_base", "10,0,-4",
-                                  "-time_end", "0.02", "-output_fields", "0.01", "-output_dir", f"{folder}/out"],
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/ice_cone.yaml"),
+                                  "-sheet_iterations", "10", "-sheet_length",
+                                  "12", "-sheet_width", "10", "-sheet_element_size", "2",
+                                  "-obstacle_cone_base", "10,0,-4",
+                                  "-time_end", "0.02", "-output_fields", "0.01", "-output_dir",
+                                  f"{folder}/out"],
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
             render = [str(REPOSITORY / "tools/render"), f"{folder}/out", "--size", "320", "200"]
-            drawn = subprocess.run([*render, "--time", "0", "0.02", "--file", f"{folder}/a.png"], capture_output=True,
+            drawn = subprocess.run([*render, "--time", "0", "0.02", "--file", f"{folder}/a.png"],
+                                   capture_output=True,
                                    text=True)
             self.assertEqual(drawn.returncode, 0, drawn.stdout + drawn.stderr)
             self.assertEqual(drawn.stdout.split(), [f"{folder}/a_0.png", f"{folder}/a_1.png"])
@@ -121,7 +134,8 @@ class ParaView(unittest.TestCase):
             self.assertGreater(np.sum((red > 150) & (blue < 245)), 2000)  # tops of the ice
             self.assertGreater(np.sum((red < 140) & (red >= blue) & (red > 20)), 500)  # the cone
             if shutil.which("ffmpeg"):
-                film = subprocess.run([*render, "--film", f"{folder}/a.mp4"], capture_output=True, text=True)
+                film = subprocess.run([*render, "--film", f"{folder}/a.mp4"], capture_output=True,
+                                      text=True)
                 self.assertEqual(film.returncode, 0, film.stdout + film.stderr)
                 self.assertGreater(Path(folder, "a.mp4").stat().st_size, 1000)
 
@@ -139,7 +153,8 @@ class ParaView(unittest.TestCase):
         with h5py.File(out / "fields.h5") as fields, h5py.File(out / "lattice.h5") as lattice:
             faces = count_polygons(fields["mesh/topology"][:])
             self.assertEqual(faces, len(lattice["shapes/corner_of"]) - 1)
-            samples = sorted((g for g in fields.values() if "time" in g.attrs), key=lambda g: g.attrs["time"])
+            samples = sorted((g for g in fields.values() if "time" in g.attrs),
+                             key=lambda g: g.attrs["time"])
             self.assertEqual([s["time"] for s in seen], [0, 0.5, 1])
             self.assertEqual([float(g.attrs["time"]) for g in samples], [0, 0.5, 1])
             for sample, group in zip(seen, samples):
@@ -149,14 +164,17 @@ class ParaView(unittest.TestCase):
                 points = group["points"][:]
                 bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
                 np.testing.assert_allclose(bodies["bounds"], bounds, atol=1e-6)
-                self.same_ranges(bodies["ranges"]["face_displacement"], group["bodies_displacement"][:], 1e-6)
+                self.same_ranges(bodies["ranges"]["face_displacement"],
+                                 group["bodies_displacement"][:], 1e-6)
                 self.same_ranges(beams["ranges"]["beams_force"], group["beams_force"][:], 1e-12)
                 self.assertEqual(bodies["ranges"]["body"], [[0, len(lattice["bodies/mass"]) - 1]])
 
     def same_ranges(self, seen, values, tolerance):
-        """Least and largest value of each column of `values`, to a tolerance relative to the largest of all."""
+        """Least and largest value of each column of `values`, to a tolerance relative to the
+        largest of all."""
         ranges = np.column_stack([values.min(axis=0), values.max(axis=0)])
-        np.testing.assert_allclose(seen, ranges, rtol=tolerance, atol=tolerance * np.abs(values).max())
+        np.testing.assert_allclose(seen, ranges, rtol=tolerance,
+                                   atol=tolerance * np.abs(values).max())
 
 
 if __name__ == "__main__":

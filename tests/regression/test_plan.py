@@ -4,9 +4,7 @@ number, before anything is written."""
 import json
 import re
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
 import launch
 
@@ -24,17 +22,14 @@ STATIC = """forces: [beam, gravity, buoyancy]
 sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
 load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 1}}
 """
-PLAN = re.compile(r"plan: (?P<step>.*)\nplan: about (?P<rows>\S+) rows?, (?P<frames>\S+) frames?, (?P<size>\S+) (?P<unit>[kMGT]B) on "
-                  r"disk; \S+ [kMG]B of memory so far(?:; about (?P<time>.+) \(by (?P<by>.*)\))?\n")
+PLAN = re.compile(r"plan: (?P<step>.*)\nplan: about (?P<rows>\S+) rows?, (?P<frames>\S+) frames?, (?P<size>\S+) "
+                  r"(?P<unit>[kMGT]B) on disk; (?P<now>\S+ [kMG]B) of memory so far"
+                  r"(?:, about (?P<solver>\S+ [kMG]B) with the solver's)?(?:; about (?P<time>.+) \(by (?P<by>.*)\))?\n")
+SHEETS = "what sheets of this size take, to a factor of 3"
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 
 
-class PlanTest(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-
+class PlanTest(launch.FolderTest):
     def run_scene(self, scene, *options, code=0, ranks=1):
         (self.folder / "scene.yaml").write_text(scene)
         done = launch.run("scene.yaml", *options, ranks=ranks, cwd=self.folder)
@@ -78,18 +73,44 @@ class Said(PlanTest):
     def test_implicit(self):
         plan = self.plan(IMPLICIT, "-time_dt", "0.001", "-output_history", "0.002", "-output_fields", "0.005")
         self.assertIn("step 0.001 s; 20 steps", plan["step"])
+        self.assertRegex(plan["time"], r"^\S+ s$")
+        self.assertEqual(plan["by"], SHEETS)
         rows, frames, size = self.written()
         self.assertEqual((int(plan["rows"]), int(plan["frames"])), (rows, frames))
         self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
         plan = self.plan(IMPLICIT)
         self.assertIn("steps as long as their error allows, the first 0.0005 s", plan["step"])
+        self.assertRegex(plan["time"], r"^\S+ s a step$")
 
     def test_static(self):
         plan = self.plan(STATIC, "-time_dt", "0.1", "-output_fields", "0.2")
         self.assertIn("load step 0.1; 10 load steps", plan["step"])
+        self.assertRegex(plan["time"], r"^\S+ s$")
+        self.assertEqual(plan["by"], SHEETS)
         rows, frames, size = self.written()
         self.assertEqual((int(plan["rows"]), int(plan["frames"])), (rows, frames))
         self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
+
+    def seconds(self, scene, *options):
+        """What -check expects of a run."""
+        number, unit = self.plan(scene, *options, "-check")["time"].split()
+        return float(number) * {"s": 1, "min": 60, "h": 3600}[unit]
+
+    def test_time_grows_with_what_is_to_be_done(self):
+        large = ("-sheet_length", "40", "-sheet_width", "40")
+        for scene, step in ((STATIC, "0.1"), (IMPLICIT, "0.001")):
+            whole = self.seconds(scene, "-time_dt", step)
+            self.assertLess(whole, 0.5 * self.seconds(scene, "-time_dt", step, *large))
+            twice = self.seconds(scene, "-time_dt", str(float(step) / 2))
+            self.assertTrue(1.5 * whole < twice < 2.5 * whole, (whole, twice))
+
+    def test_memory_of_the_solver(self):
+        """To a factor of 3, of a sheet that is large enough for it to show."""
+        units = {"kB": 1e-3, "MB": 1, "GB": 1e3}
+        plan = self.plan(STATIC, "-sheet_length", "80", "-sheet_width", "80")
+        now, solver = (float(number) * units[unit] for number, unit in (plan[name].split() for name in ("now", "solver")))
+        taken = self.summary()["peak_memory_mb"] - now
+        self.assertTrue((solver - now) / 3 < taken < 3 * (solver - now), (now, solver, taken))
 
     def test_check_says_it_too_and_writes_nothing(self):
         for scene in (EXPLICIT, IMPLICIT, STATIC):
@@ -144,6 +165,15 @@ class Refused(PlanTest):
         self.refuse(IMPLICIT, *options, said=("output: would be about 2e+10 rows", "TB on disk", "at most 1 TB", "limit: disk"))
         self.plan(IMPLICIT, *options, "-limit_disk", "1e5", "-check")
         self.refuse(EXPLICIT, "-limit_disk", "1e-6", said=("on disk, at most 1 kB are taken",))
+
+    def test_memory(self):
+        """A sheet that will not find room is refused before it is meshed (tests/unit/test_expected_cost.cpp)."""
+        large = ("-sheet_length", "10000", "-sheet_width", "10000", "-limit_memory", "2")
+        for scene, ranks in ((EXPLICIT, 1), (STATIC, 1), (STATIC, 2)):
+            self.refuse(scene, *large, ranks=ranks,
+                        said=("sheet: about 28867514 bodies would take about ", "of memory, at most 2 GB are taken (limit: memory)"))
+        self.refuse(EXPLICIT.replace("sheet:", "lattice_file: l.h5\n#"), "-limit_memory", "2", said=("limit: memory", "only a sheet"))
+        self.plan(STATIC, "-limit_memory", "2", "-check")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""Every scene of input/ runs by the command of its own first line and gives the numbers its header promises.
+"""Every scene of input/ runs by the command of its own first line and gives the numbers its header
+promises.
 
-A scene without an entry in EXPECTED fails; the checks are in scenes/, by subject. The commands run in a
-temporary folder that looks like the repository, with floe on the PATH, so nothing is left behind.
+A scene without an entry in EXPECTED fails; the checks are in scenes/, by subject. The commands run
+in a temporary folder that looks like the repository, with floe on the PATH, so nothing is left
+behind.
 Commands on several ranks: test_scenes_ranks.py.
 """
 import os
@@ -83,12 +85,15 @@ class SceneTest(unittest.TestCase):
     def runner(self, scene):
         """A function that runs the scene's own command, with more options if given: its output."""
         first = scene.read_text().splitlines()[0]
-        self.assertTrue(first.startswith("# ") and first.endswith(f"input/{scene.relative_to(REPOSITORY / 'input')}"),
+        self.assertTrue(first.startswith("# ")
+                        and first.endswith(f"input/{scene.relative_to(REPOSITORY / 'input')}"),
                         f"{scene}: the first line must be the command that runs it")
 
         def run(*options, ranks=1, status=0):
-            command = " ".join([*(["mpiexec", "-n", str(ranks)] if ranks > 1 else []), first[2:], *options])
-            done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, capture_output=True,
+            command = " ".join([*(["mpiexec", "-n", str(ranks)] if ranks > 1 else []), first[2:],
+                                *options])
+            done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment,
+                                  capture_output=True,
                                   text=True)
             self.assertEqual(done.returncode, status, f"{command}\n{done.stdout}{done.stderr}")
             return Output(self.folder / "out" / scene.stem)
@@ -97,7 +102,8 @@ class SceneTest(unittest.TestCase):
 
 
 def add_tests(case, on_ranks):
-    """One test per scene, named after it: those whose command is for several ranks, or the others."""
+    """One test per scene, named after it: those whose command is for several ranks, or the
+    others."""
     for scene in sorted((REPOSITORY / "input").rglob("*.yaml")):
         name = str(scene.relative_to(REPOSITORY / "input"))
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The scenes of input/ whose commands are for several ranks, which want the cores to themselves: see test_scenes.py."""
+"""The scenes of input/ whose commands are for several ranks, which want the cores to themselves:
+see test_scenes.py."""
 import unittest
 
 import numpy as np
@@ -9,7 +10,8 @@ import test_scenes
 
 class OnRanks(test_scenes.SceneTest):
     def test_a_sheet_that_breaks_on_a_slope(self):
-        """Beams that break, fragments and their contacts move alike on one rank and on two, to the last bit."""
+        """Beams that break, fragments and their contacts move alike on one rank and on two, to the
+        last bit."""
         run = self.runner(test_scenes.REPOSITORY / "input/ice_slope.yaml")
 
         def motion(ranks):

@@ -6,10 +6,12 @@ import subprocess
 import unittest
 
 from launch import ENVIRONMENT, FLOE, on_ranks, own_words
-from running import AFLOAT, LOADED, STOPPED, RunningTest
+from running import STOPPED, RunningTest
+from small_scenes import AFLOAT, LOADED
 
 ALL = ("SIGTERM", "SIGINT", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGXCPU")
-LONG_SET_UP = AFLOAT.replace("iterations: 5", "iterations: 1000000").replace("length: 6", "length: 30")
+LONG_SET_UP = AFLOAT.replace("iterations: 5",
+                             "iterations: 1000000").replace("length: 6", "length: 30")
 
 
 class Signals(RunningTest):
@@ -73,7 +75,8 @@ class Signals(RunningTest):
             self.wait(process, lambda: (self.folder / "out/scene/.lock").exists())
             process.send_signal(signal.SIGUSR1)
             said = self.finish(process, STOPPED)
-            self.assertEqual(said, "floe: stopped on request before the first state; nothing has been written\n")
+            self.assertEqual(said, "floe: stopped on request before the first state; "
+                                   "nothing has been written\n")
             self.assertEqual(sorted(self.files()), ["scene.yaml"])
 
 
@@ -82,7 +85,8 @@ class Pipes(RunningTest):
         """floe SCENE | head -1: the run goes on to its end."""
         for ranks in (1, 2):
             command = " ".join(map(str, on_ranks(ranks, [FLOE, "scene.yaml", "-time_end", "2"])))
-            done = subprocess.run(["bash", "-c", f"{command} | head -1; exit ${{PIPESTATUS[0]}}"], cwd=self.folder,
+            done = subprocess.run(["bash", "-c", f"{command} | head -1; exit ${{PIPESTATUS[0]}}"],
+                                  cwd=self.folder,
                                   capture_output=True, text=True, env=ENVIRONMENT)
             self.assertEqual(done.stdout.count("\n"), 1)
             self.assertEqual(own_words(done.stderr), "")
@@ -90,7 +94,8 @@ class Pipes(RunningTest):
             self.assertEqual(self.summary()["status"], "done")
 
     def test_closed_from_the_start(self):
-        done = subprocess.run([FLOE, "scene.yaml", "-time_end", "1"], cwd=self.folder, env=ENVIRONMENT,
+        done = subprocess.run([FLOE, "scene.yaml", "-time_end", "1"], cwd=self.folder,
+                              env=ENVIRONMENT,
                               preexec_fn=lambda: (os.close(1), os.close(2)))
         self.assertEqual(done.returncode, 0)
         self.assertEqual(self.summary()["status"], "done")

@@ -1,17 +1,15 @@
 #!/usr/bin/python3
-"""The tools answer bad input with one line and exit code 2: folders that are not there, damaged files, runs without that
-result, times out of range, pictures that cannot be drawn.
+"""The tools answer bad input with one line and exit code 2: folders that are not there, damaged
+files, runs without that result, times out of range, pictures that cannot be drawn.
 """
 import os
 import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
+from launch import FLOE, REPOSITORY, temporary_folder
+
 TOOLS = REPOSITORY / "tools"
 READERS = ("plot_sheet", "plot_fragments", "plot_load", "plot_deflection", "campaign_report")
 SCENE = """forces: [beam]
@@ -23,15 +21,15 @@ boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
 class ToolsBadInput(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = Path(folder.name)
+        cls.folder = temporary_folder(cls.addClassCleanup)
         (cls.folder / "s.yaml").write_text(SCENE)
-        subprocess.run([str(FLOE), "s.yaml"], cwd=cls.folder, check=True, capture_output=True, timeout=600)
+        subprocess.run([str(FLOE), "s.yaml"], cwd=cls.folder, check=True, capture_output=True,
+                       timeout=600)
 
     def refused(self, tool, *words, part=""):
         with self.subTest(tool=tool, words=words):
-            run = subprocess.run([sys.executable, str(TOOLS / tool), *words], cwd=self.folder, capture_output=True,
+            run = subprocess.run([sys.executable, str(TOOLS / tool), *words], cwd=self.folder,
+                                 capture_output=True,
                                  text=True, timeout=600, env={**os.environ, "FLOE": str(FLOE)})
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
             self.assertEqual(len(run.stderr.splitlines()), 1, run.stderr)

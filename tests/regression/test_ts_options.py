@@ -8,17 +8,9 @@ import subprocess
 import unittest
 
 import launch
+from small_scenes import PULL
 from test_restart import INTERRUPTED, RestartTest, contents, stop_file
 
-PULL = """integrator: explicit
-forces: [beam]
-sheet: {length: 10, thickness: 0.5, element_size: 1.5, iterations: 10}
-boundary:
-  names: [left, right]
-  left: {set: left, fix: x}
-  right: {set: right, fix: x, velocity: [0.1, 0, 0]}
-time: {end: 0.01}
-"""
 RK4 = ("-ts_type", "rk", "-ts_rk_type", "4")
 DP5 = ("-ts_type", "rk", "-ts_rk_type", "5dp")
 ADAPTIVE = (*DP5, "-ts_adapt_type", "basic", "-ts_atol", "1e-8", "-ts_rtol", "0")

@@ -10,7 +10,8 @@ PAGE = Path(__file__).resolve().parents[2] / "tools/verification_page"
 
 
 def row(section, quantity, value, **more):
-    return {"section": section, "quantity": quantity, "value": value, "reference": 1.0, "tolerance": 0.1,
+    return {"section": section, "quantity": quantity, "value": value, "reference": 1.0,
+            "tolerance": 0.1,
             "unit": "", "note": "", "pass": True, **more}
 
 
@@ -25,8 +26,10 @@ class Page(unittest.TestCase):
             return page.read_text() if page.exists() else None, run
 
     def test_tables(self):
-        rows = [row("Tension", "E/Eb, L/l = 20", 0.5), row("Beams", "tip", -23.5, unit="m", note="a|b"),
-                row("Tension", "E/Eb, L/l = 20", 1.05), row("Tension", "bad", 2.0, **{"pass": False}),
+        rows = [row("Tension", "E/Eb, L/l = 20", 0.5),
+                row("Beams", "tip", -23.5, unit="m", note="a|b"),
+                row("Tension", "E/Eb, L/l = 20", 1.05),
+                row("Tension", "bad", 2.0, **{"pass": False}),
                 row("Beams", "reported", 3e-13, reference=None, tolerance=None)]
         lines = [json.dumps(r) for r in rows]
         text, run = self.make(lines[:3], lines[3:])

@@ -47,6 +47,17 @@ inline void put(Vec v, const Vector& values) {
   check(VecRestoreArrayWrite(v, &to));
 }
 
+/// x'' = -x: undamped, one degree of freedom, omega = 1.
+inline System swing() {
+  System s;
+  s.mass = Matrix::Identity(1, 1);
+  s.force = [](double, const Vector& x, const Vector&) -> Vector { return -x; };
+  s.slope = [](double, const Vector&, const Vector&) {
+    return std::pair<Matrix, Matrix>(-Matrix::Identity(1, 1), Matrix::Zero(1, 1));
+  };
+  return s;
+}
+
 /// A TS on a system, with X and V at t = 0.
 class Stepper {
  public:

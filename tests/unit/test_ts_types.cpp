@@ -115,20 +115,10 @@ TEST(TsTypes, LeapfrogHasAFixedStep) {
   EXPECT_STREQ(type, TSADAPTNONE);
 }
 
-System oscillator() {
-  System s;
-  s.mass = Matrix::Identity(1, 1);
-  s.force = [](double, const Vector& x, const Vector&) -> Vector { return -x; };
-  s.slope = [](double, const Vector&, const Vector&) {
-    return std::pair<Matrix, Matrix>(-Matrix::Identity(1, 1), Matrix::Zero(1, 1));
-  };
-  return s;
-}
-
 const Vector one = Vector::Ones(1), zero = Vector::Zero(1);
 
 TEST(TsTypes, LieAlphaSolvesEachStepAndTellsPetsc) {
-  System system = oscillator();
+  System system = swing();
   Stepper run(system, ts_liealpha, one, zero);
   run.run(300, 3);
   EXPECT_NEAR(run.x()[0], std::cos(3.0), 1e-3);
@@ -150,7 +140,7 @@ TEST(TsTypes, LieAlphaIsGivenItsOptions) {
   std::array<double, 2> amplitude{};
   for (const int k : {0, 1}) {
     const PetscOption option("-ts_liealpha_radius", k == 0 ? "1" : "0");
-    System system = oscillator();
+    System system = swing();
     Stepper run(system, ts_liealpha, one, zero);
     run.run(100, 100);
     amplitude[static_cast<std::size_t>(k)] = std::hypot(run.x()[0], run.v()[0]);
@@ -163,7 +153,7 @@ TEST(TsTypes, LieAlphaIsGivenItsOptions) {
 TEST(TsTypes, LieAlphaAdaptsItsStepToTheTolerance) {
   const PetscOption adapt("-ts_adapt_type", "basic"), relative("-ts_rtol", "1e-5"),
       absolute("-ts_atol", "1e-5");
-  System system = oscillator();
+  System system = swing();
   Stepper run(system, ts_liealpha, one, zero);
   run.run(3000, 3);
   ASSERT_FALSE(run.steps_taken.empty());
@@ -172,7 +162,7 @@ TEST(TsTypes, LieAlphaAdaptsItsStepToTheTolerance) {
 
 TEST(TsTypes, LieAlphaGivesUpAfterTheRejectionsThatAreAllowed) {
   const PetscOption rejections("-ts_max_reject", "3");
-  System system = oscillator();
+  System system = swing();
   system.force = [](double, const Vector& x, const Vector&) -> Vector { return x * std::nan(""); };
   Stepper run(system, ts_liealpha, one, zero);
   run.run(10, 1);

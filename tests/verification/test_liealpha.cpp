@@ -95,17 +95,6 @@ TEST(LieAlpha, EqualsAlpha2AtRadiusOne) {
           .note = "two linear oscillators with dashpots, 60 steps"});
 }
 
-/// Undamped, one degree of freedom, omega = 1.
-System swing() {
-  System s;
-  s.mass = Matrix::Identity(1, 1);
-  s.force = [](double, const Vector& x, const Vector&) -> Vector { return -x; };
-  s.slope = [](double, const Vector&, const Vector&) {
-    return std::pair<Matrix, Matrix>(-Matrix::Identity(1, 1), Matrix::Zero(1, 1));
-  };
-  return s;
-}
-
 /// Amplitude after `steps` steps of h over the first, X = 1 and V = 0.
 double decay(double h, int steps) {
   System system = swing();

@@ -56,10 +56,17 @@ class Progress {
   /// \param done  how much of `total` is done   \param note  a few words more, e.g. "step 3, 5
   /// iterations"
   void update(double done, std::string_view note = {});
+  /// Before a piece of work that says nothing until it is done: a line at once if it will take
+  /// longer than the time between two lines. \param seconds  expected the first time; later ones
+  /// are expected to take as long as the last, which ended with the next call of this or update
+  void announce(double done, std::string_view note, double seconds);
 
  private:
+  void print(double done, std::string_view note, double now);
+
   std::string_view what_;
   double total_, start_, last_print_, last_logged_;
+  double announced_ = 0, took_ = 0;  // when the last piece of work began, and how long one took
   bool shown_ = false, terminal_ = false, active_ = false;
 };
 

@@ -57,6 +57,7 @@ struct RunPlan {
   double done = 0;            ///< of them, where the run goes on from a checkpoint
   double seconds_a_step = 0;  ///< by the clock; 0: not known
   std::string measured;       ///< what that rests on
+  double bytes = 0;           ///< of memory that solvers will take
 };
 
 /// Is told before the first step. False: the run is not made.

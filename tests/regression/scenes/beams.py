@@ -31,7 +31,8 @@ def check_rollup(test, run):
 
 def check_elastica(test, run):
     output = run()
-    table = {0.1: (.05643, .30172), 0.2: (.16064, .49346), 0.5: (.38763, .71379), 1: (.55500, .81061)}
+    table = {0.1: (.05643, .30172), 0.2: (.16064, .49346), 0.5: (.38763, .71379),
+             1: (.55500, .81061)}
     for time, (x, y) in table.items():
         moved = tip(output, time) / 10
         np.testing.assert_allclose([-moved[0], moved[1]], [x, y], rtol=5e-4, err_msg=f"time {time}")
@@ -39,8 +40,10 @@ def check_elastica(test, run):
 
 def check_free_top(test, run):
     output = run()
-    upright = [np.cos(np.linalg.norm(v)) + (1 - np.cos(np.linalg.norm(v))) * (v[1] / np.linalg.norm(v))**2
-               for v in (output.field("bodies_rotation", t)[0] for t in output.times[1:])]  # R_22
+    turned = [output.field("bodies_rotation", t)[0] for t in output.times[1:]]
+    angles = [np.linalg.norm(v) for v in turned]
+    upright = [np.cos(a) + (1 - np.cos(a)) * (v[1] / a)**2  # R_22
+               for v, a in zip(turned, angles)]
     test.assertGreater(max(upright), 0.9)
     test.assertLess(min(upright), -0.9)
     kinetic = output.history("energy_kinetic")
@@ -51,7 +54,8 @@ def rotations(vectors):
     """Matrices of rotation vectors, n x 3 x 3 (Rodrigues)."""
     angle = np.linalg.norm(vectors, axis=1)[:, None, None] + 1e-300
     cross = np.zeros((len(vectors), 3, 3))
-    for (i, j, k), sign in (((2, 1, 0), 1), ((0, 2, 1), 1), ((1, 0, 2), 1), ((1, 2, 0), -1), ((2, 0, 1), -1),
+    for (i, j, k), sign in (((2, 1, 0), 1), ((0, 2, 1), 1), ((1, 0, 2), 1), ((1, 2, 0), -1),
+                            ((2, 0, 1), -1),
                             ((0, 1, 2), -1)):
         cross[:, i, j] = sign * vectors[:, k]
     cross /= angle
@@ -68,16 +72,19 @@ def check_rk_top(test, run):
     parameter = (i2 - i1) * (energy2 * i3 - momentum @ momentum) / ((i3 - i2) * first)
     if parameter > 1:
         rate, parameter = rate * np.sqrt(parameter), 1 / parameter
-    a, b = 1.0, np.sqrt(1 - parameter)  # K = pi/(2 M(1, sqrt(1 - m))), M the arithmetic-geometric mean
+    # K = pi/(2 M(1, sqrt(1 - m))), M the arithmetic-geometric mean
+    a, b = 1.0, np.sqrt(1 - parameter)
     while abs(a - b) > 1e-15:
         a, b = (a + b) / 2, np.sqrt(a * b)
     half_period = np.pi / a / rate
     turned = rotations(np.array([output.field("bodies_rotation", t)[0] for t in output.times]))
     along = np.einsum("nij,i->nj", turned, momentum)[:, 1]
     k = np.flatnonzero(along[:-1] * along[1:] < 0)
-    passages = output.times[k] + (output.times[k + 1] - output.times[k]) * along[k] / (along[k] - along[k + 1])
+    passages = output.times[k] + (output.times[k + 1]
+                                  - output.times[k]) * along[k] / (along[k] - along[k + 1])
     test.assertGreater(len(passages), 4)
-    test.assertAlmostEqual((passages[-1] - passages[0]) / (len(passages) - 1) / half_period, 1, delta=1e-4)
+    test.assertAlmostEqual((passages[-1] - passages[0]) / (len(passages) - 1) / half_period, 1,
+                           delta=1e-4)
     kinetic = output.history("energy_kinetic")
     test.assertLess(np.ptp(kinetic), 1e-9 * kinetic[0])
 
@@ -94,19 +101,22 @@ def check_free_flight(test, run):
 
 
 def timoshenko_frequency(young, density, poisson, width, height, length, shear_factor=5 / 6):
-    """First natural frequency [Hz] of a clamped-free Timoshenko beam bending along `height`: the smallest root of the
-    determinant of its four end conditions (Timoshenko 1921; solutions cosh, sinh, cos, sin of the two wave numbers)."""
+    """First natural frequency [Hz] of a clamped-free Timoshenko beam bending along `height`: the
+    smallest root of the determinant of its four end conditions (Timoshenko 1921; solutions cosh,
+    sinh, cos, sin of the two wave numbers)."""
     area, inertia = width * height, width * height**3 / 12
     shear = shear_factor * young / (2 * (1 + poisson)) * area
 
     def determinant(omega):
         a, b, c = young * inertia, density * inertia * omega**2, density * area * omega**2
-        # w'''' (EI) + w'' (rho I omega^2 + EI rho A omega^2/kGA) + w (rho I omega^4 rho A/kGA - rho A omega^2) = 0
+        # w'''' (EI) + w'' (rho I omega^2 + EI rho A omega^2/kGA) + w (rho I omega^4 rho A/kGA - rho
+        # A omega^2) = 0
         roots = np.roots([a, b + a * c / shear, b * c / shear - c]).astype(complex)
         waves = [k for root in roots for k in (np.sqrt(root), -np.sqrt(root))]
         rows = [[1] * 4, [], [], []]
         for k in waves:
-            psi = k + c / (shear * k)  # rotation over deflection: kGA (w'' - psi') = -rho A omega^2 w
+            # rotation over deflection: kGA (w'' - psi') = -rho A omega^2 w
+            psi = k + c / (shear * k)
             rows[1].append(psi)
             rows[2].append(k * psi * np.exp(k * length))
             rows[3].append((k - psi) * np.exp(k * length))
@@ -121,7 +131,8 @@ def timoshenko_frequency(young, density, poisson, width, height, length, shear_f
 
 
 def dominant_frequency(values, step):
-    """Frequency [Hz] of the largest peak of a sampled signal (Hann window, parabola through the peak's logarithms)."""
+    """Frequency [Hz] of the largest peak of a sampled signal (Hann window, parabola through the
+    peak's logarithms)."""
     spectrum = np.abs(np.fft.rfft(values * np.hanning(len(values))))
     k = int(np.argmax(spectrum[1:])) + 1
     left, middle, right = np.log(spectrum[k - 1:k + 2])
@@ -135,7 +146,8 @@ def check_vibrating(test, run):
     step = output.times[1] - output.times[0]
     for axis, width, height in ((2, 0.6, 0.4), (1, 0.4, 0.6)):
         expected = timoshenko_frequency(4e9, 920, 0.3, width, height, 10)
-        test.assertAlmostEqual(dominant_frequency(tip_motion[:, axis], step) / expected, 1, delta=0.005)
+        test.assertAlmostEqual(dominant_frequency(tip_motion[:, axis], step) / expected, 1,
+                               delta=0.005)
 
 
 def check_wave(test, run):

@@ -56,5 +56,6 @@ def check_punch_through(test, run):
     test.assertGreater(output.summary["peak_force"]["plate"][2], load.max() - 1e-6 * load.max())
     energy = output.summary["energy"]
     test.assertLess(abs(energy["balance_error"]), 0.01 * energy["external"])
-    mean = output.summary["mean_force"]["plate"][2]  # over every step, where history.csv has samples
+    # over every step, where history.csv has samples
+    mean = output.summary["mean_force"]["plate"][2]
     test.assertAlmostEqual(energy["external"] / (mean * 18 * 0.25), 1, delta=1e-3)

@@ -25,19 +25,22 @@ def check_in_situ_cantilever(test, run):
     test.assertLess(bodies[1], 60)
     root = breaks(output, "place")[:, 0] < -1
     test.assertGreaterEqual(root.sum(), 4)
-    test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 1.2, delta=0.25)
+    test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 1.2,
+                           delta=0.25)
 
 
 def check_strength_tension(test, run):
     """Short forms: l = 1 m, L/l = 10 (docs/strength.md)."""
-    small = ("-sheet_length", "10", "-sheet_width", "10", "-boundary_right_displacement", "0.0015,0,0", "-time_dt", "0.1",
+    small = ("-sheet_length", "10", "-sheet_width", "10", "-boundary_right_displacement",
+             "0.0015,0,0", "-time_dt", "0.1",
              "-beam_kinematics", "linear")
     nominal = 10 * 0.5 * 6e5
     plain = run(*small)
     strength = floe_strength.of_tension(floe_strength.history(plain.folder), nominal)
     test.assertAlmostEqual(strength["largest"], 0.68, delta=0.08)
     test.assertNotIn("strength_calibration", plain.summary)
-    free = (*small, "-boundary_left_fix", "x", "-boundary_right_fix", "x", "-boundary_right_displacement", "0.0025,0,0",
+    free = (*small, "-boundary_left_fix", "x", "-boundary_right_fix", "x",
+            "-boundary_right_displacement", "0.0025,0,0",
             "-fracture_calibrate", "strength", "-time_end", "0.8")
     found = {}
     for ranks in (1, 2):
@@ -45,15 +48,18 @@ def check_strength_tension(test, run):
         found[ranks] = output.summary["strength_calibration"]
         strength = floe_strength.of_tension(floe_strength.history(output.folder), nominal)["first"]
         along_x = found[ranks]["factor"] * found[ranks]["along_x"]
-        test.assertAlmostEqual(strength / along_x, 1, delta=0.006)  # a load step may pass the strength by 0.5 %
+        # a load step may pass the strength by 0.5 %
+        test.assertAlmostEqual(strength / along_x, 1, delta=0.006)
         test.assertAlmostEqual(strength, 1, delta=0.08)  # x and y differ
     test.assertEqual(found[1]["factor"], found[2]["factor"])
 
 
 def check_strength_bending(test, run):
-    output = run("-sheet_length", "10", "-sheet_width", "10", "-load_left_moment", "0,3e5,0", "-load_right_moment", "0,-3e5,0",
+    output = run("-sheet_length", "10", "-sheet_width", "10", "-load_left_moment", "0,3e5,0",
+                 "-load_right_moment", "0,-3e5,0",
                  "-time_dt", "0.1", "-beam_kinematics", "linear", status=1)
-    strength = floe_strength.of_bending(floe_strength.history(output.folder), output.summary["message"], 1.2)
+    strength = floe_strength.of_bending(floe_strength.history(output.folder),
+                                        output.summary["message"], 1.2)
     test.assertAlmostEqual(strength["largest"], 0.87, delta=0.12)
 
 
@@ -72,7 +78,8 @@ def check_point_breakthrough(test, run):
     chord = output.position[pairs[:, 1]] - output.position[pairs[:, 0]]
     chord /= np.linalg.norm(chord, axis=1)[:, None]
     radius = np.hypot(*place[:, :2].T)
-    along = np.abs(np.sum(chord[:, :2] * place[:, :2], axis=1)) / radius  # 1: the crack runs around the load
+    # 1: the crack runs around the load
+    along = np.abs(np.sum(chord[:, :2] * place[:, :2], axis=1)) / radius
     early, late = time <= np.quantile(time, 0.25), time >= np.quantile(time, 0.6)
     test.assertGreater(np.mean(along[early] < 0.5), 2 * np.mean(along[early] > 0.8))
     test.assertGreater(np.mean(along[late] > 0.8), 1.5 * np.mean(along[late] < 0.5))

@@ -6,7 +6,8 @@ import floe_plate
 from scenes.shared import last_row
 
 YOUNG = 4e9  # of the triangles [Pa]
-SHEAR = {"one_point": 0.8333333333333333 / 2.6, "exact": 0.16339869281045752, "none": 1 / 3}  # r = k_s/k_n
+# r = k_s/k_n
+SHEAR = {"one_point": 0.8333333333333333 / 2.6, "exact": 0.16339869281045752, "none": 1 / 3}
 
 
 def force(output, boundaries, component):
@@ -53,16 +54,21 @@ def check_tension_calibrated(test, run):
     test.assertAlmostEqual(output.summary["E_over_Estar"], output.summary["E_over_Eb"], delta=1e-8)
     expect_calibration(test, output.summary["calibration"])
     young = run("-beam_calibrate", "young").summary
-    test.assertAlmostEqual(young["E_gauge_over_Eb"], 1, delta=0.012)  # edges are stiff by half a cell
+    # edges are stiff by half a cell
+    test.assertAlmostEqual(young["E_gauge_over_Eb"], 1, delta=0.012)
     test.assertAlmostEqual(young["calibration"]["poisson_error"], 0.211 - 0.3, delta=0.005)
     none = run("-beam_calibrate", "none").summary
-    test.assertAlmostEqual(none["E_over_Eb"] * young["calibration"]["scale"] / young["E_over_Eb"], 1, delta=1e-9)
+    test.assertAlmostEqual(none["E_over_Eb"] * young["calibration"]["scale"] / young["E_over_Eb"],
+                           1, delta=1e-9)
     test.assertNotIn("calibration", none)
-    small = ("-sheet_length", "20", "-sheet_width", "20", "-boundary_right_displacement", "0.02,0,0")
+    small = ("-sheet_length", "20", "-sheet_width", "20", "-boundary_right_displacement",
+             "0.02,0,0")
     static = run(*small).summary["E_over_Eb"]
-    moving = run(*small, "-integrator", "explicit", "-beam_damping_ratio", "1", "-boundary_right_ramp", "0.2",
+    moving = run(*small, "-integrator", "explicit", "-beam_damping_ratio", "1",
+                 "-boundary_right_ramp", "0.2",
                  "-time_end", "0.4").summary
-    test.assertAlmostEqual(moving["E_over_Eb"] / static, 1, delta=1e-4)  # the same stiffnesses, at rest again
+    # the same stiffnesses, at rest again
+    test.assertAlmostEqual(moving["E_over_Eb"] / static, 1, delta=1e-4)
     test.assertLess(abs(moving["energy"]["balance_error"]), 1e-3 * moving["energy"]["boundary"])
 
 
@@ -83,10 +89,12 @@ def check_edge_load(test, run):
     output = run()
     test.assertEqual(output.summary["bodies"], 3080)
     test.assertAlmostEqual(output.summary["deflection_over_wyman"], 3.79, delta=0.08)
-    test.assertAlmostEqual(output.summary["deflection_over_wyman"] / (8 * floe_plate.edge_deflection(0.3)), 1, delta=0.05)
+    test.assertAlmostEqual(output.summary["deflection_over_wyman"]
+                           / (8 * floe_plate.edge_deflection(0.3)), 1, delta=0.05)
     plain = run("-beam_calibrate", "none").summary["deflection_over_wyman"]
     test.assertAlmostEqual(plain, 3.47, delta=0.08)
-    softer = 8 * floe_plate.edge_deflection(0.00415) / np.sqrt(0.9062)  # D*, nu_b* of the infinite lattice, docs/model.md section 3
+    # D*, nu_b* of the infinite lattice, docs/model.md section 3
+    softer = 8 * floe_plate.edge_deflection(0.00415) / np.sqrt(0.9062)
     test.assertAlmostEqual(plain / softer, 1, delta=0.03)
 
 
@@ -120,8 +128,10 @@ def check_triangles_tension(test, run):
         output = run("-beam_shear", shear)
         y = output.field("bodies_displacement", 1)[:, 1]
         across = y[output.sets["top"]].mean() - y[output.sets["bottom"]].mean()
-        test.assertAlmostEqual(stresses(output)[0] / 1e-3, 2 * (1 + ratio) / (3 + ratio), delta=1e-6, msg=shear)
-        test.assertAlmostEqual(-across / (10 * np.sqrt(3)) / 1e-3, (1 - ratio) / (3 + ratio), delta=1e-6, msg=shear)
+        test.assertAlmostEqual(stresses(output)[0] / 1e-3, 2 * (1 + ratio) / (3 + ratio),
+                               delta=1e-6, msg=shear)
+        test.assertAlmostEqual(-across / (10 * np.sqrt(3)) / 1e-3, (1 - ratio) / (3 + ratio),
+                               delta=1e-6, msg=shear)
 
 
 def check_triangles_shear(test, run):

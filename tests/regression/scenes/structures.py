@@ -13,7 +13,8 @@ def check_ice_slope_strip(test, run):
     test.assertAlmostEqual(load[before][-5:].mean() / 7544, 1, delta=0.04)
     test.assertAlmostEqual(-load[last].mean() / lift[last].mean(), 1.1 / 0.9, delta=0.01)
     test.assertAlmostEqual(-breaks(output, "place")[0, 0], 9.26, delta=0.75)
-    test.assertLess(abs(last_row(output)["energy_balance_error"]), 0.01 * output.summary["energy"]["boundary"])
+    test.assertLess(abs(last_row(output)["energy_balance_error"]),
+                    0.01 * output.summary["energy"]["boundary"])
 
 
 def expect_ledger(test, output, bound=0.01):
@@ -51,7 +52,8 @@ def check_ice_cylinder(test, run):
     for moment in (1.5, 2, 2.5):
         d = 0.5 * (moment - 0.5) - 0.1  # ramp of 1 s, a gap of 0.1 m
         crushing = 1.5e6 * 0.5 * 2 * np.sqrt(4 * d - d**2)
-        test.assertAlmostEqual(load[np.argmin(np.abs(time - moment))] / crushing, 1, delta=0.08, msg=moment)
+        test.assertAlmostEqual(load[np.argmin(np.abs(time - moment))] / crushing, 1, delta=0.08,
+                               msg=moment)
     energy = output.summary["energy"]
     test.assertGreater(energy["crushing"], 0.7 * energy["boundary"])
     expect_ledger(test, output, 1e-3)
