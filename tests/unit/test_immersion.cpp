@@ -63,9 +63,15 @@ TEST(Immersion, ClosedFormIsTheClippedPolyhedron) {
 
 /// Blocks in which all, some or none of the bodies are cut at their sides only, to the last bit.
 TEST(Immersion, LanesAreTheScalarForm) {
-  const Lattice lattice = test::sheet(9, 9, 1.5, true);
+  // An odd number of bodies: the last block is partly filled, whatever the number of lanes.
+  const Lattice lattice = [] {
+    for (double length = 9;; length += 0.5) {
+      Lattice sheet = test::sheet(length, 9, 1.5, true);
+      if (sheet.bodies.size() % 2 == 1) return sheet;
+    }
+  }();
   const Part part = partition(lattice, PETSC_COMM_SELF);
-  ASSERT_NE(static_cast<std::size_t>(part.owned) % lanes, 0U) << "a block should be partly filled";
+  ASSERT_NE(static_cast<std::size_t>(part.owned) % lanes, 0U);
   const Immersion immersion(part);
   for (const double turn : {0.0, 1e-3, 0.05, 0.5}) {
     const State<Spatial> state = test::deformed(part, turn, turn);
