@@ -81,12 +81,10 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
 
   Progress progress("load steps", time.end);
   double now = 0, dt = given;
-  equilibrium.set_on_factorisation([&] {
-    progress.announce(now,
-                      "step " + std::to_string(result.steps + 1) + ", factorising " +
-                          text(unknowns) + " unknowns",
-                      cost.seconds);
-  });
+  const auto announce = [&](const std::string& what) {
+    progress.announce(now, what + ", factorising " + text(unknowns) + " unknowns", cost.seconds);
+  };
+  equilibrium.set_on_factorisation([&] { announce("step " + std::to_string(result.steps + 1)); });
   equilibrium.set_on_iteration([&](std::int64_t it) {
     progress.update(
         now, "step " + std::to_string(result.steps + 1) + ", iteration " + std::to_string(it));
@@ -140,6 +138,7 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
     dt = std::min(given, 2 * dt);
   }
   result.done = true;
+  equilibrium.set_on_factorisation([&] { announce("stability of the last state"); });
   result.unstable_modes = equilibrium.unstable_modes(rest);
   result.factorisations = equilibrium.factorisations();
   return result;
