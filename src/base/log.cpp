@@ -112,7 +112,7 @@ void Progress::print(double done, std::string_view note, double now) {
   if (total_ > 0) {
     const double share = std::clamp(done / total_, 0.0, 1.0);
     std::array<char, 32> left{};
-    if (share > 0)
+    if (share > 0 && share < 1)
       std::snprintf(left.data(), left.size(), ", %.0f s left",
                     (now - start_) * (1 - share) / share);
     constexpr int bar_width = 30;

@@ -47,6 +47,12 @@ class Bench(FolderTest):
                          ("tension", "Tension test of a square sheet", "quasistatic", "462", None))
         self.assertEqual(rows["bending_explicit"][2:5], ("explicit", "3285", "about "))
 
+    def test_page_of_scenes(self):
+        """docs/scenes.md has a time for each."""
+        page = (REPOSITORY / "docs/scenes.md").read_text()
+        self.assertEqual(re.findall(r"^\| `(\w+)` \|.* (?:s|min) \|$", page, re.M),
+                         sorted(path.stem for path in (REPOSITORY / "input").glob("*.yaml")))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -91,6 +91,10 @@ class Said(PlanTest):
         self.assertEqual((int(plan["rows"]), int(plan["frames"])), (rows, frames))
         self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
 
+    def test_beams_that_break_take_longer(self):
+        plan = self.plan(STATIC.replace("[beam", "[beam, fracture"), "-check")
+        self.assertEqual(plan["by"], SHEETS.replace("take,", "take while no beam breaks,"))
+
     def seconds(self, scene, *options):
         """What -check expects of a run."""
         number, unit = self.plan(scene, *options, "-check")["time"].split()
