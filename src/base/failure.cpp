@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -76,7 +77,10 @@ void end_at_once(int code) {
 }
 
 void leave(const std::string& line, int code) {
-  if (rank_of_world() > 0) ::sleep(2);
+  if (rank_of_world() > 0) {
+    ::signal(SIGTERM, SIG_DFL);  // by which the launcher ends this rank when the first has spoken
+    ::sleep(2);
+  }
   print_error("floe: " + line + "\n");
   run_place().code = code;
   say_last_words(line);

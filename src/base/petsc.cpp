@@ -81,9 +81,10 @@ void fail(int ierr, const std::source_location& where) {
 Mpi::Mpi(int& argc, char**& argv) {
   std::set_terminate(report_uncaught);
   prepare_one_process();
-  MPI_Init(&argc, &argv);
-  report_mpi_errors();
   report_crashes();
+  MPI_Init(&argc, &argv);
+  report_crashes();  // MPI has handlers of its own
+  report_mpi_errors();
 }
 
 void give_up_on_mpi() { gave_up() = true; }

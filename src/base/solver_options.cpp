@@ -75,7 +75,7 @@ constexpr std::array table{
     OptionSpec{"ksp_chebyshev_esteig_steps", integer, "", "", ">= 0", ""},
     OptionSpec{"pc_factor_fill", number, "", "", ">= 1", ""},
     OptionSpec{"pc_factor_levels", integer, "", "", ">= 0", ""},
-    OptionSpec{"pc_factor_zeropivot", number, "", "", ">= 0", ""},
+    OptionSpec{"pc_factor_zeropivot", number, "", "", ">= 0, <= 1e-3", ""},
     OptionSpec{"pc_factor_shift_amount", number, "", "", ">= 0", ""},
     OptionSpec{"pc_factor_column_pivot", number, "", "", ">= 0, <= 1", ""},
     OptionSpec{"pc_sor_omega", number, "", "", "> 0, < 2", ""},
