@@ -111,6 +111,8 @@ void report_uncaught() {
     leave(e.what(), exit_bad_input);
   } catch (const RunFailed& e) {
     leave(e.what(), exit_failed);
+  } catch (const OptionFailed& e) {
+    leave(e.what(), exit_failed);
   } catch (const std::exception& e) {
     leave(std::string("internal error: ") + e.what(), exit_failed);
   } catch (...) {
