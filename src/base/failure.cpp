@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -76,7 +77,10 @@ void end_at_once(int code) {
 }
 
 void leave(const std::string& line, int code) {
-  if (rank_of_world() > 0) ::sleep(2);
+  if (rank_of_world() > 0) {
+    ::signal(SIGTERM, SIG_DFL);  // by which the launcher ends this rank when the first has spoken
+    ::sleep(2);
+  }
   print_error("floe: " + line + "\n");
   run_place().code = code;
   say_last_words(line);
@@ -106,6 +110,8 @@ void report_uncaught() {
   } catch (const InputError& e) {  // from within what PETSc calls
     leave(e.what(), exit_bad_input);
   } catch (const RunFailed& e) {
+    leave(e.what(), exit_failed);
+  } catch (const OptionFailed& e) {
     leave(e.what(), exit_failed);
   } catch (const std::exception& e) {
     leave(std::string("internal error: ") + e.what(), exit_failed);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <new>
+#include <stdexcept>
 #include <string>
 
 namespace floe {
@@ -12,6 +13,12 @@ constexpr int exit_failed = 1, exit_bad_input = 2;
 
 /// Memory that PETSc or a solver behind it asked for and did not get.
 class OutOfMemory : public std::bad_alloc {};
+
+/// What PETSc says of an option after the first solve.
+class OptionFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// One line on standard error and in the log, the last words, and the end of all ranks. A rank that
 /// is not the first waits: what all ranks have met is rank 0's to say, and it ends the others.

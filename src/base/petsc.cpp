@@ -73,17 +73,18 @@ void fail(int ierr, const std::source_location& where) {
       ierr == PETSC_ERR_MISSING_FACTOR || not_a_number || not_in_list)
     throw InputError("solver option: " + text);
   const std::string option = solver_option_named(text);
-  throw std::runtime_error((option.empty() ? "" : "with " + option + ": ") + text + " (code " +
-                           std::to_string(ierr) + ", " + where.file_name() + ":" +
-                           std::to_string(where.line()) + ")");
+  if (!option.empty()) throw OptionFailed(option + ": PETSc cannot take it: " + text);
+  throw std::runtime_error(text + " (code " + std::to_string(ierr) + ", " + where.file_name() +
+                           ":" + std::to_string(where.line()) + ")");
 }
 
 Mpi::Mpi(int& argc, char**& argv) {
   std::set_terminate(report_uncaught);
   prepare_one_process();
-  MPI_Init(&argc, &argv);
-  report_mpi_errors();
   report_crashes();
+  MPI_Init(&argc, &argv);
+  report_crashes();  // MPI has handlers of its own
+  report_mpi_errors();
 }
 
 void give_up_on_mpi() { gave_up() = true; }

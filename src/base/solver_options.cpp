@@ -75,7 +75,7 @@ constexpr std::array table{
     OptionSpec{"ksp_chebyshev_esteig_steps", integer, "", "", ">= 0", ""},
     OptionSpec{"pc_factor_fill", number, "", "", ">= 1", ""},
     OptionSpec{"pc_factor_levels", integer, "", "", ">= 0", ""},
-    OptionSpec{"pc_factor_zeropivot", number, "", "", ">= 0", ""},
+    OptionSpec{"pc_factor_zeropivot", number, "", "", ">= 0, <= 1e-3", ""},
     OptionSpec{"pc_factor_shift_amount", number, "", "", ">= 0", ""},
     OptionSpec{"pc_factor_column_pivot", number, "", "", ">= 0, <= 1", ""},
     OptionSpec{"pc_sor_omega", number, "", "", "> 0, < 2", ""},
@@ -246,7 +246,10 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
     const std::string file(value.substr(0, colon));
     return file.empty() || to_flag(file) ? "" : file_problem(name, file);
   }
-  if (colon == std::string_view::npos) return {};
+  // PETSc looks at these at the end of a run.
+  const bool is_late = is_called(name, "ts_view") || is_called(name, "ts_view_solution") ||
+                       is_called(name, "log_view");
+  if (value.empty() || (colon == std::string_view::npos && !is_late)) return {};
   if (!has("view") && !has("monitor") && !has("reason")) return {};
   const std::string_view type = value.substr(0, colon);
   constexpr std::array on_file{"", "ascii", "binary", "hdf5", "vtk", "matlab", "glvis", "exodusii"};
@@ -254,6 +257,7 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
   if (std::find(others.begin(), others.end(), type) != others.end()) return {};
   if (std::find(on_file.begin(), on_file.end(), type) == on_file.end())
     return refused(name, value, "one of PETSc's viewers: ascii:FILE, binary:FILE, hdf5:FILE, ...");
+  if (colon == std::string_view::npos) return {};
   std::string_view file = value.substr(colon + 1);
   file = file.substr(0, file.find(':'));
   return file.empty() || file == "stdout" || file == "stderr"

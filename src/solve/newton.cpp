@@ -1,6 +1,5 @@
 #include "solve/newton.h"
 
-#include <petscblaslapack.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -173,11 +172,14 @@ void claim_blas_memory() {
                         MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (room == MAP_FAILED) throw std::bad_alloc();
     ::munmap(room, needed);
-    constexpr PetscBLASInt n = 128;
-    const std::vector<PetscScalar> a(n * n, 1.0);
-    std::vector<PetscScalar> c(n * n);
-    const PetscScalar one = 1, zero = 0;
-    BLASgemm_("N", "N", &n, &n, &n, &one, a.data(), &n, a.data(), &n, &zero, c.data(), &n);
+    // A factorisation by blocks is what asks for them.
+    constexpr PetscInt n = 256;
+    Handle<Mat> dense;
+    MatFactorInfo info{};
+    check(MatCreateSeqDense(PETSC_COMM_SELF, n, n, nullptr, dense.put()));
+    check(MatShift(dense, 1.0));
+    check(MatFactorInfoInitialize(&info));
+    check(MatLUFactor(dense, nullptr, nullptr, &info));
     return true;
   }();
   (void)done;

@@ -21,7 +21,8 @@ CASES = [(STATIC, "snes_lag_jacobian", "0", "-2"), (STATIC, "snes_max_it", "-1",
          (STATIC, "snes_view", "ascii:/nonexist/x", "no folder '/nonexist'"), (STATIC, "log_view", "abc:x", "hdf5"), (STATIC, "ksp_rtol", "inf", "< 1"),
          (STATIC, "check_pointer_intensity", "3", "<= 2"), (MOVING, "ts_max_steps", "-5", ">= 0"),
          (MOVING, "ts_adapt_clip", "3,2", "shrink"), (MOVING, "ts_adapt_safety", "9", "<= 1"),
-         (MOVING, "ts_max_time", "-1", "> 0"), (MOVING, "ts_atol", "nan", ">= 0"), (MOVING, "ts_dt", "nan", "> 0")]
+         (MOVING, "ts_max_time", "-1", "> 0"), (MOVING, "ts_atol", "nan", ">= 0"), (MOVING, "ts_dt", "nan", "> 0"),
+         (MOVING, "ts_view", "abc", "viewers")]
 
 # What PETSc alone finds: while it begins, while its solvers are set up, or in the first solve.
 OF_PETSC = [("ksp_type", "conjugate"), ("snes_type", "abc"), ("pc_type", "abc"), ("snes_monitor", "abc"), ("fp_trap", "abc"),
