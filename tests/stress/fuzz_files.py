@@ -111,8 +111,8 @@ def _odd_entries(values, chance):
 
 def _change_dataset(file, name, chance):
     data = file[name]
-    values = data[()]
-    way = chance.randrange(9)
+    values = np.zeros(0) if isinstance(data[()], h5py.Empty) else data[()]
+    way = chance.randrange(3 if data.shape is None else 0, 9)
     if way <= 2:
         data[...] = _odd_entries(values, chance)
         return
