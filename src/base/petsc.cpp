@@ -6,7 +6,6 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <optional>
 #include <string>
@@ -29,10 +28,6 @@ std::string
 
 PetscErrorCode remember_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
                               PetscErrorType type, const char* message, void*) {
-  // After the trap of -fp_trap PETSc aborts; of other numbers that are not finite it tells us.
-  if (code == PETSC_ERR_FP && message != nullptr &&
-      std::strncmp(message, "floating point error", 20) == 0)
-    end_crashed("floating-point exception, trapped");
   if (type == PETSC_ERROR_INITIAL) last_message = message ? message : "";
   return code;
 }
