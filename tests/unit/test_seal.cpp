@@ -10,6 +10,7 @@
 
 #include "floe/base/files.h"
 #include "floe/base/hdf5.h"
+#include "floe/base/petsc.h"
 #include "floe/base/seal.h"
 
 namespace floe::test {
