@@ -207,7 +207,7 @@ class Order(CheckpointTest):
 
     def check_order(self, ranks):
         """Rows and frames are on the disk before the checkpoint that knows of them, and this one before its name."""
-        waiting, synced, checkpoints = set(), set(), 0
+        waiting, synced, linked, checkpoints = set(), set(), False, 0
         for what, path, second in self.calls(ranks):
             if what == "fsync":
                 waiting.discard(path)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Out of memory and crashes: one line, exit code 1, and a summary that says failed."""
+import functools
 import os
 import resource
 import shutil
@@ -18,10 +19,12 @@ load: {names: [b], b: {set: right, force: [0, 0, 1e3]}}
 LIMITED = "import resource, os, sys; n = int(sys.argv[1]); resource.setrlimit(resource.RLIMIT_AS, (n, n)); os.execv(sys.argv[2], sys.argv[2:])"
 
 
-def starts_with(size):
-    """Whether floe says its version in so much address space (a build with sanitizers takes terabytes)."""
+@functools.cache
+def has_sanitizers():
+    """Whether floe cannot even say its version in 2 GiB of address space: sanitizers take terabytes."""
+    size = 2 << 30
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size))
-    return subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode == 0
+    return subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode != 0
 
 
 class OutOfMemory(RunningTest):
@@ -31,9 +34,10 @@ class OutOfMemory(RunningTest):
         done = subprocess.run(on_ranks(ranks, command), cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
         return done.returncode, own_words(done.stderr)
 
-    @unittest.skipUnless(starts_with(2 << 30), "a build with sanitizers")
     def test_one_line(self):
         """From little to almost enough. Where MPI finds too little to begin, its libraries complain too."""
+        if has_sanitizers():
+            self.skipTest("a build with sanitizers")
         for scene, ranks in ((STATIC, 1), (STATIC, 2), (STATIC + "integrator: implicit\ntime: {end: 1e-3}\n", 1)):
             self.write(scene)
             ended = []
@@ -43,7 +47,7 @@ class OutOfMemory(RunningTest):
                 ended.append(code)
                 with self.subTest(ranks=ranks, megabytes=megabytes, said=said):
                     self.assertIn(code, (0, FAILED))
-                    if code == 0 or "crashed at the start" in said:
+                    if code == 0 or "crashed at the start" in said or "failed to map segment" in said:
                         continue
                     self.assertEqual(said.count("\n"), 1)
                     self.assertTrue(said.startswith("floe: out of memory"))
@@ -63,8 +67,9 @@ class Crash(RunningTest):
     SIGNALS = {signal.SIGSEGV: "segmentation fault", signal.SIGBUS: "bus error", signal.SIGFPE: "arithmetic exception",
                signal.SIGABRT: "aborted by a library", signal.SIGILL: "illegal instruction"}
 
-    @unittest.skipUnless(starts_with(2 << 30), "sanitizers have handlers of their own")
     def test_one_line(self):
+        if has_sanitizers():
+            self.skipTest("sanitizers have handlers of their own")
         for number, what in self.SIGNALS.items():
             for ranks in (1, 2):
                 with self.subTest(signal=number, ranks=ranks):
@@ -79,9 +84,10 @@ class Crash(RunningTest):
                     if ranks == 1:
                         self.assertIn(said, (self.folder / "out/scene/floe.log").read_text())
 
-    @unittest.skipUnless(starts_with(2 << 30), "sanitizers have handlers of their own")
     def test_petsc_may_be_asked(self):
         """Its traces for whoever wants them, or the system's own end."""
+        if has_sanitizers():
+            self.skipTest("sanitizers have handlers of their own")
         process = self.running("-on_error_abort", "-output_overwrite")
         os.kill(process.pid, signal.SIGSEGV)
         process.communicate()

@@ -7,9 +7,9 @@ import subprocess
 import unittest
 
 from interposed import library
-from launch import ENDLESS, ENVIRONMENT, FLOE, own_words
+from launch import ENVIRONMENT, FLOE, own_words
 from running import AFLOAT, DONE, STOPPED, RunningTest
-from test_restart import RestartTest, SCENE, contents
+from test_restart import RestartTest, SCENE
 
 CHANGING = SCENE.replace("time: {end: 10}", "time: {end: 1, safety: 0.8}") + """initial:
   names: [i]

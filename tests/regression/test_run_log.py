@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """floe.log: what a run says, in its output folder too."""
-import os
 import re
 import subprocess
 import unittest
 
 from launch import ENVIRONMENT, FLOE, on_ranks
-from running import FAILED, LOADED, STOPPED, RunningTest
+from running import FAILED, STOPPED, RunningTest
+from small_scenes import LOADED
 
 SHORT = ("-time_end", "0.5")
 
