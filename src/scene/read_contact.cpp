@@ -63,8 +63,7 @@ ObstacleMotion read_motion(Options& options, const std::string& name, bool half_
     motion.frequency = options.number("obstacle: NAME: frequency", name);
   }
   // Left unread, and so refused, where nothing moves.
-  if (given("velocity") || (!half_space && given("angular_velocity")) || given("amplitude"))
-    motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
+  if (!motion.at_rest()) motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
   return motion;
 }
 

@@ -167,7 +167,7 @@ class Case:
     def names_file(self, name):
         """Whether a file is one that an option of PETSc names."""
         return self.kind == "petsc" and not name.startswith("out") and any(
-            len(word) > 1 and name.startswith(word.lstrip(":")) for word in self.all_text().split())
+            name == word or len(word) > 1 and name.startswith(word.lstrip(":")) for word in self.all_text().split())
 
     def lay(self, folder):
         for name in (*LATTICES, "o.h5"):
