@@ -61,6 +61,17 @@ Equilibrium<Space>::Equilibrium(Model<Space>& model)
   check(SNESSetConvergenceTest(snes_, converged, this, nullptr));
 }
 
+/// What MUMPS could not factorise, a smaller load step may make regular again.
+template <class Space>
+void Equilibrium<Space>::begin_anew_after_failure() {
+  KSP ksp = nullptr;
+  check(SNESGetKSP(snes_, &ksp));
+  if (drop_failed_factor(ksp)) {
+    check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
+    let_mumps_count(ksp);
+  }
+}
+
 /// Defaults that PETSc's own options override.
 template <class Space>
 void Equilibrium<Space>::set_defaults() {
@@ -168,6 +179,7 @@ bool Equilibrium<Space>::keeps_factorisation() const {
 template <class Space>
 PetscErrorCode Equilibrium<Space>::jacobian(SNES, Vec x, Mat, Mat, void* self) noexcept {
   auto& me = *static_cast<Equilibrium*>(self);
+  me.begin_anew_after_failure();
   if (me.constant_ || me.keeps_factorisation()) return 0;
   me.take(x);
   me.rebase(x);
@@ -300,6 +312,7 @@ bool Equilibrium<Space>::predict(double time) {
   const Timed timed(Event::solve);
   KSP ksp = nullptr;
   check(SNESGetKSP(snes_, &ksp));
+  begin_anew_after_failure();
   check(KSPSetOperators(ksp, tangent_.matrix(), tangent_.matrix()));
   check(KSPSolve(ksp, f_, step_));
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;

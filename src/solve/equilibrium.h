@@ -95,6 +95,7 @@ class Equilibrium {
   static constexpr std::size_t turns = n - Space::translations;
 
   void set_defaults();
+  void begin_anew_after_failure();
   void take(Vec x);    ///< state of the unknowns, ghosts included
   void rebase(Vec x);  ///< moves the reference of the rotations to the present state
   void fill_residual(Vec f);

@@ -102,7 +102,11 @@ class ImplicitRun final : public DynamicRun<Space> {
   static PetscErrorCode jacobian(TS, PetscReal t, Vec x, Vec v, Vec a, PetscReal by_v,
                                  PetscReal by_a, Mat, Mat, void* self) noexcept {
     auto& run = *static_cast<ImplicitRun*>(self);
-    if (run.keeps_factorisation(by_a)) return 0;
+    SNES snes = nullptr;
+    KSP ksp = nullptr;
+    check(TSGetSNES(run.ts_, &snes));
+    check(SNESGetKSP(snes, &ksp));
+    if (!drop_failed_factor(ksp) && run.keeps_factorisation(by_a)) return 0;
     run.equations_.assemble(t, x, v, a, by_v, by_a);
     run.announce_factorisation();
     return 0;

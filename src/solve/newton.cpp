@@ -120,6 +120,16 @@ void let_mumps_count(KSP ksp) {
   if (Mat factor = mumps_cholesky(ksp)) check(MatMumpsSetIcntl(factor, root_front, 1));
 }
 
+bool drop_failed_factor(KSP ksp) {
+  PC pc = nullptr;
+  PCFailedReason reason = PC_NOERROR;
+  check(KSPGetPC(ksp, &pc));
+  check(PCGetFailedReason(pc, &reason));
+  if (reason == PC_NOERROR) return false;
+  check(PCReset(pc));
+  return true;
+}
+
 std::int64_t negative_pivots(KSP ksp) {
   const Mat factor = mumps_cholesky(ksp);
   if (factor == nullptr) return -1;

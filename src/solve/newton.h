@@ -44,6 +44,11 @@ std::int64_t negative_pivots(KSP ksp);
 /// Has the library of dense algebra take its buffers while there is memory. \throws std::bad_alloc
 void claim_blas_memory();
 
+/// Before a matrix is factorised anew: drops a factor whose making failed. PETSc does not call
+/// MUMPS again for a factor that MUMPS once gave up, and solves with what is not there
+/// ("INFOG(1)=-3"). True if there was one. Collective.
+bool drop_failed_factor(KSP ksp);
+
 /// After a linear solve that failed. \throws RunFailed if the factorisation had too little memory,
 /// which no smaller step mends. On all ranks alike.
 void require_memory(KSP ksp);
