@@ -125,7 +125,10 @@ bool drop_failed_factor(KSP ksp) {
   PCFailedReason reason = PC_NOERROR;
   check(KSPGetPC(ksp, &pc));
   check(PCGetFailedReason(pc, &reason));
-  if (reason == PC_NOERROR) return false;
+  int failed = reason == PC_NOERROR ? 0 : 1;  // of one rank's part with some preconditioners
+  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX,
+                PetscObjectComm(reinterpret_cast<PetscObject>(pc)));
+  if (failed == 0) return false;
   check(PCReset(pc));
   return true;
 }
