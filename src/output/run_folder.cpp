@@ -216,6 +216,12 @@ RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
 RunFolder::~RunFolder() = default;
 
 std::string RunFolder::status(const std::string& dir) { return status_in(dir); }
+double RunFolder::time(const std::string& dir) {
+  std::ifstream file(dir + "/summary.json");
+  const Json summary = Json::parse(file, nullptr, false);
+  if (!summary.is_object() || !summary.contains("time") || !summary["time"].is_number()) return 0;
+  return summary["time"].get<double>();
+}
 std::string RunFolder::run_in(const std::string& dir) { return RunLock::run_in(dir); }
 
 std::string RunFolder::problem(const FolderWish& wish, MPI_Comm comm) {

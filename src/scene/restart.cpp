@@ -27,6 +27,7 @@ constexpr auto key = "checkpoint_restart";
 struct Found {
   std::string file, done_in, remark;
   CheckpointHead head;
+  double done_time = 0;  ///< of the run in done_in [s]
 };
 
 std::string seconds(double value) {
@@ -87,6 +88,7 @@ Found newest_checkpoint(const std::string& dir) {
         problem + "; the one before it, of t = " + seconds(found.head.time) + " s, takes its place";
   if (RunFolder::status(dir) != "done") return found;
   found.done_in = dir;
+  found.done_time = RunFolder::time(dir);
   if (found.file.empty()) found.head.options = options_in(dir);
   return found;
 }
@@ -106,6 +108,7 @@ void share(Found& found, MPI_Comm comm) {
     share(*text, comm);
   MPI_Bcast(&head.ranks, 1, MPI_INT64_T, 0, comm);
   MPI_Bcast(&head.time, 1, MPI_DOUBLE, 0, comm);
+  MPI_Bcast(&found.done_time, 1, MPI_DOUBLE, 0, comm);
 }
 
 /// Where a run writes whose scene has not been read yet.
@@ -171,6 +174,12 @@ Restart find_restart(const std::string& scene, UserOptions& user, MPI_Comm comm)
   if (const auto end = user.checkpoint.find("time_end"); end != user.checkpoint.end())
     restart.done_end = to_number(end->second.value).value_or(0);
   if (found.file.empty()) return restart;
+  // One that -ts_max_steps ended is done, but not at its end.
+  constexpr double rounding = 1e-9;
+  if (found.done_time < (1 - rounding) * restart.done_end) {
+    found.done_in.clear();
+    restart.done_in.clear();
+  }
   if (scene.empty()) restart.scene = found.head.scene;
   (user.command_line.contains(key) ? user.command_line : user.scene).at(key).value = found.file;
   // The run goes on in the folder where its files are, wherever that has been moved.

@@ -175,6 +175,16 @@ class Auto(GoingOnTest):
     def test_a_job_on_two_ranks(self):
         self.check_job(2)
 
+    def test_what_the_number_of_steps_ended(self):
+        job = ("scene.yaml", "-checkpoint_restart", "auto")
+        self.go(*job, "-ts_max_steps", "20")
+        self.assertEqual(self.status("out/scene"), "done")
+        self.assertIn("goes on from", self.go(*job))
+        # The first part has a row of its own at its end.
+        last, straight = ((folder / "history.csv").read_text().splitlines()[-1]
+                          for folder in (self.folder / "out/scene", self.run_whole(dir="a")))
+        self.assertEqual(last, straight)
+
     def test_the_newest_good_one(self):
         job = ("scene.yaml", "-checkpoint_restart", "auto")
         for _ in range(2):

@@ -41,6 +41,8 @@ class RunFolder {
   /// How the run ended whose files are in a folder: the status in its summary.json, "unknown" where
   /// that cannot be read; empty if there is none. On one rank.
   static std::string status(const std::string& dir);
+  /// The time at which its summary says that it ended [s]; 0 if it does not say.
+  static double time(const std::string& dir);
   /// What identifies that run; empty if nobody knows. On one rank.
   static std::string run_in(const std::string& dir);
 
