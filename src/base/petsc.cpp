@@ -9,6 +9,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "blame.h"
 #include "failure.h"
@@ -26,8 +27,11 @@ namespace {
 std::string
     last_message;  // NOLINT: written by PETSc's error handler, which has no other place to put it
 
-PetscErrorCode remember_error(MPI_Comm, int, const char*, const char*, PetscErrorCode code,
+PetscErrorCode remember_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                               PetscErrorType type, const char* message, void*) {
+  // Of memory that it does not get PETSc 3.18 gives the caller's line in place of the error's code
+  // (in PetscMallocAlign).
+  if (function != nullptr && std::string_view(function) == "PetscMallocAlign") code = PETSC_ERR_MEM;
   if (type == PETSC_ERROR_INITIAL) last_message = message ? message : "";
   return code;
 }
