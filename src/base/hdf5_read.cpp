@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <hdf5.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -70,6 +71,15 @@ bool is_stored(hid_t data, hid_t plan, hid_t space, double bytes, double on_disk
   return H5Dget_num_chunks(data, space, &there) >= 0 && static_cast<double>(there) >= needed;
 }
 
+/// Whether a program has the file locked for writing. HDF5 1.14 does not leave this in errno.
+bool is_locked(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return false;
+  const bool locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return locked;
+}
+
 }  // namespace
 
 Hdf5File Hdf5File::open(const std::string& path, const std::string& key) {
@@ -79,10 +89,9 @@ Hdf5File Hdf5File::open(const std::string& path, const std::string& key) {
     throw InputError(where + problem);
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access, true, true);
-  errno = 0;
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
   if (id >= 0) return {id, path, path, key};
-  if (errno == EAGAIN) throw InputError(where + "is being written by another program");
+  if (is_locked(path)) throw InputError(where + "is being written by another program");
   throw InputError(where + (H5Fis_hdf5(path.c_str()) > 0 ? "is a damaged or unfinished HDF5 file"
                                                          : "is not an HDF5 file"));
 }

@@ -37,7 +37,9 @@ message(STATUS "tests of floe: ${{FLOE_TESTS}}, rules to install: ${{FLOE_INSTAL
 
 def run(*words, cwd, code=0):
     """Standard output of a command."""
-    done = subprocess.run([str(word) for word in words], cwd=cwd, env=ENVIRONMENT,
+    # Ninja is there after tools/setup; make need not be.
+    environment = {**ENVIRONMENT, "CMAKE_GENERATOR": "Ninja"}
+    done = subprocess.run([str(word) for word in words], cwd=cwd, env=environment,
                           capture_output=True, text=True)
     if done.returncode != code:
         raise AssertionError(f"{words} ended with {done.returncode}: "
