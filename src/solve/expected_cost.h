@@ -2,8 +2,8 @@
 /// What a run of a sheet will take, before it is known.
 ///
 /// Formulas fitted to runs of sheets of 3,000 to 30,000 bodies on the machine of docs/bench: meant
-/// to be good to a factor of 3 for lattices whose beams lie as a sheet's; blocks of layers take
-/// longer.
+/// to be good to a factor of 3 (docs/design.md) for lattices whose beams lie as a sheet's; blocks
+/// of layers take longer.
 #pragma once
 
 #include "floe/base/petsc.h"
@@ -20,7 +20,7 @@ struct FactorisationCost {
 FactorisationCost factorisation_cost(double unknowns, int ranks);
 
 /// What a plan of such a run says it rests on.
-inline constexpr const char* sheets_like_it = "what sheets of this size take, to a factor of 3";
+inline constexpr const char* sheets_like_it = "what sheets of this size take, roughly";
 
 /// Memory of a run on `ranks` ranks beside solvers: each builds the whole lattice [B].
 double lattice_bytes(double bodies, int ranks);

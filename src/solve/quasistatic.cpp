@@ -33,7 +33,7 @@ void add_cost(const Model<Space>& model, const FactorisationCost& cost, RunPlan&
   plan.seconds_a_step = once / plan.steps + each;
   plan.measured = model.fracture() == nullptr
                       ? sheets_like_it
-                      : "what sheets of this size take while no beam breaks, to a factor of 3";
+                      : "what sheets of this size take while no beam breaks, roughly";
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-"""A library that is loaded before floe's: it notes how files get to the disk, and ends or interrupts the run at a given call.
+"""A library that is loaded before floe's: it notes how files get to the disk, and ends or
+interrupts the run at a given call.
 
 Calls that count are those that make, rename or remove a checkpoint or bring something to the disk.
 """

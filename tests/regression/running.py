@@ -28,12 +28,6 @@ class RunningTest(FolderTest):
         self.addCleanup(self.end, process)
         return process
 
-    def end(self, process):
-        """What is left of a test that failed."""
-        if process.poll() is None:
-            process.kill()
-        process.communicate()
-
     def finish(self, process, code=DONE):
         """What a process that must end with `code` said on its standard error."""
         out, err = process.communicate()

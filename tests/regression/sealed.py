@@ -1,4 +1,5 @@
-"""Checkpoints as tests change them: the seal of a changed one is made anew, so that what is deeper is looked at."""
+"""Checkpoints as tests change them: the seal of a changed one is made anew, so that what is deeper
+is looked at."""
 import contextlib
 import zlib
 

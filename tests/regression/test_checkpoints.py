@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Checkpoint files: no change of one goes unseen, at any instant a good one is there, and none is newer than its frames.
+"""Checkpoint files: no change of one goes unseen, at any instant a good one is there, and none is
+newer than its frames.
 
 FLOE_FULL=1 flips 2000 bits instead of 60.
 """
@@ -88,13 +89,20 @@ class Damaged(CheckpointTest):
 
     def test_numbers_that_cannot_be(self):
         """A seal says that a file is as it was written, not that it makes sense."""
-        for name, value in (("layout", 2.0), ("layout", np.nan), ("ranks", 0.0), ("run/step", np.nan), ("run/step", -1.0),
-                            ("run/step", 0.5), ("run/step", 1e300), ("run/dt", 0.0), ("run/dt", -1e-3), ("run/dt", np.inf),
-                            ("run/time", np.nan), ("run/time", -1.0), ("run/stable_dt", np.nan), ("run/stable_dt", -1.0),
-                            ("run/next_sample", np.nan), ("run/largest_velocity2", -1.0), ("run/boundary_work", np.nan),
-                            ("ledger/started", 2.0), ("ledger/largest", np.inf), ("bodies/records", np.nan),
-                            ("bodies/records", np.inf), ("bodies/records_bodies", -1), ("force_0_beam/energy_damping", np.nan),
-                            ("output/history_rows", -1.0), ("output/fields_frames", 1.5), ("output/last_sample", np.nan)):
+        for name, value in (("layout", 2.0), ("layout", np.nan), ("ranks", 0.0),
+                            ("run/step", np.nan), ("run/step", -1.0),
+                            ("run/step", 0.5), ("run/step", 1e300), ("run/dt", 0.0),
+                            ("run/dt", -1e-3), ("run/dt", np.inf),
+                            ("run/time", np.nan), ("run/time", -1.0), ("run/stable_dt", np.nan),
+                            ("run/stable_dt", -1.0),
+                            ("run/next_sample", np.nan), ("run/largest_velocity2", -1.0),
+                            ("run/boundary_work", np.nan),
+                            ("ledger/started", 2.0), ("ledger/largest", np.inf),
+                            ("bodies/records", np.nan),
+                            ("bodies/records", np.inf), ("bodies/records_bodies", -1),
+                            ("force_0_beam/energy_damping", np.nan),
+                            ("output/history_rows", -1.0), ("output/fields_frames", 1.5),
+                            ("output/last_sample", np.nan)):
             with self.subTest(name=name, value=value):
                 self.newest.write_bytes(self.good)
                 with changed(self.newest) as file:
@@ -122,7 +130,8 @@ class Damaged(CheckpointTest):
             with changed(self.folder / "hit/checkpoint.h5") as file:
                 self.assertNotEqual(file["force_1_contact"][name][0], 0)
                 file["force_1_contact"][name][...] = value
-            said = self.refused("-checkpoint_restart", "hit/checkpoint.h5", "-output_dir", "hit", "-time_end", "0.4")
+            said = self.refused("-checkpoint_restart", "hit/checkpoint.h5", "-output_dir", "hit",
+                                "-time_end", "0.4")
             self.assertIn(f"force_1_contact/{name} has the value", said)
             (self.folder / "hit/checkpoint.h5").write_bytes(good)
 
@@ -141,7 +150,8 @@ class Generations(CheckpointTest):
         good = self.newest.read_bytes()
         for bad in (good[:-100], good[:5000] + bytes([good[5000] ^ 4]) + good[5001:]):
             self.newest.write_bytes(bad)
-            self.assertRegex(self.damaged(), r"; -checkpoint_restart out/scene/checkpoint_previous.h5 goes on from "
+            self.assertRegex(self.damaged(),
+                             r"; -checkpoint_restart out/scene/checkpoint_previous.h5 goes on from "
                                              r"t = 0\.2\d* s\n$")
         with changed(self.older) as file:
             file["run/dt"][()] = -1
@@ -159,7 +169,8 @@ class Generations(CheckpointTest):
         self.assertNotIn("goes on from", self.damaged())
 
     def test_going_back(self):
-        """From the older one: no newer one of the time before is left that would be taken for this run's."""
+        """From the older one: no newer one of the time before is left that would be taken for this
+        run's."""
         self.floe()
         self.floe(*self.restart())
         process = self.begin("-checkpoint_restart", "out/scene/checkpoint_previous.h5", *ENDLESS)
@@ -175,7 +186,8 @@ class Generations(CheckpointTest):
         words = ("-checkpoint_restart", "auto", "-checkpoint_every", "0.001", *ENDLESS)
         before = self.time_of(self.newest)
         for at in range(1, 40 if FULL else 20):
-            process = self.begin(*words, ranks=ranks, environment={**environment, "TEST_KILL_AT": str(at)})
+            process = self.begin(*words, ranks=ranks,
+                                 environment={**environment, "TEST_KILL_AT": str(at)})
             process.communicate()
             self.assertNotEqual(process.returncode, DONE)
             check = self.begin(*words, "-check")
@@ -197,7 +209,8 @@ class Order(CheckpointTest):
         log = self.folder / "log"
         log.unlink(missing_ok=True)
         environment = {**library(self.folder), "TEST_LOG": str(log)}
-        process = self.running("-checkpoint_every", "0.3", "-output_fields", "0.002", *ENDLESS, ranks=ranks, rows=1,
+        process = self.running("-checkpoint_every", "0.3", "-output_fields", "0.002", *ENDLESS,
+                               ranks=ranks, rows=1,
                                environment=environment)
         self.wait(process, lambda: log.read_text().count("scene/checkpoint.h5\n") >= 4)
         self.stop(process)
@@ -206,7 +219,8 @@ class Order(CheckpointTest):
             yield [word.removeprefix(prefix) for word in line.split("\t")]
 
     def check_order(self, ranks):
-        """Rows and frames are on the disk before the checkpoint that knows of them, and this one before its name."""
+        """Rows and frames are on the disk before the checkpoint that knows of them, and this one
+        before its name."""
         waiting, synced, linked, checkpoints = set(), set(), False, 0
         for what, path, second in self.calls(ranks):
             if what == "fsync":
@@ -237,7 +251,8 @@ class OtherRuns(CheckpointTest):
         kept = self.folder / "kept.h5"
         kept.write_bytes(self.newest.read_bytes())
         self.floe()  # anew
-        said = self.refused("-checkpoint_restart", "kept.h5", "-output_dir", "out/scene", "-time_end", "0.3")
+        said = self.refused("-checkpoint_restart", "kept.h5", "-output_dir", "out/scene",
+                            "-time_end", "0.3")
         self.assertIn("'kept.h5' is of another run than the files in out/scene", said)
 
     def test_a_copy_of_its_own(self):
@@ -247,10 +262,12 @@ class OtherRuns(CheckpointTest):
         self.floe("-checkpoint_restart", "kept.h5", "-time_end", "0.3")
         self.assertTrue(self.newest.exists())
         (self.folder / "copy/.lock").unlink()
-        said = self.floe("-checkpoint_restart", "copy/checkpoint.h5", "-time_end", "0.3", "-output_dir", "copy")
+        said = self.floe("-checkpoint_restart", "copy/checkpoint.h5", "-time_end", "0.3",
+                         "-output_dir", "copy")
         self.assertEqual(said, "")
         for name in ("history.csv", "fields.xmf"):
-            self.assertEqual((self.dir / name).read_text(), (self.folder / "copy" / name).read_text())
+            self.assertEqual((self.dir / name).read_text(),
+                             (self.folder / "copy" / name).read_text())
 
     def test_what_makes_other_roundings_is_said(self):
         self.floe()
@@ -262,7 +279,8 @@ class OtherRuns(CheckpointTest):
         process = self.begin(*self.restart())
         out, err = process.communicate()
         self.assertEqual(process.returncode, DONE, err)
-        self.assertRegex(out, r"the checkpoint is of floe 0\.0\.9 \(now \S+\), a library for z80 \(now .+\), 3 ranks \(now 1\): ")
+        self.assertRegex(out, r"the checkpoint is of floe 0\.0\.9 \(now \S+\), a library for z80 "
+                              r"\(now .+\), 3 ranks \(now 1\): ")
 
     def test_columns_of_another_version(self):
         self.floe()

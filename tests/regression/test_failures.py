@@ -21,24 +21,30 @@ LIMITED = "import resource, os, sys; n = int(sys.argv[1]); resource.setrlimit(re
 
 @functools.cache
 def has_sanitizers():
-    """Whether floe cannot even say its version in 2 GiB of address space: sanitizers take terabytes."""
+    """Whether floe cannot even say its version in 2 GiB of address space: sanitizers take
+    terabytes."""
     size = 2 << 30
     limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size))
-    return subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT, preexec_fn=limit).returncode != 0
+    return subprocess.run([FLOE, "--version"], capture_output=True, env=ENVIRONMENT,
+                          preexec_fn=limit).returncode != 0
 
 
 class OutOfMemory(RunningTest):
     def limited(self, megabytes, *words, ranks=1):
         """A run in so much address space per process: its exit code and what it says."""
-        command = ["/usr/bin/python3", "-c", LIMITED, str(megabytes << 20), str(FLOE), "scene.yaml", *words, "-output_overwrite"]
-        done = subprocess.run(on_ranks(ranks, command), cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
+        command = ["/usr/bin/python3", "-c", LIMITED, str(megabytes << 20), str(FLOE), "scene.yaml",
+                   *words, "-output_overwrite"]
+        done = subprocess.run(on_ranks(ranks, command), cwd=self.folder, capture_output=True,
+                              text=True, env=ENVIRONMENT)
         return done.returncode, own_words(done.stderr)
 
     def test_one_line(self):
-        """From little to almost enough. Where MPI finds too little to begin, its libraries complain too."""
+        """From little to almost enough. Where MPI finds too little to begin, its libraries complain
+        too."""
         if has_sanitizers():
             self.skipTest("a build with sanitizers")
-        for scene, ranks in ((STATIC, 1), (STATIC, 2), (STATIC + "integrator: implicit\ntime: {end: 1e-3}\n", 1)):
+        for scene, ranks in ((STATIC, 1), (STATIC, 2),
+                             (STATIC + "integrator: implicit\ntime: {end: 1e-3}\n", 1)):
             self.write(scene)
             ended = []
             for megabytes in (260, 340, 420, 500, 580):
@@ -59,12 +65,14 @@ class OutOfMemory(RunningTest):
         self.write(STATIC)
         said = self.floe("-mat_mumps_icntl_23", "1", code=FAILED)
         self.assertEqual(said.count("\n"), 1, said)
-        self.assertIn("out of memory: the factorisation of the tangent needs more (MUMPS says INFOG(1) = ", said)
+        self.assertIn("out of memory: the factorisation of the tangent needs more (MUMPS says "
+                      "INFOG(1) = ", said)
         self.assertEqual(self.summary()["status"], "failed")
 
 
 class Crash(RunningTest):
-    SIGNALS = {signal.SIGSEGV: "segmentation fault", signal.SIGBUS: "bus error", signal.SIGFPE: "arithmetic exception",
+    SIGNALS = {signal.SIGSEGV: "segmentation fault", signal.SIGBUS: "bus error",
+               signal.SIGFPE: "arithmetic exception",
                signal.SIGABRT: "aborted by a library", signal.SIGILL: "illegal instruction"}
 
     def test_one_line(self):
@@ -77,10 +85,12 @@ class Crash(RunningTest):
                     os.kill(self.ranks_of(process)[-1], number)
                     said = self.finish(process, FAILED)
                     self.assertEqual(said.count("\n"), 1, said)
-                    self.assertRegex(said, rf"^floe: crashed after time \S+, step \d+: {what}.*; this is an error in floe or in a "
+                    self.assertRegex(said, rf"^floe: crashed after time \S+, step \d+: {what}.*; "
+                                           r"this is an error in floe or in a "
                                            "library: please report it")
                     summary = self.summary()
-                    self.assertEqual((summary["status"], "floe: " + summary["message"] + "\n"), ("failed", said))
+                    self.assertEqual((summary["status"], "floe: " + summary["message"] + "\n"),
+                                     ("failed", said))
                     if ranks == 1:
                         self.assertIn(said, (self.folder / "out/scene/floe.log").read_text())
 

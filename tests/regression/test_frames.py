@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Frames of a run: fields.h5, fields.xmf and fields/ can be read at any time, and nothing but a frame that is being written
-is ever lost.
+"""Frames of a run: fields.h5, fields.xmf and fields/ can be read at any time, and nothing but a
+frame that is being written is ever lost.
 
-While a run writes, after kill -9 at random moments, after a file size limit in the middle of a frame, over an older run.
+While a run writes, after kill -9 at random moments, after a file size limit in the middle of a
+frame, over an older run.
 FLOE_FULL=1 kills 40 times instead of 4.
 """
 import random
@@ -10,16 +11,15 @@ import resource
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
 
 import h5py
 import numpy as np
 
-from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, own_words, run
+from launch import (ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, own_words,
+                    run)
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import Output, frames_of, rows_of  # noqa: E402
@@ -38,7 +38,8 @@ XI = "{http://www.w3.org/2001/XInclude}"
 
 
 def grids(folder):
-    """The grids of a fields.xmf, in order, with those of the files it includes: [(time, [(place, dimensions)])]."""
+    """The grids of a fields.xmf, in order, with those of the files it includes: [(time, [(place,
+    dimensions)])]."""
     def of(path):
         collection = ElementTree.parse(path).getroot().find("Domain/Grid")
         for child in collection:
@@ -46,13 +47,15 @@ def grids(folder):
                 assert child.get("xpointer") == "xpointer(/Xdmf/Domain/Grid/Grid)"
                 yield from of(folder / child.get("href"))
             else:
-                items = [(item.text, tuple(int(d) for d in item.get("Dimensions").split())) for item in child.iter("DataItem")]
+                items = [(item.text, tuple(int(d) for d in item.get("Dimensions").split()))
+                         for item in child.iter("DataItem")]
                 yield float(child.find("Time").get("Value")), items
     return list(of(folder / "fields.xmf")) if (folder / "fields.xmf").exists() else []
 
 
 def check_names(folder, last=None):
-    """Every dataset that fields.xmf names in its last frames is there with its size; the times of all its frames."""
+    """Every dataset that fields.xmf names in its last frames is there with its size; the times of
+    all its frames."""
     files, found = {}, grids(folder)
     times = [moment for moment, _ in found]
     for _, items in found[-last:] if last else found:
@@ -77,11 +80,9 @@ def contents(folder):
     return found
 
 
-class FramesTest(unittest.TestCase):
+class FramesTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        super().setUp()
         (self.folder / "scene.yaml").write_text(SCENE)
 
     def whole(self, *options, dir="a", code=0):
@@ -90,21 +91,21 @@ class FramesTest(unittest.TestCase):
         return self.folder / dir
 
     def begin(self, *options, dir="b"):
-        process = subprocess.Popen([FLOE, "scene.yaml", *options, "-output_dir", dir], cwd=self.folder, env=ENVIRONMENT,
+        process = subprocess.Popen([FLOE, "scene.yaml", *options, "-output_dir", dir],
+                                   cwd=self.folder, env=ENVIRONMENT,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, process)
         return process
 
-    def end(self, process):
-        """What is left of a test that failed."""
-        if process.poll() is None:
-            process.kill()
-        process.wait()
-        process.stderr.close()
-
     def wait_for(self, process, what):
-        """Until what() is true, as long as it takes."""
-        while not what():
+        """Until what() is true, as long as it takes. A restart that cuts back may take a file away
+        between the reading of its name and the reading of the file."""
+        def is_there():
+            try:
+                return what()
+            except FileNotFoundError:
+                return False
+        while not is_there():
             if process.poll() is not None:
                 self.fail("the run ended by itself: " + process.stderr.read())
             time.sleep(0.002)
@@ -121,9 +122,11 @@ class FramesTest(unittest.TestCase):
 
 class Layout(FramesTest):
     def test_segments(self):
-        """Several segments, each with its part of the frames; every frame has its name in fields.xmf and fields.h5."""
+        """Several segments, each with its part of the frames; every frame has its name in
+        fields.xmf and fields.h5."""
         folder = self.whole("-output_fields", "0.004")
-        segments = sorted(int(file.stem) for file in folder.glob("fields/*.h5") if file.stem != "mesh")
+        segments = sorted(int(file.stem) for file in folder.glob("fields/*.h5")
+                          if file.stem != "mesh")
         self.assertGreater(len(segments), 3)
         times = check_names(folder)
         self.assertGreater(len(times), 450)
@@ -135,7 +138,8 @@ class Layout(FramesTest):
             self.assertEqual(group, f"t{k:06d}")
             self.assertEqual(int(path.stem), max(s for s in segments if s <= k))
         with h5py.File(folder / "fields.h5") as file:
-            self.assertEqual([group.attrs["time"] for name, group in file.items() if name != "mesh"], times)
+            self.assertEqual([group.attrs["time"] for name, group in file.items()
+                              if name != "mesh"], times)
             self.assertEqual(len(file["mesh/beams"]), len(file["t000000/beams_force"]))
         includes = (folder / "fields.xmf").read_text().count("xi:include ")
         self.assertEqual(includes, len(segments) - 1)
@@ -143,15 +147,18 @@ class Layout(FramesTest):
 
     def test_a_frame_costs_the_same_however_many_there_are(self):
         """Bytes that a run hands to the system: four times the frames, four times the bytes."""
-        # Of a process that has ended only root may read it; of its children anybody in his own account.
+        # Of a process that has ended only root may read it; of its children anybody in his own
+        # account.
         account = ("import subprocess, sys\n"
                    "subprocess.run(sys.argv[1:], check=True, capture_output=True)\n"
                    "print(open('/proc/self/io').read())\n")
 
         def written(every):
-            command = [sys.executable, "-c", account, FLOE, "scene.yaml", "-output_dir", "b", "-output_overwrite",
+            command = [sys.executable, "-c", account, FLOE, "scene.yaml", "-output_dir", "b",
+                       "-output_overwrite",
                        "-output_fields", every, "-output_history", "1", "-checkpoint_every", "1000"]
-            done = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True)
+            done = subprocess.run(command, cwd=self.folder, env=ENVIRONMENT, capture_output=True,
+                                  text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             return int(done.stdout.split("wchar:")[1].split()[0])
         few, many = written("0.004"), written("0.001")
@@ -159,7 +166,8 @@ class Layout(FramesTest):
 
     def test_bodies_without_shapes_and_large_frames(self):
         """A frame of more than a segment's bytes is a segment of its own."""
-        folder = self.whole("-sheet_length", "60", "-sheet_width", "60", "-sheet_iterations", "3", "-time_end", "0.02",
+        folder = self.whole("-sheet_length", "60", "-sheet_width", "60", "-sheet_iterations", "3",
+                            "-time_end", "0.02",
                             "-output_fields", "0.005")
         frames = frames_of(folder)
         self.assertEqual(len({path for _, path, _ in frames}), len(frames))
@@ -195,11 +203,13 @@ class Readers(FramesTest):
             for item in collection.findall("Grid")[-1].iter("DataItem"):
                 file, name = item.text.split(":")
                 with h5py.File(folder / file) as data:
-                    self.assertEqual(data[name].shape, tuple(int(d) for d in item.get("Dimensions").split()))
+                    self.assertEqual(data[name].shape,
+                                     tuple(int(d) for d in item.get("Dimensions").split()))
             newest = max(folder.glob("fields/0*.h5"))
             with h5py.File(newest) as data:
                 groups = list(data)
-                self.assertTrue(all(np.isfinite(values[:]).all() for values in data[groups[-1]].values()))
+                self.assertTrue(all(np.isfinite(values[:]).all()
+                                    for values in data[groups[-1]].values()))
             frame = int(groups[-1][1:])
             self.assertEqual(len(groups), frame - int(newest.stem) + 1)
             self.assertGreaterEqual(frame, seen)
@@ -220,10 +230,12 @@ class Readers(FramesTest):
             output = Output(folder)
             self.assertEqual(output.summary, {})
             self.assertGreater(len(output.times), 2)
-            self.assertTrue(np.isfinite(output.field("bodies_displacement", output.times[-1])).all())
+            self.assertTrue(np.isfinite(output.field("bodies_displacement",
+                                                     output.times[-1])).all())
             self.assertGreater(len(output.history("time")), 0)
             picture = self.folder / f"{state}.png"
-            done = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--colour", "uz", "--file", picture],
+            done = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--colour", "uz",
+                                   "--file", picture],
                                   capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertTrue(picture.exists())
@@ -231,14 +243,16 @@ class Readers(FramesTest):
                 self.assertIsNone(process.poll())
                 process.kill()
                 process.wait()
-        late = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--time", "99999"], capture_output=True, text=True)
+        late = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--time", "99999"],
+                              capture_output=True, text=True)
         self.assertEqual(late.returncode, 2)
         self.assertIn("--time 99999: the frames of", late.stderr)
 
 
 class Interrupted(FramesTest):
     def go_on(self, *options):
-        resume = ["-checkpoint_restart", "b/checkpoint.h5"] if (self.folder / "b/checkpoint.h5").exists() else []
+        resume = ["-checkpoint_restart",
+                  "b/checkpoint.h5"] if (self.folder / "b/checkpoint.h5").exists() else []
         return self.begin(*MANY, *options, *resume)
 
     def check_end(self):
@@ -266,10 +280,12 @@ class Interrupted(FramesTest):
             self.assertIn(len(frames) - len(named), (0, 1))
             self.assertEqual([moment for moment, _, _ in frames][:len(named)], named)
         self.check_end()
-        self.assertEqual([*self.folder.glob("b/fields*.part"), *self.folder.glob("b/fields/*.part")], [])
+        self.assertEqual([*self.folder.glob("b/fields*.part"),
+                          *self.folder.glob("b/fields/*.part")], [])
 
     def test_a_file_size_limit_in_a_frame(self):
-        """The frame is dropped, all before it can be read, and the run goes on from its checkpoint."""
+        """The frame is dropped, all before it can be read, and the run goes on from its
+        checkpoint."""
         process, folder = self.begin(*MANY), self.folder / "b"
         self.wait_for(process, (folder / "checkpoint.h5").exists)
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (100_000, 100_000))
@@ -286,7 +302,8 @@ class Interrupted(FramesTest):
         folder = self.whole("-time_end", "1")
         for file in folder.glob("fields/0*.h5"):
             file.unlink()
-        done = run("scene.yaml", "-checkpoint_restart", "a/checkpoint.h5", "-output_dir", "a", cwd=self.folder)
+        done = run("scene.yaml", "-checkpoint_restart", "a/checkpoint.h5", "-output_dir", "a",
+                   cwd=self.folder)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("a/fields' has 0 frames, the checkpoint knows of", done.stderr)
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Output folders in which something stands in the way: one line that names it, exit code 2, and nothing is touched; what goes
-wrong during a run is one line, exit code 1, and a summary that says so."""
+"""Output folders in which something stands in the way: one line that names it, exit code 2, and
+nothing is touched; what goes wrong during a run is one line, exit code 1, and a summary that says
+so."""
 import os
 import shutil
 import subprocess
@@ -9,7 +10,8 @@ import unittest
 from launch import ENVIRONMENT, FLOE, own_words
 from running import AFLOAT, FAILED, RunningTest
 
-FILES = ("summary.json", "lattice.h5", "options.yaml", "fields.h5", "fields.xmf", "history.csv", "checkpoint.h5",
+FILES = ("summary.json", "lattice.h5", "options.yaml", "fields.h5", "fields.xmf", "history.csv",
+         "checkpoint.h5",
          "checkpoint_previous.h5", "breaks.h5", "floe.log")
 SHORT = ("-time_end", "0.01")
 NOBODY = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"]
@@ -27,7 +29,8 @@ class HostileFolder(RunningTest):
         (self.out / ".lock").write_text("floe run 1\n")
         for ranks in (1, 2):
             said = self.refused(*SHORT, ranks=ranks)
-            self.assertTrue(said.startswith("floe: output: dir: 'out/scene' cannot be used: its " + name), said)
+            self.assertTrue(said.startswith("floe: output: dir: 'out/scene' cannot be used: its "
+                                            + name), said)
             for word in words:
                 self.assertIn(word, said)
         path = self.out / name
@@ -49,40 +52,48 @@ class HostileFolder(RunningTest):
             with self.subTest(name):
                 os.mkfifo(self.out / name)
                 (self.out / ".lock").write_text("floe run 1\n")
-                done = subprocess.run([FLOE, "scene.yaml", *SHORT], cwd=self.folder, capture_output=True, text=True,
+                done = subprocess.run([FLOE, "scene.yaml", *SHORT], cwd=self.folder,
+                                      capture_output=True, text=True,
                                       env=ENVIRONMENT)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertIn(f"its {name} is a pipe", own_words(done.stderr))
                 (self.out / name).unlink()
 
     def test_links(self):
-        for to, word in (("/dev/full", "is a link to a device"), ("/dev/null", "is a link to a device"),
+        for to, word in (("/dev/full", "is a link to a device"),
+                         ("/dev/null", "is a link to a device"),
                          ("/nonexist/x", "leads nowhere"), ("history.csv", "symbolic links")):
             (self.out / "history.csv").symlink_to(to)
             (self.out / ".lock").write_text("floe run 1\n")
-            done = subprocess.run([FLOE, "scene.yaml", *SHORT], cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
+            done = subprocess.run([FLOE, "scene.yaml", *SHORT], cwd=self.folder,
+                                  capture_output=True, text=True, env=ENVIRONMENT)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn("its history.csv", done.stderr)
             (self.out / "history.csv").unlink()
 
     def test_a_check_says_so_too(self):
         (self.out / "history.csv").mkdir()
-        done = subprocess.run([FLOE, "scene.yaml", "-check"], cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
+        done = subprocess.run([FLOE, "scene.yaml", "-check"], cwd=self.folder, capture_output=True,
+                              text=True, env=ENVIRONMENT)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("but a run would be refused now: output: dir: 'out/scene' cannot be used: its history.csv is a folder",
+        self.assertIn("but a run would be refused now: output: dir: 'out/scene' cannot be used: "
+                      "its history.csv is a folder",
                       done.stdout)
 
     def test_inputs_among_the_frames(self):
         self.floe(*SHORT)
         shutil.copy(self.out / "lattice.h5", self.out / "fields/mine.h5")
-        self.write(AFLOAT.replace("sheet: {length: 6, thickness: 0.5, element_size: 2, iterations: 5}",
+        self.write(AFLOAT.replace("sheet: {length: 6, thickness: 0.5, element_size: 2, iterations: "
+                                  "5}",
                                   "lattice_file: out/scene/fields/mine.h5"))
-        self.assertIn("lattice_file: out/scene/fields/mine.h5 would be overwritten by the run's own fields", self.refused(*SHORT))
+        self.assertIn("lattice_file: out/scene/fields/mine.h5 would be overwritten by the run's "
+                      "own fields", self.refused(*SHORT))
 
     def as_nobody(self, *words):
         """What an ordinary user is told."""
         command = [*(NOBODY if os.geteuid() == 0 else []), FLOE, "scene.yaml", *SHORT, *words]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, env={**ENVIRONMENT, "HOME": "/nonexistent"})
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True,
+                              env={**ENVIRONMENT, "HOME": "/nonexistent"})
         if "setpriv" in done.stderr or done.returncode in (126, 127):
             self.skipTest("nobody may not run this build of floe: " + done.stderr)
         return done.returncode, own_words(done.stderr)
@@ -92,14 +103,17 @@ class HostileFolder(RunningTest):
         (self.folder / "out").chmod(0o777)
         self.out.chmod(0o777)
 
-    @unittest.skipUnless(os.geteuid() != 0 or shutil.which("setpriv"), "root may become somebody else")
+    @unittest.skipUnless(os.geteuid() != 0 or shutil.which("setpriv"),
+                         "root may become somebody else")
     def test_permissions(self):
         self.open_to_all()
         code, said = self.as_nobody()
         self.assertEqual(code, 0, said)
         before = self.files()
         self.out.chmod(0o555)
-        self.assertEqual(self.as_nobody(), (2, f"floe: output: dir: out/scene cannot be written: {self.out}: Permission denied\n"))
+        self.assertEqual(self.as_nobody(), (2,
+                                            "floe: output: dir: out/scene cannot be written: "
+                                            f"{self.out}: Permission denied\n"))
         self.out.chmod(0o777)
         for name, mode in (("history.csv", 0o444), ("fields", 0o555)):
             (self.out / name).chmod(mode)
@@ -110,7 +124,8 @@ class HostileFolder(RunningTest):
             (self.out / name).chmod(0o777)
         self.assertEqual(before, self.files())
 
-    @unittest.skipUnless(os.geteuid() != 0 or shutil.which("setpriv"), "root may become somebody else")
+    @unittest.skipUnless(os.geteuid() != 0 or shutil.which("setpriv"),
+                         "root may become somebody else")
     def test_a_folder_that_may_not_be_made(self):
         self.folder.chmod(0o755)
         (self.folder / "out").chmod(0o555)
@@ -120,14 +135,18 @@ class HostileFolder(RunningTest):
         self.assertIn("Permission denied", said)
 
     def test_a_read_only_file_system(self):
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", self.out], capture_output=True).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "ro", "tmpfs", self.out],
+                          capture_output=True).returncode:
             self.skipTest("cannot mount a file system (root may)")
         self.addCleanup(subprocess.run, ["umount", self.out], check=True)
-        self.assertEqual(self.refused(*SHORT), f"floe: output: dir: out/scene cannot be written: {self.out}: Read-only file system\n")
+        self.assertEqual(self.refused(*SHORT),
+                         f"floe: output: dir: out/scene cannot be written: {self.out}: "
+                         "Read-only file system\n")
 
     def test_what_becomes_bad_during_a_run(self):
         """fields is taken away: one line, and a summary that says it."""
-        process = self.running("-output_fields", "0.01", "-output_overwrite", "-limit_frames", "1e12", "-limit_disk", "1e12")
+        process = self.running("-output_fields", "0.01", "-output_overwrite", "-limit_frames",
+                               "1e12", "-limit_disk", "1e12")
         while True:
             try:
                 shutil.rmtree(self.out / "fields")
@@ -138,7 +157,8 @@ class HostileFolder(RunningTest):
         said = self.finish(process, FAILED)
         self.assertEqual(said.count("\n"), 1, said)
         summary = self.summary()
-        self.assertEqual((summary["status"], "floe: " + summary["message"] + "\n"), ("failed", said))
+        self.assertEqual((summary["status"], "floe: " + summary["message"] + "\n"),
+                         ("failed", said))
 
     def test_a_history_that_somebody_empties(self):
         """No hole in front of the rows that follow."""

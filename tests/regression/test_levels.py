@@ -25,8 +25,8 @@ LIBRARIES = {level: FLOE.parent / "lib" / (f"glibc-hwcaps/{level}" if level != "
 PORTABLE = all(path.exists() for path in LIBRARIES.values())
 TENSION = REPOSITORY / "input/tension.yaml"
 
-# A floating sheet of 200 cells, one edge of which is pushed down: it bends, swings and is braked. All
-# loops over lanes, 400 steps.
+# A floating sheet of 200 cells, one edge of which is pushed down: it bends, swings and is braked.
+# All loops over lanes, 400 steps.
 SWINGING = """
 integrator: explicit
 forces: [beam, gravity, buoyancy, drag]

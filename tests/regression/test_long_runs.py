@@ -41,7 +41,9 @@ class LongRuns(RestartTest):
             self.go_on(*END, *options, "-ts_max_steps", str(FAR + 600), dir="b")
             self.assertEqual(self.summary("b")["steps"], FAR + 600)
             self.assertGreater(FAR + 600, 2**31)
-            with h5py.File(self.folder / "a/checkpoint.h5") as a, h5py.File(self.folder / "b/checkpoint.h5") as b:
+            with h5py.File(self.folder
+                           / "a/checkpoint.h5") as a, h5py.File(self.folder
+                                                                / "b/checkpoint.h5") as b:
                 self.assertEqual(a["run/time"][()], b["run/time"][()])
                 self.assertEqual(a["run/step"][()] + FAR, b["run/step"][()])
                 np.testing.assert_array_equal(a["bodies/records"][()], b["bodies/records"][()])

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What a run says it will do and take, before its first step and with -check; and that absurd runs are refused with the
-number, before anything is written."""
+"""What a run says it will do and take, before its first step and with -check; and that absurd runs
+are refused with the number, before anything is written."""
 import json
 import re
 import sys
@@ -17,15 +17,18 @@ sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
 beam: {damping_ratio: 1}
 time: {end: 0.02}
 """
-IMPLICIT = EXPLICIT.replace("explicit", "implicit") + "load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 0.01}}\n"
+IMPLICIT = EXPLICIT.replace("explicit",
+                            "implicit") + "load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 0.01}}\n"
 STATIC = """forces: [beam, gravity, buoyancy]
 sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
 load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 1}}
 """
-PLAN = re.compile(r"plan: (?P<step>.*)\nplan: about (?P<rows>\S+) rows?, (?P<frames>\S+) frames?, (?P<size>\S+) "
+PLAN = re.compile(r"plan: (?P<step>.*)\nplan: about (?P<rows>\S+) rows?, (?P<frames>\S+) frames?, "
+                  r"(?P<size>\S+) "
                   r"(?P<unit>[kMGT]B) on disk; (?P<now>\S+ [kMG]B) of memory so far"
-                  r"(?:, about (?P<solver>\S+ [kMG]B) with the solver's)?(?:; about (?P<time>.+) \(by (?P<by>.*)\))?\n")
-SHEETS = "what sheets of this size take, to a factor of 3"
+                  r"(?:, about (?P<solver>\S+ [kMG]B) with the solver's)?(?:; about (?P<time>.+) "
+                  r"\(by (?P<by>.*)\))?\n")
+SHEETS = "what sheets of this size take, roughly"
 UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 
 
@@ -50,18 +53,21 @@ class PlanTest(launch.FolderTest):
         folder = self.folder / "out/scene"
         rows = len((folder / "history.csv").read_text().splitlines()) - 1
         frames = len(frames_of(folder))
-        return rows, frames, sum(f.stat().st_size for f in folder.rglob("*") if f.is_file() and f.name != "floe.log")
+        return rows, frames, sum(f.stat().st_size for f in folder.rglob("*") if f.is_file()
+                                 and f.name != "floe.log")
 
 
 class Said(PlanTest):
     def test_explicit(self):
-        for options in ((), ("-output_history", "0.001", "-output_fields", "0.0005"), ("-output_fields", "1e-9"),
+        for options in ((), ("-output_history", "0.001", "-output_fields", "0.0005"),
+                        ("-output_fields", "1e-9"),
                         ("-ts_type", "rk", "-ts_rk_type", "4")):
             with self.subTest(options):
                 plan = self.plan(EXPLICIT, *options)
                 summary = self.summary()
                 self.assertIn(f"step {summary['dt']:.4g} s, 0.", plan["step"])
-                self.assertIn("of the stable step, limited by the " + summary["dt_limited_by"], plan["step"])
+                self.assertIn("of the stable step, limited by the " + summary["dt_limited_by"],
+                              plan["step"])
                 self.assertIn(f"; {summary['steps']} steps", plan["step"])
                 self.assertIn("evaluations of the forces", plan["by"])
                 self.assertRegex(plan["time"], r"^\S+ s$")
@@ -71,7 +77,8 @@ class Said(PlanTest):
                 self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
 
     def test_implicit(self):
-        plan = self.plan(IMPLICIT, "-time_dt", "0.001", "-output_history", "0.002", "-output_fields", "0.005")
+        plan = self.plan(IMPLICIT, "-time_dt", "0.001", "-output_history", "0.002",
+                         "-output_fields", "0.005")
         self.assertIn("step 0.001 s; 20 steps", plan["step"])
         self.assertRegex(plan["time"], r"^\S+ s$")
         self.assertEqual(plan["by"], SHEETS)
@@ -112,7 +119,8 @@ class Said(PlanTest):
         """To a factor of 3, of a sheet that is large enough for it to show."""
         units = {"kB": 1e-3, "MB": 1, "GB": 1e3}
         plan = self.plan(STATIC, "-sheet_length", "80", "-sheet_width", "80")
-        now, solver = (float(number) * units[unit] for number, unit in (plan[name].split() for name in ("now", "solver")))
+        now, solver = (float(number) * units[unit]
+                       for number, unit in (plan[name].split() for name in ("now", "solver")))
         taken = self.summary()["peak_memory_mb"] - now
         self.assertTrue((solver - now) / 3 < taken < 3 * (solver - now), (now, solver, taken))
 
@@ -130,7 +138,8 @@ class Said(PlanTest):
         restart = ("-checkpoint_restart", "out/scene/checkpoint.h5", "-time_end", "0.04")
         before = {f.name: f.stat().st_mtime_ns for f in (self.folder / "out/scene").iterdir()}
         plan = self.plan(scene, *restart, "-check")
-        self.assertEqual({f.name: f.stat().st_mtime_ns for f in (self.folder / "out/scene").iterdir()}, before)
+        self.assertEqual({f.name: f.stat().st_mtime_ns
+                          for f in (self.folder / "out/scene").iterdir()}, before)
         self.assertIn(f"; {2 * steps} steps, {steps} of them made", plan["step"])
         plan = self.plan(scene, *restart)
         self.assertIn(f"; {2 * steps} steps, {steps} of them made", plan["step"])
@@ -149,34 +158,45 @@ class Refused(PlanTest):
         for scene, what in ((EXPLICIT, "2e+10"), (IMPLICIT, "2e+10"), (STATIC, "1e+12")):
             for ranks in (1, 2):
                 options = ("-time_dt", "1e-12", "-limit_steps", "1e10")
-                self.refuse(scene, *options, said=("time: dt: 1e-12", f"would take {what}", "at most 1e+10", "limit: steps"),
+                self.refuse(scene, *options, said=("time: dt: 1e-12", f"would take {what}",
+                                                   "at most 1e+10", "limit: steps"),
                             ranks=ranks)
-        self.refuse(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20", said=("2e+13 steps", "at most 1e+11"))
-        self.plan(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20", "-limit_steps", "1e14", "-check")
+        self.refuse(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20",
+                    said=("2e+13 steps", "at most 1e+11"))
+        self.plan(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20", "-limit_steps", "1e14",
+                  "-check")
 
     def test_steps_of_the_own_choice(self):
-        self.refuse(EXPLICIT, "-time_end", "1e9", said=("time: dt: ", "stable: ", "limited by the", "limit: steps"))
+        self.refuse(EXPLICIT, "-time_end", "1e9",
+                    said=("time: dt: ", "stable: ", "limited by the", "limit: steps"))
 
     def test_frames(self):
         self.refuse(EXPLICIT, "-output_fields", "1e-9", "-limit_frames", "10",
-                    said=("output: fields: 1e-09 s would make ", "at most 10 are made (limit: frames)"))
-        self.refuse(IMPLICIT, "-output_fields", "1e-9", said=("would make 20000001 frames", "TB", "at most 100000"))
-        plan = self.plan(IMPLICIT, "-output_fields", "1e-9", "-limit_frames", "1e8", "-limit_disk", "1e5", "-check")
+                    said=("output: fields: 1e-09 s would make ",
+                          "at most 10 are made (limit: frames)"))
+        self.refuse(IMPLICIT, "-output_fields", "1e-9",
+                    said=("would make 20000001 frames", "TB", "at most 100000"))
+        plan = self.plan(IMPLICIT, "-output_fields", "1e-9", "-limit_frames", "1e8", "-limit_disk",
+                         "1e5", "-check")
         self.assertEqual(plan["frames"], "20000001")
 
     def test_room(self):
         options = ("-output_history", "1e-12")
-        self.refuse(IMPLICIT, *options, said=("output: would be about 2e+10 rows", "TB on disk", "at most 1 TB", "limit: disk"))
+        self.refuse(IMPLICIT, *options, said=("output: would be about 2e+10 rows", "TB on disk",
+                                              "at most 1 TB", "limit: disk"))
         self.plan(IMPLICIT, *options, "-limit_disk", "1e5", "-check")
         self.refuse(EXPLICIT, "-limit_disk", "1e-6", said=("on disk, at most 1 kB are taken",))
 
     def test_memory(self):
-        """A sheet that will not find room is refused before it is meshed (tests/unit/test_expected_cost.cpp)."""
+        """A sheet that will not find room is refused before it is meshed
+        (tests/unit/test_expected_cost.cpp)."""
         large = ("-sheet_length", "10000", "-sheet_width", "10000", "-limit_memory", "2")
         for scene, ranks in ((EXPLICIT, 1), (STATIC, 1), (STATIC, 2)):
             self.refuse(scene, *large, ranks=ranks,
-                        said=("sheet: about 28867514 bodies would take about ", "of memory, at most 2 GB are taken (limit: memory)"))
-        self.refuse(EXPLICIT.replace("sheet:", "lattice_file: l.h5\n#"), "-limit_memory", "2", said=("limit: memory", "only a sheet"))
+                        said=("sheet: about 28867514 bodies would take about ",
+                              "of memory, at most 2 GB are taken (limit: memory)"))
+        self.refuse(EXPLICIT.replace("sheet:", "lattice_file: l.h5\n#"), "-limit_memory", "2",
+                    said=("limit: memory", "only a sheet"))
         self.plan(STATIC, "-limit_memory", "2", "-check")
 
 

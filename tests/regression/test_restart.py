@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Checkpoint and restart: a run that was interrupted and went on equals the run that was not.
 
-By the STOP file, by SIGTERM, by kill -9 at random moments, bit for bit; what a restart refuses, and what a full disk
-does. On several ranks: test_restart_ranks.py. FLOE_FULL=1 kills 20 times instead of 4.
+By the STOP file, by SIGTERM, by kill -9 at random moments, bit for bit; what a restart refuses, and
+what a full disk does. On several ranks: test_restart_ranks.py. FLOE_FULL=1 kills 20 times instead
+of 4.
 """
 import csv
 import json
@@ -12,7 +13,6 @@ import resource
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 from pathlib import Path
@@ -20,13 +20,13 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, on_ranks, own_words
+from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, on_ranks, own_words
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import frames_of  # noqa: E402
 
-# Damping loss, load work, boundary work and the water's forces all have a history or energies of their own. Rows
-# of history.csv and frames are due at different steps.
+# Damping loss, load work, boundary work and the water's forces all have a history or energies of
+# their own. Rows of history.csv and frames are due at different steps.
 SCENE = """integrator: explicit
 forces: [beam, gravity, buoyancy, drag]
 water: {drag_linear: 1e4}
@@ -42,10 +42,13 @@ output: {history: 0.041, fields: 0.37}
 checkpoint: {every: 1000}
 """
 # The same sheet, pulled in still water and pushed sideways: what moves it stays in its plane.
-PLANAR = (SCENE.replace("forces: [beam, gravity, buoyancy, drag]", "forces: [beam, drag]\nmodel: {planar: true}")
-          .replace("force: [0, 0, -1e5], moment: [0, 1e4, 0]", "force: [1e4, 1e5, 0], moment: [0, 0, 1e4]"))
+PLANAR = (SCENE.replace("forces: [beam, gravity, buoyancy, drag]",
+                        "forces: [beam, drag]\nmodel: {planar: true}")
+          .replace("force: [0, 0, -1e5], moment: [0, 1e4, 0]",
+                   "force: [1e4, 1e5, 0], moment: [0, 0, 1e4]"))
 INTERRUPTED = 3
-TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s", "output_s",
+TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s",
+         "output_s",
          "peak_memory_mb", "ns_per_beam_step"}
 
 
@@ -63,25 +66,19 @@ def contents(path):
     return found
 
 
-class RestartTest(unittest.TestCase):
+class RestartTest(FolderTest):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        super().setUp()
         (self.folder / "scene.yaml").write_text(SCENE)
 
     def begin(self, *options, dir="out/scene", ranks=1, scene="scene.yaml", **how):
         """A started process."""
-        process = subprocess.Popen(on_ranks(ranks, [FLOE, scene, *options, "-output_dir", dir]), cwd=self.folder,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, **how)
+        process = subprocess.Popen(on_ranks(ranks, [FLOE, scene, *options, "-output_dir", dir]),
+                                   cwd=self.folder,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   env=ENVIRONMENT, **how)
         self.addCleanup(self.end, process)
         return process
-
-    def end(self, process):
-        """What is left of a test that failed."""
-        if process.poll() is None:
-            process.kill()
-        process.communicate()
 
     def finish(self, process, code=0):
         """What a process that must end with `code` said on its standard error."""
@@ -94,7 +91,8 @@ class RestartTest(unittest.TestCase):
         return self.folder / how.get("dir", "out/scene")
 
     def interrupted(self, interrupt, *options, dir="b", ranks=1):
-        """A run without an end that `interrupt(process, folder)` stops once its history has some rows."""
+        """A run without an end that `interrupt(process, folder)` stops once its history has some
+        rows."""
         process = self.begin(*options, *ENDLESS, dir=dir, ranks=ranks)
         self.wait_for_rows(process, self.folder / dir, 20)
         interrupt(process, self.folder / dir)
@@ -104,7 +102,8 @@ class RestartTest(unittest.TestCase):
         """Until what() is true, as long as it takes."""
         while not what():
             if process.poll() is not None:
-                self.fail("the run ended before it was interrupted: " + "".join(process.communicate()))
+                self.fail("the run ended before it was interrupted: "
+                          + "".join(process.communicate()))
             time.sleep(0.002)
 
     def wait_for_rows(self, process, folder, rows):
@@ -113,7 +112,9 @@ class RestartTest(unittest.TestCase):
     def wait_for_checkpoint(self, process, folder):
         """A new one."""
         def number():
-            return (folder / "checkpoint.h5").stat().st_ino if (folder / "checkpoint.h5").exists() else None
+            return (folder
+                    / "checkpoint.h5").stat().st_ino if (folder
+                                                         / "checkpoint.h5").exists() else None
         before = number()
         self.wait_for(process, lambda: number() != before)
 
@@ -123,20 +124,24 @@ class RestartTest(unittest.TestCase):
             return int(file["run/step"][()])
 
     def straight_and_resumed(self, *options, dir="b", ranks=1, straight_ranks=None):
-        """Two folders: a straight run, and that of an endless run that was interrupted and goes on to the same step."""
+        """Two folders: a straight run, and that of an endless run that was interrupted and goes on
+        to the same step."""
         end = ("-ts_max_steps", str(2 * self.steps_of(dir)))
-        straight = self.run_whole(*options, *ENDLESS, *end, dir="straight_" + dir, ranks=straight_ranks or ranks)
+        straight = self.run_whole(*options, *ENDLESS, *end, dir="straight_" + dir,
+                                  ranks=straight_ranks or ranks)
         return straight, self.go_on(*options, *ENDLESS, *end, dir=dir, ranks=ranks)
 
     def go_on(self, *options, dir="b", ranks=1):
-        return self.run_whole("-checkpoint_restart", f"{dir}/checkpoint.h5", *options, dir=dir, ranks=ranks)
+        return self.run_whole("-checkpoint_restart", f"{dir}/checkpoint.h5", *options, dir=dir,
+                              ranks=ranks)
 
     def assert_same(self, a, b):
         """Two folders hold the same run, bit for bit."""
         self.assertEqual((a / "history.csv").read_text(), (b / "history.csv").read_text())
         self.assertEqual((a / "fields.xmf").read_text(), (b / "fields.xmf").read_text())
         segments = sorted(str(path.relative_to(a)) for path in a.glob("fields/*.h5"))
-        self.assertEqual(segments, sorted(str(path.relative_to(b)) for path in b.glob("fields/*.h5")))
+        self.assertEqual(segments, sorted(str(path.relative_to(b))
+                                          for path in b.glob("fields/*.h5")))
         for name in (*segments, "checkpoint.h5", "lattice.h5"):
             first, second = contents(a / name), contents(b / name)
             self.assertEqual(set(first), set(second), name)
@@ -159,7 +164,8 @@ class RestartTest(unittest.TestCase):
         self.assert_same(*self.straight_and_resumed(ranks=ranks))
 
     def check_parts(self, scene, stops, *options):
-        """A run in parts, which end at the given shares of its steps, is the run in one piece; its summary."""
+        """A run in parts, which end at the given shares of its steps, is the run in one piece; its
+        summary."""
         (self.folder / "scene.yaml").write_text(scene)
         a = self.run_whole(*options, dir="a")
         summary = json.loads((a / "summary.json").read_text())
@@ -275,13 +281,16 @@ class Refused(RestartTest):
         self.run_whole("-time_end", "1", dir="b")
 
     def test_no_checkpoint(self):
-        self.assertIn("'nowhere.h5' does not exist", self.refused("-checkpoint_restart", "nowhere.h5"))
+        self.assertIn("'nowhere.h5' does not exist",
+                      self.refused("-checkpoint_restart", "nowhere.h5"))
         for file in ("scene.yaml", "b/lattice.h5"):
-            self.assertIn(f"'{file}' is no checkpoint of this version of floe", self.refused("-checkpoint_restart", file))
+            self.assertIn(f"'{file}' is no checkpoint of this version of floe",
+                          self.refused("-checkpoint_restart", file))
 
     def test_another_lattice(self):
         """A file of the same name may hold another one."""
-        scene = SCENE.replace("sheet: {length: 20, element_size: 2, iterations: 20}", "lattice_file: sheet.h5")
+        scene = SCENE.replace("sheet: {length: 20, element_size: 2, iterations: 20}",
+                              "lattice_file: sheet.h5")
         (self.folder / "scene.yaml").write_text(scene)
         (self.folder / "sheet.h5").write_bytes((self.folder / "b/lattice.h5").read_bytes())
         self.run_whole("-time_end", "1", dir="f")
@@ -291,19 +300,24 @@ class Refused(RestartTest):
         self.assertIn("is of another lattice", said)
 
     def test_other_forces(self):
-        said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,drag", "-time_end", "2")
-        self.assertIn("forces: 'beam, drag' cannot be changed where a run goes on; the checkpoint has "
+        said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,drag",
+                            "-time_end", "2")
+        self.assertIn("forces: 'beam, drag' cannot be changed where a run goes on; "
+                      "the checkpoint has "
                       "'beam, gravity, buoyancy, drag'", said)
 
     def test_another_space(self):
         (self.folder / "scene.yaml").write_text(PLANAR)
         self.run_whole("-time_end", "1", dir="p")
-        said = self.refused("-checkpoint_restart", "p/checkpoint.h5", "-model_planar", "false", dir="p")
-        self.assertIn("model: planar: false cannot be changed where a run goes on; the checkpoint has true", said)
+        said = self.refused("-checkpoint_restart", "p/checkpoint.h5", "-model_planar", "false",
+                            dir="p")
+        self.assertIn("model: planar: false cannot be changed where a run goes on; "
+                      "the checkpoint has true", said)
         # One that decides by itself may come to decide otherwise.
         (self.folder / "scene.yaml").write_text(PLANAR.replace("planar: true", "planar: auto"))
         self.run_whole("-time_end", "1", dir="s")
-        said = self.refused("-checkpoint_restart", "s/checkpoint.h5", "-load_p_force", "0,0,1", dir="s")
+        said = self.refused("-checkpoint_restart", "s/checkpoint.h5", "-load_p_force", "0,0,1",
+                            dir="s")
         self.assertIn("is of a planar model, this run's is spatial", said)
 
     def test_an_end_before_it(self):
@@ -311,7 +325,8 @@ class Refused(RestartTest):
         self.assertIn("time: end: 0.5 must be >= 1", said)
 
     def test_a_folder_without_its_files(self):
-        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", "-time_end", "2", dir="c"), 2)
+        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", "-time_end", "2",
+                                      dir="c"), 2)
         self.assertIn("a run goes on in the folder where it began", said)
 
     def test_quasistatic(self):
@@ -323,10 +338,13 @@ class Breaking(RestartTest):
     """A check without a test of its own, for one rank and for several."""
 
     def check_breaking(self, ranks):
-        """Damage, breaks and the ledger go on bit for bit; the log of breaks is that of the straight run."""
-        (self.folder / "scene.yaml").write_text(SCENE.replace("forces: [beam,", "forces: [beam, fracture,")
+        """Damage, breaks and the ledger go on bit for bit; the log of breaks is that of the
+        straight run."""
+        (self.folder / "scene.yaml").write_text(SCENE.replace("forces: [beam,",
+                                                              "forces: [beam, fracture,")
                                                 .replace("[0.01, 0, 0]", "[0.02, 0, 0]")
-                                                + "fracture: {energy: 100, weibull_modulus: 8, seed: 3}\n"
+                                                + "fracture: {energy: 100, weibull_modulus: "
+                                                  "8, seed: 3}\n"
                                                 + "limit: {energy_error: 1}\n")
         a = self.run_whole("-time_end", "2", dir=f"a{ranks}", ranks=ranks)
         summary = json.loads((a / "summary.json").read_text())
@@ -351,7 +369,8 @@ class Breaking(RestartTest):
 
 class Contact(RestartTest):
     def test_a_sheet_near_a_wall(self):
-        """The step gets shorter when the run finds the wall near, not when a restart looks again."""
+        """The step gets shorter when the run finds the wall near, not when a restart looks
+        again."""
         summary = self.check_parts("""integrator: explicit
 forces: [beam, contact]
 sheet: {length: 10, thickness: 1, element_size: 1, iterations: 5}
@@ -365,7 +384,8 @@ checkpoint: {every: 1000}
         self.assertEqual(summary["dt_limited_by"], "contacts that may come")
 
     def test_a_sheet_that_breaks_against_a_slope(self):
-        """Friction, crushing and contacts that were born at breaks go on bit for bit, with an obstacle on its way."""
+        """Friction, crushing and contacts that were born at breaks go on bit for bit, with an
+        obstacle on its way."""
         summary = self.check_parts("""integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
 sheet: {length: 12, width: 6, thickness: 0.5, element_size: 1.5, iterations: 10}
@@ -394,11 +414,14 @@ class Killing(RestartTest):
     """As Breaking."""
 
     def check_killed(self, ranks):
-        """kill -9: every file is readable, rows and frames are whole, and going on gives the straight run.
+        """kill -9: every file is readable, rows and frames are whole, and going on gives the
+        straight run.
 
-        Rows are dense, so that a part need not be long to have many; each but the first lives for some checkpoints.
+        Rows are dense, so that a part need not be long to have many; each but the first lives for
+        some checkpoints.
         """
-        options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", "-output_history", "0.004", *ENDLESS]
+        options = ["-checkpoint_every", "0.02", "-output_fields", "0.037", "-output_history",
+                   "0.004", *ENDLESS]
         chance = random.Random(ranks)
         folder, resume = self.folder / "b", []
         for kill in range(20 if FULL else 4):
@@ -408,14 +431,17 @@ class Killing(RestartTest):
                 for _ in range(chance.randrange(1, 3)):
                     self.wait_for_checkpoint(process, folder)
             self.wait_for_rows(process, folder, before + chance.randrange(1, 100))
-            time.sleep(chance.uniform(0, 0.05))  # anywhere between two rows, in a frame, in a checkpoint
+            # anywhere between two rows, in a frame, in a checkpoint
+            time.sleep(chance.uniform(0, 0.05))
             self.kill(process, ranks)
             self.check_files(folder)
-            resume = ["-checkpoint_restart", "b/checkpoint.h5"] if (folder / "checkpoint.h5").exists() else []
+            resume = ["-checkpoint_restart",
+                      "b/checkpoint.h5"] if (folder / "checkpoint.h5").exists() else []
         self.assert_same(*self.straight_and_resumed(*options, ranks=ranks))
 
     def kill(self, process, ranks):
-        """SIGKILL to every rank; with several they are mpiexec's children, and it ends once they have."""
+        """SIGKILL to every rank; with several they are mpiexec's children, and it ends once they
+        have."""
         victims = [process.pid]
         if ranks > 1:
             children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
@@ -449,7 +475,8 @@ class DiskFull(RestartTest):
         return said
 
     def limited(self, size, *options):
-        """What a run says whose files cannot grow beyond `size(folder)` bytes once it has some rows."""
+        """What a run says whose files cannot grow beyond `size(folder)` bytes once it has some
+        rows."""
         process = self.begin(*options, *ENDLESS, dir="b")
         self.wait_for_rows(process, self.folder / "b", 20)
         limit = size(self.folder / "b")
@@ -457,15 +484,19 @@ class DiskFull(RestartTest):
         return self.says_why(process)
 
     def test_fields(self):
-        # A byte less than a file that is there: one that is full may be the largest that there will be.
-        said = self.limited(lambda folder: max(path.stat().st_size for path in folder.glob("fields/*.h5")) - 1,
+        # A byte less than a file that is there: one that is full may be the largest that there will
+        # be.
+        said = self.limited(lambda folder: max(path.stat().st_size
+                                               for path in folder.glob("fields/*.h5")) - 1,
                             "-output_fields", "0.001")
         self.assertIn("fields", said)
         self.assertGreater(len(frames_of(self.folder / "b")), 1)
 
     def test_checkpoint(self):
-        """The checkpoint does not fit; an earlier one stays as it was, and the run can go on from it."""
-        rare = ("-output_fields", "1e5", "-output_history", "10")  # a checkpoint comes before the next row
+        """The checkpoint does not fit; an earlier one stays as it was, and the run can go on from
+        it."""
+        # a checkpoint comes before the next row
+        rare = ("-output_fields", "1e5", "-output_history", "10")
         process = self.begin(*rare, *ENDLESS, dir="b")
         self.wait_for_rows(process, self.folder / "b", 2)
         stop_file(process, self.folder / "b")
@@ -473,14 +504,16 @@ class DiskFull(RestartTest):
         before = (self.folder / "b/checkpoint.h5").read_bytes()
         limit = len(before) - 3000
         said = self.says_why(self.begin(
-            *rare, *ENDLESS, "-checkpoint_restart", "b/checkpoint.h5", "-checkpoint_every", "0.001", dir="b",
+            *rare, *ENDLESS, "-checkpoint_restart", "b/checkpoint.h5", "-checkpoint_every", "0.001",
+            dir="b",
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
         self.assertIn("checkpoint.h5", said)
         self.assertEqual((self.folder / "b/checkpoint.h5").read_bytes(), before)
         self.assert_same(*self.straight_and_resumed(*rare))
 
     def test_history(self):
-        said = self.limited(lambda folder: (folder / "history.csv").stat().st_size + 100, "-output_history", "0.001",
+        said = self.limited(lambda folder: (folder / "history.csv").stat().st_size + 100,
+                            "-output_history", "0.001",
                             "-output_fields", "1e5")
         self.assertIn("history.csv", said)
         self.assertTrue((self.folder / "b/history.csv").read_text().endswith("\n"))
@@ -493,7 +526,8 @@ class RealDiskFull(RestartTest):
         super().setUp()
         self.disk = self.folder / "b"
         self.disk.mkdir()
-        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "tmpfs", str(self.disk)], capture_output=True).returncode:
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64m", "tmpfs", str(self.disk)],
+                          capture_output=True).returncode:
             self.skipTest("cannot mount a small file system (root may)")
         self.addCleanup(subprocess.run, ["umount", str(self.disk)], check=True)
 
@@ -507,7 +541,8 @@ class RealDiskFull(RestartTest):
         """What a run says that goes on from the checkpoint with so many bytes left."""
         self.fill(left)
         before = (self.disk / "checkpoint.h5").read_bytes()
-        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", *options, *ENDLESS, dir="b"), 1)
+        said = self.finish(self.begin("-checkpoint_restart", "b/checkpoint.h5", *options, *ENDLESS,
+                                      dir="b"), 1)
         self.assertIn("floe: cannot write", said)
         self.assertIn("No space left on device", said)
         self.assertNotIn("internal", said)
@@ -519,7 +554,8 @@ class RealDiskFull(RestartTest):
         return said
 
     def check(self, what, left, *options):
-        """A disk that is full ends the run with the name of the file, and it goes on once there is room."""
+        """A disk that is full ends the run with the name of the file, and it goes on once there is
+        room."""
         process = self.begin(*options, *ENDLESS, dir="b")
         self.wait_for_rows(process, self.disk, 1)
         stop_file(process, self.disk)

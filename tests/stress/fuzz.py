@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""Tries floe with scenes, command lines, files and solver options as hostile and naive users would write them.
+"""Tries floe with scenes, command lines, files and solver options as hostile and naive users would
+write them.
 
-    tests/stress/fuzz.py --kind scene --seed 123 [--keep FOLDER]      one case: its files, what floe says, broken rules
-    tests/stress/fuzz.py [--cases 500] [--first 0] [--kind KIND] [--jobs N]    many; exit code 1 if any breaks a rule
+    tests/stress/fuzz.py --kind scene --seed 123 [--keep FOLDER]      one case: its files, what floe
+    says, broken rules tests/stress/fuzz.py [--cases 500] [--first 0] [--kind KIND] [--jobs N]
+    many; exit code 1 if any breaks a rule
 
 Each case follows from its kind and seed alone. Rules: no signal, no hang, no trace, an exit code of
 0 to 3; exit code 2 with one line that names something of the input, nothing touched; exit code 0
@@ -27,33 +29,44 @@ from fuzz_rules import is_help, run_case  # noqa: E402
 from fuzz_scenes import LATTICES, Scenes, bound, scene_of, write_scene  # noqa: E402
 
 # One case of each, again and again.
-KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text", "mesh")
+KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text",
+         "mesh")
 TMPFS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 LATTICE_SCENES = {
     "frame.h5": "integrator: explicit\nforces: [beam]\nbeam: {damping_ratio: 0.1}\n"
-                "initial: {names: [i], i: {set: tip, velocity: [0, 1, 1]}}\nlattice_file: frame.h5\ntime: {end: 1}\n",
-    "triangles.h5": "forces: [beam]\nlattice_file: triangles.h5\nboundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
+                "initial: {names: [i], i: {set: tip, velocity: [0, 1, 1]}}\n"
+                "lattice_file: frame.h5\ntime: {end: 1}\n",
+    "triangles.h5": "forces: [beam]\nlattice_file: triangles.h5\nboundary: {names: [a], a: {set: "
+                    "left, fix: x y z rx ry rz}}\n"
                     "load: {names: [p], p: {set: right, force: [1e3, 0, 1e2]}}\n",
-    "rubble.h5": "integrator: explicit\nforces: [contact, gravity, buoyancy]\ncontact: {young: 1e6}\nlattice_file: rubble.h5\n"
+    "rubble.h5": "integrator: explicit\nforces: [contact, gravity, buoyancy]\n"
+                 "contact: {young: 1e6}\nlattice_file: rubble.h5\n"
                  "time: {end: 10}\noutput: {fields: 1e-3}\n",
-    "strip.h5": "integrator: implicit\nforces: [beam, gravity, buoyancy]\nlattice_file: strip.h5\ntime: {end: 1}\n",
+    "strip.h5": "integrator: implicit\nforces: [beam, gravity, buoyancy]\nlattice_file: strip.h5\n"
+                "time: {end: 1}\n",
     "o.h5": "integrator: explicit\nforces: [beam, contact]\nsheet: {length: 6, element_size: 2}\n"
-            "obstacle: {names: [o], o: {shape: file, file: o.h5, point: [3.6, 0, 0], velocity: [-1, 0, 0]}}\ntime: {end: 1}\n"}
+            "obstacle: {names: [o], o: {shape: file, file: o.h5, point: [3.6, 0, 0], velocity: "
+            "[-1, 0, 0]}}\ntime: {end: 1}\n"}
 MESH_SCENE = ("integrator: explicit\nforces: [beam]\n"
-              "sheet: {length: 6, element_size: 2, iterations: 9, mesh_file: m.h5}\ntime: {end: 1}\n")
+              "sheet: {length: 6, element_size: 2, iterations: 9, mesh_file: m.h5}\n"
+              "time: {end: 1}\n")
 PETSC_SCENES = ("forces: [beam]\nsheet: {length: 8, thickness: 1, element_size: 2, iterations: 5}\n"
                 "boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}\n"
                 "load: {names: [p], p: {set: right, force: [1e5, 0, 1e3]}}\n",
-                "integrator: implicit\nforces: [beam, gravity, buoyancy]\nsheet: {length: 6, element_size: 2}\n"
+                "integrator: implicit\nforces: [beam, gravity, buoyancy]\n"
+                "sheet: {length: 6, element_size: 2}\n"
                 "time: {end: 0.1, dt: 0.02}\n",
-                "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2}\ntime: {end: 1e-3}\n",
-                "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2}\ntime: {end: 1e-3}\n"
+                "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2}\n"
+                "time: {end: 1e-3}\n",
+                "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2}\n"
+                "time: {end: 1e-3}\n"
                 "ts: {type: rk, rk_type: 4}\n")
 
 
 class Case:
-    """Files (name: bytes), words of the command line, environment, ranks: all from a kind and a seed."""
+    """Files (name: bytes), words of the command line, environment, ranks: all from a kind and a
+    seed."""
 
     def __init__(self, kind, seed, base):
         self.kind, self.seed, self.base = kind, seed, base
@@ -70,7 +83,8 @@ class Case:
 
     def put_scene(self, text, words):
         self.scene = text if isinstance(text, str) else text.decode(errors="replace")
-        self.files["s.yaml"] = text.encode(errors="surrogatepass") if isinstance(text, str) else text
+        self.files["s.yaml"] = text.encode(errors="surrogatepass") if isinstance(text,
+                                                                                 str) else text
         self.words = ["s.yaml", *words]
 
     def any_scene(self, chance):
@@ -135,8 +149,11 @@ class Case:
         # The good checkpoint of another scene, or none.
         scene = scene_of(fuzz_files.CHECKPOINTED)
         self.base.scenes.spoil(scene, chance)
-        more = fuzz_words.command_line(self.base.scenes, scene, chance) if chance.random() < 0.3 else []
-        self.put_scene(write_scene(scene), [*more, *(fuzz_files.RESTART if way < 0.95 else fuzz_files.RESTART[2:])])
+        more = fuzz_words.command_line(self.base.scenes, scene,
+                                       chance) if chance.random() < 0.3 else []
+        self.put_scene(write_scene(scene), [*more,
+                                            *(fuzz_files.RESTART if way < 0.95
+                                              else fuzz_files.RESTART[2:])])
         self.damaged = None
 
     def make_petsc(self, chance):
@@ -147,7 +164,8 @@ class Case:
             if way < 0.7:
                 words += ["-" + name] + ([] if value is None else [value.replace("\0", "")])
             elif way < 0.8:
-                self.environment["PETSC_OPTIONS"] = (self.environment.get("PETSC_OPTIONS", "") + " " + text).replace("\0", "")
+                self.environment["PETSC_OPTIONS"] = (self.environment.get("PETSC_OPTIONS", "") + " "
+                                                     + text).replace("\0", "")
             elif way < 0.9:
                 self.files[".petscrc"] = self.files.get(".petscrc", b"") + text.encode() + b"\n"
             else:
@@ -158,20 +176,25 @@ class Case:
         """What a message may name."""
         names = " ".join([*self.files, *LATTICES, "checkpoint mesh_file lattice_file m.h5 scene"])
         datasets = self.base.names if self.damaged else ""
-        rest = " ".join(self.files[name].decode(errors="replace") for name in self.files if name == ".petscrc")
-        keys = " ".join(word for key in self.base.scenes.keys for word in key.path)  # one may be missing
-        text = " ".join([self.scene, *self.words, *self.environment.values(), names, datasets, rest, keys])
+        rest = " ".join(self.files[name].decode(errors="replace") for name in self.files
+                        if name == ".petscrc")
+        # one may be missing
+        keys = " ".join(word for key in self.base.scenes.keys for word in key.path)
+        text = " ".join([self.scene, *self.words, *self.environment.values(), names, datasets, rest,
+                         keys])
         text = text.encode(errors="replace").decode()
         return text + " " + text.replace("_", " _ ")
 
     def names_file(self, name):
         """Whether a file is one that an option of PETSc names."""
         return self.kind == "petsc" and not name.startswith("out") and any(
-            name == word or len(word) > 1 and name.startswith(word.lstrip(":")) for word in self.all_text().split())
+            name == word or len(word) > 1 and name.startswith(word.lstrip(":"))
+            for word in self.all_text().split())
 
     def lay(self, folder):
         for name in (*LATTICES, "o.h5"):
-            if name not in self.files and (name in self.scene or any(name in word for word in self.words)):
+            if name not in self.files and (name in self.scene
+                                           or any(name in word for word in self.words)):
                 shutil.copy(self.base.folder / name, folder)
         if self.tree:
             shutil.copytree(self.tree, folder, dirs_exist_ok=True, symlinks=True)
@@ -187,11 +210,13 @@ class Case:
         return [folder / "out/s"] if new.exists() and old.read_bytes() == new.read_bytes() else []
 
     def check_results(self, folder):
-        """Which rule of this kind a run breaks that ended well: a restart from a damaged checkpoint is the undamaged run's."""
+        """Which rule of this kind a run breaks that ended well: a restart from a damaged checkpoint
+        is the undamaged run's."""
         if self.kind != "checkpoint" or not self.damaged or not self.base.checked or "-check" in self.words:
             return None
         straight, resumed = (f / "out/s/history.csv" for f in (self.base.folder / "d", folder))
-        return None if straight.read_bytes() == resumed.read_bytes() else ("a damaged checkpoint gives other results",)
+        return None if straight.read_bytes() == resumed.read_bytes() else ("a damaged checkpoint "
+                                                                           "gives other results",)
 
 
 class Base:
@@ -214,7 +239,8 @@ def try_case(kind, seed, base):
     """Outcome of one case, and how long it took [s]."""
     began = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="fuzz", dir=TMPFS) as around:
-        folder = Path(around) / "in" / "case"  # one that a case escapes to is in the temporary folder too
+        # one that a case escapes to is in the temporary folder too
+        folder = Path(around) / "in" / "case"
         folder.mkdir(parents=True)
         outcome = run_case(Case(kind, seed, base), folder)
     return outcome, time.monotonic() - began
@@ -226,10 +252,12 @@ def try_many(seeds, kind=None, jobs=1, say=None):
     with (tempfile.TemporaryDirectory(prefix="fuzz_base", dir=TMPFS) as folder,
           concurrent.futures.ThreadPoolExecutor(jobs) as pool):
         base = Base(folder)
-        for outcome, took in pool.map(lambda seed: try_case(kind or kind_of(seed), seed, base), seeds):
+        for outcome, took in pool.map(lambda seed: try_case(kind or kind_of(seed), seed, base),
+                                      seeds):
             count = codes.setdefault(outcome.case.kind, {})
             count[outcome.code] = count.get(outcome.code, 0) + 1
-            slowest = sorted([*slowest, (took, outcome.case.kind, outcome.case.seed)], reverse=True)[:8]
+            slowest = sorted([*slowest, (took, outcome.case.kind, outcome.case.seed)],
+                             reverse=True)[:8]
             if outcome.broken:
                 broken.append(outcome)
                 if say:
@@ -250,13 +278,15 @@ def show(kind, seed, keep):
             keep.mkdir(parents=True, exist_ok=True)
             case.lay(keep)
         print("--- s.yaml\n" + case.scene[:6000])
-        print("--- standard output\n" + outcome.out[-3000:] + "--- standard error\n" + outcome.error[:6000])
+        print("--- standard output\n" + outcome.out[-3000:] + "--- standard error\n"
+              + outcome.error[:6000])
         print(outcome.report())
     return 1 if outcome.broken else 0
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kind", choices=sorted(set(KINDS)))
     parser.add_argument("--seed", type=int, help="one case")
     parser.add_argument("--keep", help="a folder where the files of the one case are left")
@@ -267,11 +297,13 @@ def main():
     if given.seed is not None:
         return show(given.kind or kind_of(given.seed), given.seed, given.keep)
     began = time.monotonic()
-    broken, codes, slowest = try_many(range(given.first, given.first + given.cases), given.kind, given.jobs,
+    broken, codes, slowest = try_many(range(given.first, given.first + given.cases), given.kind,
+                                      given.jobs,
                                       lambda text: print(text, flush=True))
     print(f"{given.cases} cases, {len(broken)} break a rule, {time.monotonic() - began:.0f} s")
     for kind, count in sorted(codes.items()):
-        print(f"  {kind}: " + ", ".join(f"{number} with exit code {code}" for code, number in sorted(count.items())))
+        print(f"  {kind}: " + ", ".join(f"{number} with exit code {code}"
+                                        for code, number in sorted(count.items())))
     print("  slowest: " + ", ".join(f"{kind} {seed} {took:.1f} s" for took, kind, seed in slowest))
     return 1 if broken else 0
 

@@ -43,10 +43,13 @@ def lay_lattices(folder):
 
 
 def lay_mesh_and_checkpoint(folder):
-    """m.h5, a mesh file; c/out/s, a stopped run with a checkpoint; d/out/s, the same gone on with to its end."""
+    """m.h5, a mesh file; c/out/s, a stopped run with a checkpoint; d/out/s, the same gone on with
+    to its end."""
     (folder / "m.yaml").write_text("integrator: explicit\nforces: [beam]\n"
-                                   "sheet: {length: 6, element_size: 2, iterations: 9, mesh_file: m.h5}\n")
-    for scene, at, words in (("m", folder, ["-ts_max_steps", "1"]), ("s", folder / "c", ["-ts_max_steps", "150"])):
+                                   "sheet: {length: 6, element_size: 2, iterations: 9, mesh_file: "
+                                   "m.h5}\n")
+    for scene, at, words in (("m", folder, ["-ts_max_steps", "1"]),
+                             ("s", folder / "c", ["-ts_max_steps", "150"])):
         at.mkdir(exist_ok=True)
         if scene == "s":
             (at / "s.yaml").write_text(CHECKPOINTED)
@@ -86,7 +89,8 @@ def flipped(data, chance):
 
 def _datasets(file):
     names = []
-    file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+    file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset)
+                    else None)
     return names
 
 
@@ -102,10 +106,12 @@ def _odd_entries(values, chance):
             flat[at] = flat[chance.randrange(flat.size)]
         elif flat.dtype.kind == "f":
             with np.errstate(all="ignore"):
-                flat[at] = chance.choice((*NUMBERS, flat[at] * 2, -flat[at], flat[at] * 10**chance.uniform(-9, 9)))
+                flat[at] = chance.choice((*NUMBERS, flat[at] * 2, -flat[at],
+                                          flat[at] * 10**chance.uniform(-9, 9)))
         else:
             info = np.iinfo(flat.dtype)
-            flat[at] = min(max(int(chance.choice((*INTEGERS, int(flat[at]) + 1))), info.min), info.max)
+            flat[at] = min(max(int(chance.choice((*INTEGERS, int(flat[at]) + 1))), info.min),
+                           info.max)
     return values
 
 
@@ -123,14 +129,17 @@ def _change_dataset(file, name, chance):
     if way == 4:
         values = np.asarray(values)
         with np.errstate(all="ignore"):
-            values = values.astype(chance.choice(TYPES)) if values.dtype.kind in "fiu" else np.zeros(3)
+            values = values.astype(chance.choice(
+                TYPES)) if values.dtype.kind in "fiu" else np.zeros(3)
     elif way == 5:
         rows = np.atleast_1d(values)
         values = chance.choice((rows[:-1], np.concatenate([rows, rows]), rows[:0], rows[::-1],
                                 np.concatenate([rows, rows[:1]])))
     elif way == 6:
-        values = chance.choice((np.float64(1), np.zeros(np.shape(values) + (1,)), np.ravel(values), np.asarray(values).T,
-                                np.zeros((2, 2, 2)), h5py.Empty("f8"), np.zeros(4, [("x", "f8")]), "text"))
+        values = chance.choice((np.float64(1), np.zeros(np.shape(values) + (1,)), np.ravel(values),
+                                np.asarray(values).T,
+                                np.zeros((2, 2, 2)), h5py.Empty("f8"), np.zeros(4, [("x", "f8")]),
+                                "text"))
     elif way == 7:
         file.create_group(name)
         return
@@ -154,7 +163,8 @@ def _change_attributes(file, name, chance):
     else:
         key = chance.choice(known)
         old = attributes[key]
-        wrong = (np.nan, np.inf, -1.0, 0.0, 1e300, "x", np.zeros(1000), 2**62, np.int8(-1), h5py.Empty("f8"))
+        wrong = (np.nan, np.inf, -1.0, 0.0, 1e300, "x", np.zeros(1000), 2**62, np.int8(-1),
+                 h5py.Empty("f8"))
         if isinstance(old, str):
             wrong += (old + "x", old[:-1], "", old.upper())
         elif np.asarray(old).dtype.kind in "fiu":
@@ -163,13 +173,15 @@ def _change_attributes(file, name, chance):
 
 
 def changed(data, chance):
-    """Bytes of an HDF5 file of which datasets, groups and attributes are changed by its own library."""
+    """Bytes of an HDF5 file of which datasets, groups and attributes are changed by its own
+    library."""
     store = io.BytesIO(data)
     with h5py.File(store, "a") as file:
         for _ in range(chance.choice((1, 1, 1, 2, 4))):
             names = _datasets(file)
             holders = ["/", *names]
-            file.visititems(lambda name, item: holders.append(name) if isinstance(item, h5py.Group) else None)
+            file.visititems(lambda name, item: holders.append(name) if isinstance(item, h5py.Group)
+                            else None)
             way = chance.random()
             if way < 0.75 and names:
                 _change_dataset(file, chance.choice(names), chance)
@@ -195,7 +207,8 @@ def names_in(folder):
 
 
 def has_checksums(folder):
-    """Whether this floe refuses a checkpoint of which one number is another: then no damage may change a run."""
+    """Whether this floe refuses a checkpoint of which one number is another: then no damage may
+    change a run."""
     shutil.copytree(folder / "c", folder / "e")
     with h5py.File(folder / "e/out/s/checkpoint.h5", "a") as file:
         records = file["bodies/records"]

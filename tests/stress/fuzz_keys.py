@@ -1,4 +1,5 @@
-"""The keys of a scene, read from `floe -help_markdown`, and values for them: allowed ones and hostile ones."""
+"""The keys of a scene, read from `floe -help_markdown`, and values for them: allowed ones and
+hostile ones."""
 import math
 import re
 import subprocess
@@ -21,7 +22,8 @@ ODD = ("nan", "-nan", "inf", "-inf", ".nan", ".inf", "1e400", "-1e400", "1e308",
 
 
 class Key:
-    """One row: `path` is a tuple of words, of which NAME stands for a name; `kind` says what its values are."""
+    """One row: `path` is a tuple of words, of which NAME stands for a name; `kind` says what its
+    values are."""
 
     def __init__(self, path, must_be, default):
         self.path = tuple(path.split(": "))
@@ -38,7 +40,8 @@ class Key:
                 self.high = float(bound)
         if must_be.startswith(("one of ", "a list of ")) and "|" in must_be:
             self.kind = "choice" if must_be.startswith("one") else "list"
-            self.choices = must_be.removeprefix("one of ").removeprefix("a list of ").removesuffix(", none twice").split(" | ")
+            self.choices = must_be.removeprefix("one of ").removeprefix("a list of ").removesuffix(
+                ", none twice").split(" | ")
         elif "names" in must_be:
             self.kind = "names"
         elif must_be.startswith("a number") or re.match(r"\d+ numbers", must_be):
@@ -60,7 +63,8 @@ class Key:
             return math.sqrt(low * high) if low < high else self.low
 
     def number(self, chance):
-        """One allowed number: mostly near the default, at times an end of the range or anywhere in it."""
+        """One allowed number: mostly near the default, at times an end of the range or anywhere in
+        it."""
         usual, way = self.usual(), chance.random()
         if way < 0.75:
             if usual == 0:
@@ -82,7 +86,8 @@ class Key:
         if self.kind == "choice":
             return chance.choice(self.choices)
         if self.kind == "list":
-            return "[" + ", ".join(chance.sample(self.choices, chance.randint(1, len(self.choices)))) + "]"
+            return "[" + ", ".join(chance.sample(self.choices,
+                                                 chance.randint(1, len(self.choices)))) + "]"
         if self.kind == "integer":
             value = self.one(chance)
             return str(int(value) if chance.random() < 0.8 else chance.randint(0, 9))
@@ -95,11 +100,13 @@ class Key:
         """A value that is odd, beyond a bound, or of another key's kind."""
         if self.kind in ("number", "integer") and chance.random() < 0.4:
             ends = [self.low, self.high]
-            beyond = [x * f for x in ends for f in (2, 0.5, -1, 1 + 1e-15, 1 - 1e-15)] + ends + [0.0, -1.0]
+            beyond = [x * f for x in ends for f in (2, 0.5, -1, 1 + 1e-15,
+                                                    1 - 1e-15)] + ends + [0.0, -1.0]
             values = [repr(chance.choice(beyond)) for _ in range(self.count)]
             return values[0] if self.count == 1 else "[" + ", ".join(values) + "]"
         if self.kind == "list" and chance.random() < 0.4:
-            return "[" + ", ".join(chance.choices([*self.choices, "odd", "1"], k=chance.randint(1, 8))) + "]"
+            return "[" + ", ".join(chance.choices([*self.choices, "odd", "1"],
+                                                  k=chance.randint(1, 8))) + "]"
         return chance.choice(ODD)
 
 

@@ -16,13 +16,19 @@ import launch
 HANGS = 600  # [s], for hangs alone
 LONGEST_LINE = 400
 DONE, FAILED, BAD_INPUT, STOPPED = range(4)
-TRACES = re.compile(r"PETSC ERROR|internal error|Traceback|MPI_ABORT|terminate called|what\(\):|Assertion|AddressSanitizer|"
-                    r"runtime error:|SUMMARY: \w*Sanitizer|Segmentation|Caught signal|HDF5-DIAG|double free|corrupted|std::|"
-                    r"bad_alloc|basic_string|[Bb]acktrace|core dumped|prterun noticed|exited on signal")
+TRACES = re.compile(r"PETSC ERROR|internal error|Traceback|MPI_ABORT|terminate "
+                    r"called|what\(\):|Assertion|AddressSanitizer|"
+                    r"runtime error:|SUMMARY: \w*Sanitizer|Segmentation|Caught "
+                    r"signal|HDF5-DIAG|double free|corrupted|std::|"
+                    r"bad_alloc|basic_string|[Bb]acktrace|core dumped|prterun noticed|exited on "
+                    r"signal")
 # Words that say nothing about the input.
-EMPTY = set("a an and are as at be but by can could does for from has have here if in is it its least most "
-            "must never no none not of on one only or out than that the there this to too was what where "
-            "which with without would floe file line value number numbers text expected allowed known run".split())
+EMPTY = set("a an and are as at be but by can could does for from has have here if in is it its "
+            "least most "
+            "must never no none not of on one only or out than that the there this to too was what "
+            "where "
+            "which with without would floe file line value number numbers text expected allowed "
+            "known run".split())
 HELP = re.compile(r"^-{0,2}(h|help|help_markdown|help_man|version|V|v)$")
 
 
@@ -39,7 +45,8 @@ class Outcome:
         environment = {**launch.ENVIRONMENT, "HOME": str(folder), **case.environment}
         command = launch.on_ranks(case.ranks, [launch.FLOE, *case.words])
         process = subprocess.Popen(command, cwd=folder, env=environment, start_new_session=True,
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE,
                                    preexec_fn=launch.limited_memory(4))
         try:
             out, error = process.communicate(timeout=HANGS)
@@ -48,13 +55,15 @@ class Outcome:
             out, error = process.communicate()
             self.broken.append(f"hangs: no end after {HANGS} s")
         self.code = process.returncode
-        self.out, self.error = out.decode(errors="replace"), launch.own_words(error.decode(errors="replace"))
+        self.out, self.error = out.decode(errors="replace"), launch.own_words(
+            error.decode(errors="replace"))
         if not self.broken:
             self.check(before)
 
     def contents(self):
         """Everything in the folder: names, and what is in files."""
-        return {str(p.relative_to(self.folder)): p.read_bytes() if p.is_file() and not p.is_symlink() else None
+        return {str(p.relative_to(self.folder)): p.read_bytes() if p.is_file()
+                and not p.is_symlink() else None
                 for p in self.folder.rglob("*")}
 
     def breaks(self, rule, *more):
@@ -76,7 +85,8 @@ class Outcome:
 
     def check_refused(self, before):
         lines = self.error.removesuffix("\n").split("\n")
-        if len(lines) != 1 or not re.match(r"floe( \w+)?:", self.error) or not self.error.endswith("\n"):
+        if len(lines) != 1 or not re.match(r"floe( \w+)?:",
+                                           self.error) or not self.error.endswith("\n"):
             self.breaks("not one line of floe's", repr(self.error[:1000]))
         elif len(re.sub(r"[^\s']{100,}", "...", lines[0])) >= LONGEST_LINE:  # but for a long path that was given
             self.breaks(f"a line of {len(lines[0])} letters", lines[0][:LONGEST_LINE])
@@ -86,21 +96,25 @@ class Outcome:
             self.breaks("letters that cannot be printed", repr(self.error[:300]))
         after = self.contents()
         if before != after:
-            changed = sorted(name for name in {*before, *after} if before.get(name, 0) != after.get(name, 0))
-            # PETSc's own logs are where the user asked for them: -info FILE, -citations FILE, -malloc_view FILE
-            # (FILE_0 on rank 0).
-            if any(name in before or not self.case.names_file(re.sub(r"_\d+$", "", name)) for name in changed):
+            changed = sorted(name for name in {*before, *after}
+                             if before.get(name, 0) != after.get(name, 0))
+            # PETSc's own logs are where the user asked for them: -info FILE, -citations FILE,
+            # -malloc_view FILE (FILE_0 on rank 0).
+            if any(name in before or not self.case.names_file(re.sub(r"_\d+$", "", name))
+                   for name in changed):
                 self.breaks("refused, but touched", changed[:6])
 
     def names_input(self, line):
         """Whether it holds a word of the input, or a whole word of the command line."""
         return bool((words_of(line) - EMPTY) & words_of(self.case.all_text()) or
-                    any(word.lstrip("-") and word.lstrip("-")[:40] in line or word in line.split() or f"{word}:" in line.split()
+                    any(word.lstrip("-") and word.lstrip("-")[:40] in line or word in line.split()
+                        or f"{word}:" in line.split()
                         for word in self.case.words))
 
     def check_run(self):
         earlier = self.case.earlier(self.folder)
-        folders = [path.parent for path in self.folder.rglob("summary.json") if path.parent not in earlier]
+        folders = [path.parent for path in self.folder.rglob("summary.json")
+                   if path.parent not in earlier]
         if self.code == FAILED:
             if not any(line.startswith("floe:") for line in self.error.splitlines()):
                 self.breaks("fails without a word")
@@ -110,7 +124,8 @@ class Outcome:
             summary = self.read_summary(folder / "summary.json")
             expected = {DONE: "done", FAILED: "failed", STOPPED: "stopped"}[self.code]
             if summary is not None and summary.get("status") != expected:
-                self.breaks(f"exit code {self.code}, but the summary's status is", summary.get("status"))
+                self.breaks(f"exit code {self.code}, but the summary's status is",
+                            summary.get("status"))
             if summary is not None and self.code == FAILED and not summary.get("message"):
                 self.breaks("the summary does not say why it failed")
             self.check_results(folder)
@@ -147,8 +162,10 @@ class Outcome:
             try:
                 with h5py.File(path) as file:
                     bad = []
-                    file.visititems(lambda name, item, bad=bad: bad.append(name) if isinstance(item, h5py.Dataset)
-                                    and item.dtype.kind == "f" and not np.all(np.isfinite(item[()])) else None)
+                    file.visititems(lambda name, item, bad=bad: bad.append(name)
+                                    if isinstance(item, h5py.Dataset)
+                                    and item.dtype.kind == "f" and not np.all(np.isfinite(item[()]))
+                                    else None)
             except (OSError, RuntimeError) as error:
                 self.breaks("cannot be read", path.name, error)
                 continue
@@ -157,8 +174,10 @@ class Outcome:
 
     def report(self):
         """What to look at, with the command that runs the case again."""
-        asked = " ".join(repr(word) if not re.fullmatch(r"[\w./=:,+-]+", word) else word for word in self.case.words)
-        lines = [f"case: tests/stress/fuzz.py --kind {self.case.kind} --seed {self.case.seed}", f"  floe {asked[:1500]}"]
+        asked = " ".join(repr(word) if not re.fullmatch(r"[\w./=:,+-]+", word) else word
+                         for word in self.case.words)
+        lines = [f"case: tests/stress/fuzz.py --kind {self.case.kind} --seed {self.case.seed}",
+                 f"  floe {asked[:1500]}"]
         if self.case.ranks > 1:
             lines.append(f"  on {self.case.ranks} ranks")
         lines += [f"  {name}={value!r}" for name, value in self.case.environment.items()]

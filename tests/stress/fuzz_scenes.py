@@ -1,6 +1,8 @@
-"""Scenes to try: changed scenes of input/, scenes made from the list of keys, scenes whose text is damaged.
+"""Scenes to try: changed scenes of input/, scenes made from the list of keys, scenes whose text is
+damaged.
 
-A scene is {path: text}, the path a tuple of keys, and is kept small: a run that is accepted takes no second.
+A scene is {path: text}, the path a tuple of keys, and is kept small: a run that is accepted takes
+no second.
 """
 import math
 import re
@@ -15,8 +17,10 @@ LATTICES = {"frame.h5": ("root", "tip", "all"), "rubble.h5": ("all",), "block.h5
             "strip.h5": ("left", "right", "all"), "stack.h5": ("lowest", "highest", "all")}
 BEAMLESS = ("rubble.h5", "block.h5", "stack.h5")
 # The lattices of input/, and the small ones that take their places.
-STAND_INS = {"strip": "frame.h5", "rubble_pile": "rubble.h5", "punch_through": "rubble.h5", "triangles": "triangles.h5",
-             "ice_slope": "strip.h5", "stopping": "block.h5", "drag_decay": "block.h5", "top": "block.h5", "heave": "block.h5"}
+STAND_INS = {"strip": "frame.h5", "rubble_pile": "rubble.h5", "punch_through": "rubble.h5",
+             "triangles": "triangles.h5",
+             "ice_slope": "strip.h5", "stopping": "block.h5", "drag_decay": "block.h5",
+             "top": "block.h5", "heave": "block.h5"}
 MOST_CELLS, MOST_ITERATIONS, MOST_LOAD_STEPS = 60, 100, 12
 
 
@@ -88,25 +92,32 @@ def number(scene, *path, default):
 
 
 def bound(scene, chance):
-    """Makes a scene so small that an accepted run is short; words for the command line that end it."""
+    """Makes a scene so small that an accepted run is short; words for the command line that end
+    it."""
     scene.pop(("sheet", "mesh_file"), None)
     length = number(scene, "sheet", "length", default="40")
     width = number(scene, "sheet", "width", default=scene.get(("sheet", "length"), "40"))
     size = number(scene, "sheet", "element_size", default="2")
-    if any(path[0] == "sheet" for path in scene) and None not in (length, width, size) and min(length, width, size) > 0:
+    if any(path[0] == "sheet"
+           for path in scene) and None not in (length, width,
+                                               size) and min(length, width, size) > 0:
         if MOST_CELLS < length * width / size / size < 1e8:  # above, it is refused
-            scene[("sheet", "element_size")] = repr(math.sqrt(length) * math.sqrt(width / chance.randint(10, MOST_CELLS)))
+            scene[("sheet", "element_size")] = repr(math.sqrt(length)
+                                                    * math.sqrt(width / chance.randint(10,
+                                                                                       MOST_CELLS)))
         iterations = number(scene, "sheet", "iterations", default="150")
         if iterations is not None and MOST_ITERATIONS < iterations <= 1e6:
             scene[("sheet", "iterations")] = str(chance.randint(0, MOST_ITERATIONS))
     if scene.get(("integrator",), "quasistatic") not in ("explicit", "implicit"):
-        end, step = number(scene, "time", "end", default="1"), number(scene, "time", "dt", default="1e300")
+        end, step = number(scene, "time", "end",
+                           default="1"), number(scene, "time", "dt", default="1e300")
         if end is not None and step is not None and step > 0 and end / step > MOST_LOAD_STEPS:
             scene[("time", "dt")] = repr(end / chance.randint(1, MOST_LOAD_STEPS))
         return []
     explicit = scene[("integrator",)] == "explicit"
     if chance.random() < 0.3:
-        if explicit and ("time", "end") in scene and number(scene, "time", "end", default="1") is not None:
+        if explicit and ("time", "end") in scene and number(scene, "time", "end",
+                                                            default="1") is not None:
             scene[("time", "end")] = repr(10**chance.uniform(-6, -3))
         if explicit:
             scene[("limit", "steps")] = "2000"
@@ -135,11 +146,13 @@ class Scenes:
         if key.path[-1] == "set":
             return chance.choice(LATTICES.get(scene.get(("lattice_file",)), SHEET_SETS[:5]))
         if key.path[0] == "region" and key.count == 6 and chance.random() < 0.9:
-            return "[" + ", ".join(f"{-chance.uniform(0, 6):.3f}, {chance.uniform(0, 6):.3f}" for _ in range(3)) + "]"
+            return "[" + ", ".join(f"{-chance.uniform(0, 6):.3f}, {chance.uniform(0, 6):.3f}"
+                                   for _ in range(3)) + "]"
         if key.path[0] == "cut" and key.count == 2 and chance.random() < 0.8:
             return f"[{-20 if key.path[-1] == 'from' else 20}, {chance.uniform(-2, 2):.3f}]"
         if key.path[-1] == "point" and key.count == 2 or key.path[0] == "cut" and key.count == 2:
-            return "[" + ", ".join(repr(round(chance.uniform(-6, 6), 3)) for _ in range(key.count)) + "]"
+            return "[" + ", ".join(repr(round(chance.uniform(-6, 6), 3))
+                                   for _ in range(key.count)) + "]"
         if key.path[-1] == "fix":
             return " ".join(chance.sample(key.choices, chance.randint(1, 6)))
         if key.path == ("lattice_file",):
@@ -180,15 +193,18 @@ class Scenes:
     @staticmethod
     def mend_obstacle(scene, name, chance):
         """Leaves the keys of one shape."""
-        own = {"halfspace": ("point", "normal"), "box": ("centre", "size", "rotation"), "cone": ("base", "radius", "top_radius",
-               "height", "facets"), "cylinder": ("base", "radius", "height", "facets"), "file": ("file", "point")}
+        own = {"halfspace": ("point", "normal"), "box": ("centre", "size", "rotation"),
+               "cone": ("base", "radius", "top_radius",
+               "height", "facets"), "cylinder": ("base", "radius", "height", "facets"),
+               "file": ("file", "point")}
         shape = scene[("obstacle", name, "shape")]
         every = {word for words in own.values() for word in words}
         for word in every - set(own.get(shape, every)):
             scene.pop(("obstacle", name, word), None)
         if shape != "halfspace":
             place = {"box": "centre", "file": "point"}.get(shape, "base")
-            scene[("obstacle", name, place)] = f"[{chance.choice([0, 5, 9, 30])}, 0, {chance.choice([-20, -3, 0, 3])}]"
+            scene[("obstacle", name,
+                   place)] = f"[{chance.choice([0, 5, 9, 30])}, 0, {chance.choice([-20, -3, 0, 3])}]"
         else:
             scene.pop(("obstacle", name, "angular_velocity"), None)
             scene[("obstacle", name, "point")] = f"[{chance.choice([5, 6.01, 50])}, 0, 0]"
@@ -199,7 +215,8 @@ class Scenes:
 
     def made(self, chance):
         """A scene from the list of keys: mostly one that fits together."""
-        scene = {("integrator",): chance.choice(["explicit", "explicit", "implicit", "quasistatic"])}
+        scene = {("integrator",): chance.choice(["explicit", "explicit", "implicit",
+                                                 "quasistatic"])}
         dynamic = scene[("integrator",)] != "quasistatic"
         if chance.random() < 0.4:
             scene[("lattice_file",)] = chance.choice(list(LATTICES))
@@ -257,7 +274,8 @@ class Scenes:
         if dynamic:
             self.named(scene, "initial", chance, chance.choice((0, 0, 1)))
             scene[("time", "end")] = repr(10**chance.uniform(-4, 1))
-        for path in (("time", "safety"), ("output", "history"), ("output", "fields"), ("limit", "velocity"),
+        for path in (("time", "safety"), ("output", "history"), ("output", "fields"),
+                     ("limit", "velocity"),
                      ("model", "planar")):
             if chance.random() < 0.15:
                 key = next(k for k in self.keys if k.path == path)
@@ -267,19 +285,23 @@ class Scenes:
 
     @staticmethod
     def tidy(scene, chance):
-        """Takes out of a scene most of what would be refused because two keys do not go together."""
+        """Takes out of a scene most of what would be refused because two keys do not go
+        together."""
         for name in sorted({path[1] for path in scene if path[0] == "boundary" and len(path) == 3}):
             fix = scene.get(("boundary", name, "fix"), "").split()
-            for word, of in (("velocity", "xyz"), ("displacement", "xyz"), ("angular_velocity", ["rx", "ry", "rz"])):
+            for word, of in (("velocity", "xyz"), ("displacement", "xyz"),
+                             ("angular_velocity", ["rx", "ry", "rz"])):
                 path = ("boundary", name, word)
                 if path in scene:
-                    values = [chance.uniform(-1, 1) * 10**chance.uniform(-4, 1) if c in fix else 0 for c in of]
+                    values = [chance.uniform(-1, 1) * 10**chance.uniform(-4, 1) if c in fix else 0
+                              for c in of]
                     scene[path] = "[" + ", ".join(f"{value:.3g}" for value in values) + "]"
             if ("boundary", name, "displacement") in scene:
                 scene[("boundary", name, "ramp")] = repr(10**chance.uniform(-4, 1))
         for name in sorted({path[1] for path in scene if path[0] == "load" and len(path) == 3}):
             if ("load", name, "moment") not in scene:
-                scene.setdefault(("load", name, "force"), f"[0, {10**chance.uniform(-3, 7):.3g}, 0]")
+                scene.setdefault(("load", name, "force"),
+                                 f"[0, {10**chance.uniform(-3, 7):.3g}, 0]")
         if ("fracture", "weibull_modulus") not in scene:
             for word in ("weibull_area", "seed"):
                 scene.pop(("fracture", word), None)
@@ -287,7 +309,8 @@ class Scenes:
             scene.pop(("beam", "shear"), None)
         if scene.get(("beam", "shear"), "") == "none":
             scene.pop(("beam", "shear_factor"), None)
-        if ("water", "drag_coefficient") not in scene and "buoyancy" not in scene.get(("forces",), ""):
+        if ("water", "drag_coefficient") not in scene and "buoyancy" not in scene.get(("forces",),
+                                                                                      ""):
             scene.pop(("water", "density"), None)
         if ("water", "density") in scene and chance.random() < 0.8:
             scene[("water", "density")] = "1025"
@@ -304,7 +327,8 @@ class Scenes:
                 del scene[path]
 
     def spoil(self, scene, chance):
-        """Changes some keys: other values, allowed or hostile, keys that are gone, new, misspelt."""
+        """Changes some keys: other values, allowed or hostile, keys that are gone, new,
+        misspelt."""
         for _ in range(chance.choice((1, 1, 1, 1, 2, 4))):
             way = chance.random()
             path = chance.choice(list(scene)) if scene else ("integrator",)
@@ -314,7 +338,9 @@ class Scenes:
             if way < 0.3:
                 scene[path] = key.hostile(chance)
             elif way < 0.65:
-                scene[path] = self.value(key, scene, chance) if key.kind != "names" else chance.choice(["[b0, b0]", "x", "[]"])
+                scene[path] = self.value(key, scene,
+                                         chance) if key.kind != "names" else chance.choice(
+                                             ["[b0, b0]", "x", "[]"])
             elif way < 0.72:
                 scene.pop(path, None)
             elif way < 0.95:
@@ -324,7 +350,8 @@ class Scenes:
                 scene.pop(path, None)
                 word = path[-1]
                 at = chance.randrange(len(word))
-                scene[(*path[:-1], word[:at] + chance.choice("aex_1") + word[at + chance.choice((0, 1)):])] = chance.choice(ODD)
+                scene[(*path[:-1], word[:at] + chance.choice("aex_1")
+                       + word[at + chance.choice((0, 1)):])] = chance.choice(ODD)
 
     def changed(self, chance):
         """A small copy of a scene of input/, changed."""
@@ -343,9 +370,11 @@ class Scenes:
             at = chance.randrange(len(data) + 1)
             lines = data.split(b"\n")
             row = chance.randrange(len(lines))
-            odd = [b"\t", b"\0", b"\xff", b"\xff\xfe", b"\xef\xbb\xbf", b"\r\n", b"---\n", b"...\n", b"- ", b"? ",
+            odd = [b"\t", b"\0", b"\xff", b"\xff\xfe", b"\xef\xbb\xbf", b"\r\n", b"---\n", b"...\n",
+                   b"- ", b"? ",
                    b": ", b"{", b"}", b"[", b"]", b"&a ", b"*a ", b"!t ", b"|\n",
-                   b"'", b'"', b"#", b"%YAML 1.3\n", b"<<: *a\n", "ü".encode(), "\u2028".encode(), b"  ", b"a: {" * chance.choice((3, 50, 3000)), b"x" * 5000,
+                   b"'", b'"', b"#", b"%YAML 1.3\n", b"<<: *a\n", "ü".encode(), "\u2028".encode(),
+                   b"  ", b"a: {" * chance.choice((3, 50, 3000)), b"x" * 5000,
                    b"[" * chance.choice((3, 3000))]
             way = chance.randrange(7)
             if way == 0:
@@ -359,7 +388,8 @@ class Scenes:
             elif way == 4:
                 data = b"\n".join([*lines[:row], lines[row], *lines[row:]])
             elif way == 5:
-                data = b"\n".join([*lines[:row], b" " * chance.randrange(5) + lines[row].lstrip(), *lines[row + 1:]])
+                data = b"\n".join([*lines[:row], b" " * chance.randrange(5) + lines[row].lstrip(),
+                                   *lines[row + 1:]])
             else:
                 chance.shuffle(lines)
                 data = b"\n".join(lines)

@@ -46,7 +46,8 @@ WORDS = ("-help", "--help", "-h", "help", "-version", "--version", "-V", "-check
          "-checkpoint_restart", "-lattice_file", "-check false", "-report", "-output_overwrite",
          "make_lattice", "plot_sheet", "-ts_max_steps")
 
-BYTES = ("a\nb", "a\tb", "\x1b[31m", "\x07", "a\udcff", "\udce4pfel", "\u2028", "\u202e", "\r")  # \udcff stands for a byte 255
+# \udcff stands for a byte 255
+BYTES = ("a\nb", "a\tb", "\x1b[31m", "\x07", "a\udcff", "\udce4pfel", "\u2028", "\u202e", "\r")
 
 
 def petsc_options(chance):
@@ -66,13 +67,16 @@ def command_line(scenes, scene, chance):
         if way < 0.6:
             key = chance.choice(scenes.keys)
             name = "-" + "_".join(scenes.place(key, scene, chance))
-            value = key.hostile(chance) if chance.random() < 0.3 else scenes.value(key, scene, chance)
+            value = key.hostile(chance) if chance.random() < 0.3 else scenes.value(key, scene,
+                                                                                   chance)
             value = value.strip("[]").replace(", ", ",") if chance.random() < 0.8 else value
             value = chance.choice(BYTES) if chance.random() < 0.04 else value
-            words += chance.choice(([name, value], [name, value], [name, value], [f"{name}={value}"],
+            words += chance.choice(([name, value], [name, value], [name, value],
+                                    [f"{name}={value}"],
                                     ["-" + name, value], [name]))
         elif way < 0.85:
-            words += chance.choice(WORDS).split(" ") if chance.random() < 0.9 else [chance.choice(WORDS), chance.choice(ODD)]
+            words += chance.choice(WORDS).split(" ") if chance.random() < 0.9 else [
+                chance.choice(WORDS), chance.choice(ODD)]
         else:
             words.append(chance.choice((*ODD, *BYTES)))
     return [word.replace("\0", "") for word in words]

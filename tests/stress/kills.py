@@ -1,9 +1,9 @@
-"""Runs that are killed, told to stop or that find the disk full, at random times, again and again, and
-that go on each time from their newest checkpoint: in the end they equal the run that nothing happened
-to, bit for bit, and no file was ever torn.
+"""Runs that are killed, told to stop or that find the disk full, at random times, again and again,
+and that go on each time from their newest checkpoint: in the end they equal the run that nothing
+happened to, bit for bit, and no file was ever torn.
 
-What happens when follows from the chain's seed, but for what the machine's speed decides. test_kills.py
-and test_kills_ranks.py run the chains, on one rank and on two.
+What happens when follows from the chain's seed, but for what the machine's speed decides.
+test_kills.py and test_kills_ranks.py run the chains, on one rank and on two.
 """
 import functools
 import json
@@ -23,7 +23,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
 from launch import ENDLESS, ENVIRONMENT, FLOE, own_words  # noqa: E402
 from test_restart import INTERRUPTED, Killing, contents, rows_of, stop_file  # noqa: E402
 
-# A floating sheet that is pushed against a slope, breaks, and whose pieces slide: something breaks or touches all the time.
+# A floating sheet that is pushed against a slope, breaks, and whose pieces slide: something breaks
+# or touches all the time.
 SCENE = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
 sheet: {length: 12, width: 6, thickness: 0.5, element_size: 1.5, iterations: 10}
@@ -47,7 +48,8 @@ class Chain(Killing):
         (self.folder / "scene.yaml").write_text(SCENE)
         self.results = self.folder / "b"
         self.results.mkdir()
-        self.has_disk = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK}", "tmpfs", str(self.results)],
+        self.has_disk = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={DISK}", "tmpfs",
+                                        str(self.results)],
                                        capture_output=True).returncode == 0
         if self.has_disk:
             self.addCleanup(subprocess.run, ["umount", "-l", str(self.results)], check=True)
@@ -69,7 +71,8 @@ class Chain(Killing):
         """Options that go on from the newest checkpoint, if there is one."""
         if re.search(r"\bauto\b", checkpoint_help()):
             return ["-checkpoint_restart", "auto"]
-        return ["-checkpoint_restart", "b/checkpoint.h5"] if (self.results / "checkpoint.h5").exists() else []
+        return ["-checkpoint_restart",
+                "b/checkpoint.h5"] if (self.results / "checkpoint.h5").exists() else []
 
     def ranks_of(self, process, ranks):
         """The processes of a run's ranks: mpiexec's children, once they are there."""
@@ -82,12 +85,14 @@ class Chain(Killing):
         return [int(child) for child in children]
 
     def fill(self, left):
-        """Fills the file system of the results but for so many bytes, while the run writes there."""
+        """Fills the file system of the results but for so many bytes, while the run writes
+        there."""
         with open(self.results / "filler", "wb") as filler:
             while True:
                 free = os.statvfs(self.results)
                 try:
-                    return os.posix_fallocate(filler.fileno(), 0, max(1, free.f_bavail * free.f_frsize - left))
+                    return os.posix_fallocate(filler.fileno(), 0,
+                                              max(1, free.f_bavail * free.f_frsize - left))
                 except OSError:  # the run was faster
                     left += 8192
 
@@ -100,7 +105,8 @@ class Chain(Killing):
                     os.kill(victim, signal.SIGKILL)
                 return None
             if event == "size limit":
-                largest = max([p.stat().st_size for p in self.results.rglob("*") if p.is_file()], default=0)
+                largest = max([p.stat().st_size for p in self.results.rglob("*") if p.is_file()],
+                              default=0)
                 limit = largest + chance.randrange(0, 20000)
                 for victim in victims:
                     resource.prlimit(victim, resource.RLIMIT_FSIZE, (limit, limit))
@@ -119,7 +125,8 @@ class Chain(Killing):
         said, code = own_words(error), process.returncode
         what = f"{event}{' early' if early else ''}: exit code {code}: {out[-300:]}{said[-600:]}"
         if codes is not None:
-            if not (early and code not in (0, 2)):  # before floe listens, or before it has an output folder
+            # before floe listens, or before it has an output folder
+            if not (early and code not in (0, 2)):
                 self.assertIn(code, codes, what)
             lines = [line for line in said.splitlines() if "warning" not in line]
             if code in (1, INTERRUPTED) and not early:
@@ -131,12 +138,14 @@ class Chain(Killing):
                 self.assertEqual(summary["steps"], self.steps_of("b"), what)
             if code == 1 and not early and event == "size limit":
                 self.assertIn("File too large", said)
-                self.assertEqual(json.loads((self.results / "summary.json").read_text())["status"], "failed")
+                self.assertEqual(json.loads((self.results / "summary.json").read_text())["status"],
+                                 "failed")
             if code == 1 and not early and event == "full disk":
                 self.assertIn("No space left", said)
         if event == "full disk":
             (self.results / "filler").unlink(missing_ok=True)
-        if (self.results / "history.csv").exists() and (self.results / "history.csv").stat().st_size:
+        if (self.results / "history.csv").exists() and (self.results
+                                                        / "history.csv").stat().st_size:
             self.check_files(self.results)
         if (self.results / "summary.json").exists():
             json.loads((self.results / "summary.json").read_text())
@@ -158,7 +167,8 @@ class Chain(Killing):
             if early:
                 time.sleep(chance.uniform(0, 0.4))
             else:
-                self.wait_for_rows(process, self.results, min(before, rows_of(self.results)) + chance.randrange(1, 60))
+                self.wait_for_rows(process, self.results,
+                                   min(before, rows_of(self.results)) + chance.randrange(1, 60))
                 time.sleep(chance.uniform(0, 0.05))
             self.check_event(event, early, process, self.happen(event, process, ranks, chance))
         before = rows_of(self.results)
@@ -183,5 +193,6 @@ class Chain(Killing):
 @functools.cache
 def checkpoint_help():
     """What floe says of the option -checkpoint_restart."""
-    page = subprocess.run([FLOE, "-help_markdown"], capture_output=True, text=True, env=ENVIRONMENT, check=True).stdout
+    page = subprocess.run([FLOE, "-help_markdown"], capture_output=True, text=True, env=ENVIRONMENT,
+                          check=True).stdout
     return next(line for line in page.splitlines() if line.startswith("| `checkpoint: restart`"))

@@ -15,7 +15,8 @@ class Fuzz(unittest.TestCase):
 def add(part):
     def test(self):
         broken, _, _ = fuzz.try_many(range(part * CASES, (part + 1) * CASES))
-        self.assertEqual([outcome.report() for outcome in broken], [], "\n" + "\n".join(o.report() for o in broken[:20]))
+        self.assertEqual([outcome.report() for outcome in broken], [],
+                         "\n" + "\n".join(o.report() for o in broken[:20]))
     setattr(Fuzz, f"test_part_{part}", test)
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Chains of kills, signals and full disks on one rank: kills.py. FLOE_FULL=1 takes 5 chains of 10 events instead of one of 6;
+"""Chains of kills, signals and full disks on one rank: kills.py. FLOE_FULL=1 takes 5 chains of 10
+events instead of one of 6;
 test_kills_ranks.py as many on two ranks."""
 import unittest
 

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Extremes: every run ends in a right answer, or in one line that says what is wrong; never in a silent wrong number.
+"""Extremes: every run ends in a right answer, or in one line that says what is wrong; never in a
+silent wrong number.
 
-Short by default; FLOE_FULL=1 (tools/bench stress) takes the long forms: 10 million steps, more seeds and ratios.
+Short by default; FLOE_FULL=1 (tools/bench stress) takes the long forms: 10 million steps, more
+seeds and ratios.
 """
 import sys
 import tempfile
@@ -47,7 +49,8 @@ boundary:
 
 
 class Run:
-    """A finished run: code, text (standard error), errors (its lines of ours but warnings), summary, last (displacements)."""
+    """A finished run: code, text (standard error), errors (its lines of ours but warnings),
+    summary, last (displacements)."""
 
     def __init__(self, scene, *words, lattice=None, motion=None):
         with tempfile.TemporaryDirectory() as folder:
@@ -65,7 +68,8 @@ class Run:
             if self.code == 0 and Path(folder, "out/s/summary.json").exists():
                 output = Output(f"{folder}/out/s")
                 self.summary = output.summary
-                self.last = output.field("bodies_displacement", output.times[-1]) if len(output.times) else None
+                self.last = output.field("bodies_displacement",
+                                         output.times[-1]) if len(output.times) else None
 
 
 def sheet(columns=5, rows=5, thickness=0.5):
@@ -110,19 +114,23 @@ class Stress(unittest.TestCase):
         self.assertGreater(run.summary["steps"], 9e6 if FULL else 9e3)
         self.energy_kept(run, 1e-6 if FULL else 1e-8)
         mean = np.average(velocity, axis=0, weights=lattice.mass)
-        np.testing.assert_allclose(np.average(run.last, axis=0, weights=lattice.mass), mean * end, rtol=1e-9)
+        np.testing.assert_allclose(np.average(run.last, axis=0, weights=lattice.mass), mean * end,
+                                   rtol=1e-9)
         kinetic = 0.5 * np.sum(lattice.mass[:, None] * velocity**2)
-        self.assertLess(abs(run.summary["energy"]["kinetic"] + run.summary["energy"]["strain"] - kinetic), 2e-3 * kinetic)
+        self.assertLess(abs(run.summary["energy"]["kinetic"] + run.summary["energy"]["strain"]
+                            - kinetic), 2e-3 * kinetic)
 
     def test_random_kicks(self):
-        """Velocities of up to 100 m/s in random directions, strains of 5 % and more: momentum is kept to rounding, energy at
-        a third of the default step (at the default the ledger says how far off it is, and stops the run at 10 %)."""
+        """Velocities of up to 100 m/s in random directions, strains of 5 % and more: momentum is
+        kept to rounding, energy at a third of the default step (at the default the ledger says how
+        far off it is, and stops the run at 10 %)."""
         lattice = sheet()
         for seed in range(20 if FULL else 2):
             for size, options in ((1.0, ()), (100.0, ()), (100.0, ("-time_safety", "0.3"))):
                 rng = np.random.default_rng(seed)
                 velocity = rng.uniform(-size, size, lattice.position.shape)
-                run = Run(FREE, "-time_end", "0.5" if FULL else "0.1", *options, lattice=lattice, motion={"velocity": velocity})
+                run = Run(FREE, "-time_end", "0.5" if FULL else "0.1", *options, lattice=lattice,
+                          motion={"velocity": velocity})
                 if run.code != 0:
                     self.assertGreater(size, 1)
                     self.one_line(run, (1,))
@@ -131,21 +139,27 @@ class Stress(unittest.TestCase):
                 if size == 1 or options:
                     self.energy_kept(run, 0.02)
                 mean = np.average(velocity, axis=0, weights=lattice.mass) * (0.5 if FULL else 0.1)
-                np.testing.assert_allclose(np.average(run.last, axis=0, weights=lattice.mass), mean, rtol=1e-8)
+                np.testing.assert_allclose(np.average(run.last, axis=0, weights=lattice.mass), mean,
+                                           rtol=1e-8)
 
     def test_many_turns(self):
-        """A stiff bar turns about z: 10 turns (full: 1000), explicit and implicit; it ends at the right angle."""
+        """A stiff bar turns about z: 10 turns (full: 1000), explicit and implicit; it ends at the
+        right angle."""
         bar = fl.straight_frame(2.0, 4, fl.Section(0.5, 0.5))
         turns, rate = (1000 if FULL else 10), 20 * np.pi
         zero = np.zeros(5)
         centre = bar.position[:, 0] - 1.0
         motion = {"velocity": np.column_stack([zero, rate * centre, zero]),
                   "angular_velocity": np.column_stack([zero, zero, zero + rate])}
-        for integrator, options in (("explicit", ()), ("implicit", ("-time_dt", "2.5e-4", "-ts_liealpha_radius", "1"))):
+        for integrator, options in (("explicit", ()),
+                                    ("implicit",
+                                     ("-time_dt", "2.5e-4", "-ts_liealpha_radius", "1"))):
             end = (turns if integrator == "explicit" else min(turns, 10)) * 0.1
-            run = Run(FREE, "-integrator", integrator, "-time_end", repr(end), *options, lattice=bar, motion=motion)
+            run = Run(FREE, "-integrator", integrator, "-time_end", repr(end), *options,
+                      lattice=bar, motion=motion)
             self.good(run)
-            # Centrifugal stretch, about rho rate^2 R^2/3E = 3e-4, comes at once and slows the turn a little.
+            # Centrifugal stretch, about rho rate^2 R^2/3E = 3e-4, comes at once and slows the turn
+            # a little.
             self.assertLess(np.max(np.abs(run.last[0] + run.last[-1])), 1e-6)  # the centre stays
             self.assertLess(np.linalg.norm(run.last[0]), 2.02)
             ends = (bar.position + run.last)[[0, -1]]
@@ -158,15 +172,18 @@ class Stress(unittest.TestCase):
         lattice = sheet()
         velocity = 0.01 * np.random.default_rng(3).normal(size=lattice.position.shape)
         motion = {"velocity": velocity}
-        stable = Run(FREE, "-time_end", "0.001", lattice=lattice, motion=motion).summary["stable_dt"]
+        stable = Run(FREE, "-time_end", "0.001", lattice=lattice,
+                     motion=motion).summary["stable_dt"]
         for part in (0.1, 0.5, 0.9, 0.99):
-            run = Run(FREE, "-time_dt", repr(part * stable), "-time_end", repr(5000 * part * stable), lattice=lattice, motion=motion)
+            run = Run(FREE, "-time_dt", repr(part * stable), "-time_end",
+                      repr(5000 * part * stable), lattice=lattice, motion=motion)
             self.good(run)
             kinetic = 0.5 * np.sum(lattice.mass[:, None] * velocity**2)
             self.assertLess(run.summary["energy"]["kinetic"], 3 * kinetic, part)
         over = ("-time_dt", repr(1.05 * stable), "-time_end", repr(5000 * stable))
         self.one_line(Run(FREE, *over, lattice=lattice, motion=motion), (2,))
-        self.one_line(Run(FREE, *over, "-time_allow_unstable", "true", lattice=lattice, motion=motion), (1,))
+        self.one_line(Run(FREE, *over, "-time_allow_unstable", "true", lattice=lattice,
+                          motion=motion), (1,))
 
     def test_damping_from_none_to_ten_times_critical(self):
         lattice = sheet()
@@ -174,11 +191,14 @@ class Stress(unittest.TestCase):
         kinetic = 0.5 * np.sum(lattice.mass[:, None] * velocity**2)
         rigid = None
         for damping in ("0", "1e-6", "0.1", "1", "10"):
-            run = Run(FREE, "-beam_damping_ratio", damping, lattice=lattice, motion={"velocity": velocity})
-            if run.code != 0:  # at the largest step the dashpots' loss is not counted well enough, and the run says so
+            run = Run(FREE, "-beam_damping_ratio", damping, lattice=lattice,
+                      motion={"velocity": velocity})
+            # at the largest step the dashpots' loss is not counted well enough, and the run says so
+            if run.code != 0:
                 self.one_line(run, (1,))
                 self.assertIn("energy balance", run.errors[0])
-                run = Run(FREE, "-beam_damping_ratio", damping, "-time_safety", "0.1", lattice=lattice,
+                run = Run(FREE, "-beam_damping_ratio", damping, "-time_safety", "0.1",
+                          lattice=lattice,
                           motion={"velocity": velocity})
             self.good(run)
             left = run.summary["energy"]["kinetic"] + run.summary["energy"]["strain"]
@@ -188,7 +208,8 @@ class Stress(unittest.TestCase):
                 self.assertAlmostEqual(left / rigid, 1, delta=0.02)
 
     def test_mass_ratios(self):
-        """One body a thousand times heavier, one a thousand times lighter: stable, energies kept."""
+        """One body a thousand times heavier, one a thousand times lighter: stable, energies
+        kept."""
         lattice = sheet()
         for body, factor in ((7, 1e3), (12, 1e-3)):
             lattice.mass[body] *= factor
@@ -199,7 +220,8 @@ class Stress(unittest.TestCase):
         self.good(run)
         self.energy_kept(run, 1e-6)
         moved = np.average(run.last, axis=0, weights=lattice.mass)
-        np.testing.assert_allclose(moved, np.average(velocity, axis=0, weights=lattice.mass) * 0.1, rtol=1e-7)
+        np.testing.assert_allclose(moved, np.average(velocity, axis=0, weights=lattice.mass) * 0.1,
+                                   rtol=1e-7)
 
     def test_denormal_velocities(self):
         """Velocities of 1e-310 m/s move nothing, and cost no time."""
@@ -211,9 +233,12 @@ class Stress(unittest.TestCase):
 
     # -- lattices -------------------------------------------------------------------------------
     def test_slivers(self):
-        """Facets a millionth as wide as an element change nothing: neither the answer nor the stable step."""
-        pull = SHEET.replace("sheet: {length: 10, width: 10, thickness: 0.5, element_size: 1.5, seed: 1, iterations: 50}",
-                             "lattice_file: lattice.h5").replace("ice: {young: 4e9, poisson: 0.3, density: 920}\n", "")
+        """Facets a millionth as wide as an element change nothing: neither the answer nor the
+        stable step."""
+        pull = SHEET.replace("sheet: {length: 10, width: 10, thickness: 0.5, element_size: "
+                             "1.5, seed: 1, iterations: 50}",
+                             "lattice_file: lattice.h5").replace("ice: {young: 4e9, poisson: "
+                                                                 "0.3, density: 920}\n", "")
         pull = pull.replace("report: [tension]\n", "")
         bodies = {}
         for width in (1e-6, 1e-3, None):
@@ -224,11 +249,13 @@ class Stress(unittest.TestCase):
                 lattice.bodies, lattice.axis_y = lattice.bodies[keep], lattice.axis_y[keep]
                 lattice.beam = {name: values[keep] for name, values in lattice.beam.items()}
             else:
-                for name, values in fl.Section(width, 0.5).scalars(lattice.beam["length"][inner]).items():
+                for name, values in fl.Section(width,
+                                               0.5).scalars(lattice.beam["length"][inner]).items():
                     lattice.beam[name][inner] = values
             statics = Run(pull, lattice=lattice)
             self.good(statics)
-            steps = Run(FREE, "-time_end", "0.01", lattice=lattice, motion={"velocity": np.ones_like(lattice.position)})
+            steps = Run(FREE, "-time_end", "0.01", lattice=lattice,
+                        motion={"velocity": np.ones_like(lattice.position)})
             self.good(steps)
             bodies[width] = statics.last, steps.summary["stable_dt"]
         for width, tolerance in ((1e-6, 1e-5), (1e-3, 1e-2)):
@@ -240,9 +267,11 @@ class Stress(unittest.TestCase):
         found = [Run(SHEET, "-sheet_thickness", str(1.5 * ratio)) for ratio in (1e-3, 0.1, 1, 10)]
         for run in found:
             self.good(run)
-            self.assertAlmostEqual(run.summary["E_over_Eb"] / found[0].summary["E_over_Eb"], 1, delta=1e-7)
+            self.assertAlmostEqual(run.summary["E_over_Eb"] / found[0].summary["E_over_Eb"], 1,
+                                   delta=1e-7)
         for ratio in (1e-3, 10):
-            run = Run(SHEET, "-integrator", "explicit", "-boundary_right_ramp", "0.005", "-time_end", "0.01",
+            run = Run(SHEET, "-integrator", "explicit", "-boundary_right_ramp", "0.005",
+                      "-time_end", "0.01",
                       "-sheet_thickness", str(1.5 * ratio))
             self.good(run)
             self.energy_kept(run, 1e-3)
@@ -258,7 +287,8 @@ class Stress(unittest.TestCase):
                 self.one_line(run)
                 continue
             self.good(run)
-            self.assertAlmostEqual(run.summary["E_over_Eb"] / small.summary["E_over_Eb"], 1, delta=max(1e-5, 2 * strain))
+            self.assertAlmostEqual(run.summary["E_over_Eb"] / small.summary["E_over_Eb"], 1,
+                                   delta=max(1e-5, 2 * strain))
 
     def test_units(self):
         """Lengths, stiffnesses and densities scaled by 1e6 and 1e-6: E/Eb stays."""
@@ -266,25 +296,32 @@ class Stress(unittest.TestCase):
         self.good(base)
 
         def scaled(length=1.0, young=1.0, density=1.0):
-            words = {"sheet_length": 10 * length, "sheet_width": 10 * length, "sheet_thickness": 0.5 * length,
-                     "sheet_element_size": 1.5 * length, "boundary_right_displacement": f"{0.01 * length!r},0,0",
+            words = {"sheet_length": 10 * length, "sheet_width": 10 * length,
+                     "sheet_thickness": 0.5 * length,
+                     "sheet_element_size": 1.5 * length,
+                     "boundary_right_displacement": f"{0.01 * length!r},0,0",
                      "ice_young": 4e9 * young, "ice_density": 920 * density}
             return [text for name, value in words.items() for text in ("-" + name, str(value))]
-        for words in (scaled(length=1e6), scaled(length=1e-6), scaled(young=1e6), scaled(young=1e-6), scaled(density=1e6)):
+        for words in (scaled(length=1e6), scaled(length=1e-6), scaled(young=1e6),
+                      scaled(young=1e-6), scaled(density=1e6)):
             given = dict(zip(words[::2], words[1::2]))
-            slow = float(given["-sheet_length"]) / 10 * np.sqrt(float(given["-ice_density"]) / 920 * 4e9 / float(given["-ice_young"]))
+            slow = float(given["-sheet_length"]) / 10 * np.sqrt(float(given["-ice_density"]) / 920
+                                                                * 4e9 / float(given["-ice_young"]))
             for integrator in ("quasistatic", "implicit"):
                 options = () if integrator == "quasistatic" else (
-                    "-beam_damping_ratio", "1", "-boundary_right_ramp", repr(0.05 * slow), "-time_end", repr(0.1 * slow))
+                    "-beam_damping_ratio", "1", "-boundary_right_ramp", repr(0.05 * slow),
+                    "-time_end", repr(0.1 * slow))
                 run = Run(SHEET, *words, "-integrator", integrator, *options)
                 self.good(run)
                 self.assertAlmostEqual(run.summary["E_over_Eb"] / base.summary["E_over_Eb"], 1,
-                                       delta=1e-6 if integrator == "quasistatic" else 1e-2, msg=f"{words} {integrator}")
+                                       delta=1e-6 if integrator == "quasistatic" else 1e-2,
+                                       msg=f"{words} {integrator}")
 
     def test_load_steps_far_too_large(self):
         """The 45-degree bend in one step, and at a hundred times its load."""
         scene = CANTILEVER + 'load: {names: [tip], tip: {set: tip, force: [0, 0, 600], ramp: 1}}\ntime: {end: 1}\n'
-        scene = scene.replace("load: {names: [tip], tip: {", "load:\n  names: [tip]\n  tip: {").replace("ramp: 1}}", "ramp: 1}")
+        scene = scene.replace("load: {names: [tip], tip: {",
+                              "load:\n  names: [tip]\n  tip: {").replace("ramp: 1}}", "ramp: 1}")
         bend = fl.bend45(32)
         fine, whole = Run(scene, "-time_dt", "0.05", lattice=bend), Run(scene, lattice=bend)
         self.good(fine)
@@ -308,7 +345,8 @@ class Stress(unittest.TestCase):
         for part in (0.5, 0.9, 0.99, 1.05):
             run = Run(scene, "-load_tip_force", f"{-part * euler!r},0,{side!r}", lattice=column)
             if part > 1:
-                # Past Euler's load the straight column is an equilibrium still, and the run says that it is none to trust.
+                # Past Euler's load the straight column is an equilibrium still, and the run says
+                # that it is none to trust.
                 if run.code != 0:
                     self.one_line(run)
                 elif abs(run.last[-1, 2]) < 0.1 * length:
@@ -321,7 +359,8 @@ class Stress(unittest.TestCase):
             self.assertAlmostEqual(run.last[-1, 2] / exact, 1, delta=0.002 / (1 - part))
 
     def test_small_loads_on_heavy_sheets(self):
-        """A floating sheet's deflection per load, from 0.1 mN to 10 kN: its weight must not hide small forces."""
+        """A floating sheet's deflection per load, from 0.1 mN to 10 kN: its weight must not hide
+        small forces."""
         scene = """integrator: quasistatic
 forces: [beam, gravity, buoyancy]
 sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, seed: 1, iterations: 50}
@@ -333,14 +372,16 @@ load:
 time: {end: 1}
 report: [bending]
 """
-        moving = ("-integrator", "implicit", "-forces", "beam,gravity,buoyancy,drag", "-water_drag_linear", "4270",
+        moving = ("-integrator", "implicit", "-forces", "beam,gravity,buoyancy,drag",
+                  "-water_drag_linear", "4270",
                   "-beam_damping_ratio", "1", "-time_end", "4")
         expected = Run(scene).summary["deflection_over_wyman"]
         for load in (1e-4, 1.0, 1e4):
             for words in ((), moving, (*moving, "-time_dt", "0.25")):
                 run = Run(scene, "-load_p_force", f"0,0,{-load!r}", *words)
                 self.good(run)
-                self.assertAlmostEqual(run.summary["deflection_over_wyman"] / expected, 1, delta=1e-4 if not words else 0.01,
+                self.assertAlmostEqual(run.summary["deflection_over_wyman"] / expected, 1,
+                                       delta=1e-4 if not words else 0.01,
                                        msg=f"{load} {words}")
 
     # -- implicit -------------------------------------------------------------------------------
@@ -350,7 +391,8 @@ report: [bending]
         zero = np.zeros(9)
         motion = {"velocity": np.column_stack([zero, 10 * (bar.position[:, 0] - 5), zero]),
                   "angular_velocity": np.column_stack([zero, zero, zero + 10])}
-        run = Run(FREE, "-integrator", "implicit", "-time_dt", "1", "-time_end", "3", lattice=bar, motion=motion)
+        run = Run(FREE, "-integrator", "implicit", "-time_dt", "1", "-time_end", "3", lattice=bar,
+                  motion=motion)
         if run.code != 0:
             self.one_line(run, (1,))
         else:
@@ -373,8 +415,10 @@ time: {end: 0.02}
             "fracture: {tensile_strength: 6e5, shear_strength: 6e5, energy: 15}\n"
         explicit = ("-integrator", "explicit", "-boundary_right_ramp", "0.01", "-time_end", "0.02")
         implicit = ("-integrator", "implicit", "-boundary_right_ramp", "0.01", "-time_end", "0.02")
-        for scene, words in ((SHEET, ()), (SHEET, explicit), (SHEET, (*explicit, "-beam_damping_ratio", "1")),
-                             (SHEET, implicit), (SHEET, (*explicit, "-ts_type", "rk")), (cracks, explicit),
+        for scene, words in ((SHEET, ()), (SHEET, explicit),
+                             (SHEET, (*explicit, "-beam_damping_ratio", "1")),
+                             (SHEET, implicit), (SHEET, (*explicit, "-ts_type", "rk")),
+                             (cracks, explicit),
                              (water, ()), (water, ("-integrator", "implicit"))):
             run = Run(scene, *words, "-fp_trap")
             self.assertEqual(run.code, 0, f"{words}: {run.text}")
