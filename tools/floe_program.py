@@ -1,4 +1,5 @@
-"""What the tools have in common: where floe and its scenes are, how a tool reads its command line and how it ends."""
+"""What the tools have in common: where floe and its scenes are, how a tool reads its command line
+and how it ends."""
 import argparse
 import contextlib
 import csv
@@ -10,18 +11,23 @@ from pathlib import Path
 
 TOOLS = Path(__file__).resolve().parent
 # A path that the user can put right; others, as a full disk, are failures.
-NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG)
-HOME = TOOLS.parent  # the source tree, or share/floe of an installation: both hold tools/ and input/
+NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.EPERM, errno.EROFS,
+             errno.ENAMETOOLONG)
+# the source tree, or share/floe of an installation: both hold tools/ and input/
+HOME = TOOLS.parent
 
 
 def floe():
-    """The floe that a tool runs: $FLOE (set by the floe that became the tool), else the one that belongs to the tool's
-    folder, else the shell's."""
+    """The floe that a tool runs: $FLOE (set by the floe that became the tool), else the one that
+    belongs to the tool's folder, else the shell's."""
     given = os.environ.get("FLOE")
     belonging = [HOME / "build/release/floe", HOME.parent.parent / "bin/floe"]
-    found = given or next((str(path) for path in belonging if path.is_file()), None) or shutil.which("floe")
+    found = given or next((str(path) for path in belonging if path.is_file()),
+                          None) or shutil.which("floe")
     if not found or not shutil.which(found):
-        sys.exit(f"floe {name()}: {f'$FLOE is {given}, which is no program' if given else 'floe is not built; run tools/setup first'}")
+        reason = (f"$FLOE is {given}, which is no program" if given else
+                  "floe is not built; run tools/setup first")
+        sys.exit(f"floe {name()}: {reason}")
     return str(Path(shutil.which(found)).resolve())
 
 
@@ -36,7 +42,8 @@ def name():
 
 
 class BadInput(Exception):
-    """What the user can put right: a folder, a file, an argument. The text is one line; the exit code is 2."""
+    """What the user can put right: a folder, a file, an argument. The text is one line; the exit
+    code is 2."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -48,7 +55,8 @@ class Parser(argparse.ArgumentParser):
 
 def parser(description, **options):
     """A parser that calls the tool as its users do."""
-    return Parser(prog=f"floe {name()}", description=description, formatter_class=argparse.RawDescriptionHelpFormatter,
+    return Parser(prog=f"floe {name()}", description=description,
+                  formatter_class=argparse.RawDescriptionHelpFormatter,
                   **options)
 
 
@@ -58,7 +66,9 @@ def reading(path):
     try:
         yield
     except (OSError, LookupError, ValueError, TypeError, RuntimeError, csv.Error) as error:
-        why = error.strerror if isinstance(error, OSError) and error.strerror else " ".join(str(error).split())
+        why = error.strerror if isinstance(error,
+                                           OSError) and error.strerror else " ".join(
+                                               str(error).split())
         raise BadInput(f"{path}: cannot be read: {why}") from error
 
 
@@ -70,7 +80,8 @@ def picture(text, known=PICTURES):
     """An argparse type: a file to draw into, whose ending is known and whose folder is there."""
     path = Path(text)
     if path.suffix[1:] not in known:
-        raise argparse.ArgumentTypeError(f"'{text}' must end in {'one of ' if len(known) > 1 else ''}.{', .'.join(known)}")
+        endings = f"{'one of ' if len(known) > 1 else ''}.{', .'.join(known)}"
+        raise argparse.ArgumentTypeError(f"'{text}' must end in {endings}")
     if not path.parent.is_dir():
         raise argparse.ArgumentTypeError(f"'{path.parent}' is no folder")
     return text
@@ -99,7 +110,8 @@ def numbers(kind, least):
 
 
 def run(main):
-    """Ends the process by what main() returns; files that cannot be read or written are one line, and so is Ctrl-C."""
+    """Ends the process by what main() returns; files that cannot be read or written are one line,
+    and so is Ctrl-C."""
     try:
         sys.exit(main())
     except BrokenPipeError:  # its reader, as head, has seen enough

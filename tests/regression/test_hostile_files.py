@@ -1,7 +1,9 @@
 #!/usr/bin/python3
-"""Files that a scene names and that are not what they should be: lattice_file, mesh_file, an obstacle's file, a checkpoint.
+"""Files that a scene names and that are not what they should be: lattice_file, mesh_file, an
+obstacle's file, a checkpoint.
 
-One line that names the key, the file and what is wrong; exit code 2; no memory for values that a file only claims to have;
+One line that names the key, the file and what is wrong; exit code 2; no memory for values that a
+file only claims to have;
 nothing left on disk. FLOE_FULL=1 flips more bytes.
 """
 import os
@@ -21,11 +23,14 @@ sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 
 LATTICE = "integrator: explicit\nforces: [beam]\nlattice_file: l.h5\ntime: {end: 1e-3}\n"
-SHEET = "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2, mesh_file: m.h5}\ntime: {end: 1e-3}\n"
+SHEET = ("integrator: explicit\nforces: [beam]\n"
+         "sheet: {length: 6, element_size: 2, mesh_file: m.h5}\ntime: {end: 1e-3}\n")
 OBSTACLE = ("integrator: explicit\nforces: [beam, contact]\nsheet: {length: 6, element_size: 2}\n"
-            "obstacle: {names: [o], o: {shape: file, file: o.h5, point: [50, 0, 0]}}\ntime: {end: 1e-3}\n")
+            "obstacle: {names: [o], o: {shape: file, file: o.h5, point: [50, 0, 0]}}\n"
+            "time: {end: 1e-3}\n")
 # What names a file in a message, and the scene and file that it is.
-KINDS = {"lattice_file": (LATTICE, "l.h5"), "sheet: mesh_file": (SHEET, "m.h5"), "obstacle: o: file": (OBSTACLE, "o.h5")}
+KINDS = {"lattice_file": (LATTICE, "l.h5"), "sheet: mesh_file": (SHEET, "m.h5"),
+         "obstacle: o: file": (OBSTACLE, "o.h5")}
 
 
 class HostileTest(FolderTest):
@@ -53,7 +58,8 @@ class HostileTest(FolderTest):
 
     def said(self, code=2):
         """What a run says that must end so: one line, with little memory, and no output folder."""
-        done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT,
+        done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True, text=True,
+                              env=ENVIRONMENT,
                               preexec_fn=limited_memory(2))
         said = own_words(done.stderr)
         self.assertEqual(done.returncode, code, said)
@@ -113,18 +119,22 @@ class System(HostileTest):
             self.start(key).unlink()
             self.refused(key, "is not there" if key == "lattice_file" else "does not exist")
 
-    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "root may become somebody else")
+    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"),
+                         "root may become somebody else")
     def test_permission(self):
         """As a user who may not read the file."""
         path = self.start("lattice_file")
         path.chmod(0)
         self.folder.chmod(0o777)
-        done = subprocess.run(["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups", FLOE, "s.yaml"],
+        done = subprocess.run(["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups",
+                               FLOE, "s.yaml"],
                               cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
-        if "setpriv" in done.stderr or "Permission" in done.stderr and "lattice_file" not in done.stderr:
+        refused = "Permission" in done.stderr and "lattice_file" not in done.stderr
+        if "setpriv" in done.stderr or refused:
             self.skipTest("nobody may not run this build of floe")
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertEqual(own_words(done.stderr), "floe: lattice_file: 'l.h5' cannot be read: Permission denied\n")
+        self.assertEqual(own_words(done.stderr),
+                         "floe: lattice_file: 'l.h5' cannot be read: Permission denied\n")
 
     def test_somebody_writes_it(self):
         path = self.start("lattice_file")
@@ -142,11 +152,13 @@ class System(HostileTest):
                 for _ in range(chance.choice((1, 1, 4, 30))):
                     data[chance.randrange(len(data))] = chance.randrange(256)
                 path.write_bytes(data)
-                done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True, text=True, env=ENVIRONMENT)
+                done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True,
+                                      text=True, env=ENVIRONMENT)
                 said = own_words(done.stderr)
                 self.assertIn(done.returncode, (0, 1, 2), said)
                 if done.returncode:
-                    self.assertEqual(len([line for line in said.splitlines() if "warning" not in line]), 1, said)
+                    self.assertEqual(len([line for line in said.splitlines()
+                                          if "warning" not in line]), 1, said)
                 self.assertNotIn("internal error", said)
                 shutil.rmtree(self.folder / "out", ignore_errors=True)
 
@@ -161,21 +173,31 @@ class Datasets(HostileTest):
         self.change("lattice_file", change, name, *words)
 
     def test_types(self):
-        for values, word in ((np.full(9, "a", "S3"), "must hold numbers"), (np.zeros(9, [("x", "f8")]), "must hold numbers"),
-                             (np.zeros(9, complex), "must hold numbers"), (np.ones(9, bool), "must hold numbers"),
-                             (np.ones(()), "has 0 dimensions, must have 1 or 2"), (np.ones((9, 1, 1)), "has 3 dimensions"),
-                             (np.ones((9, 2)), "has shape 9 x 2, must be n x 1"), (np.ones((9, 0)), "has shape 9 x 0"),
-                             (np.ones(0), "has 0 rows, must have 9"), (h5py.Empty("f8"), "dimensions, must have 1 or 2"),
-                             (np.full(9, np.nan), "entry 0 has the value nan"), (np.full(9, np.inf), "must be finite"),
-                             (np.full(9, -1.0), "entry 0 is -1, must be > 0"), (np.full(9, 1e300), "at most 1e30")):
+        for values, word in ((np.full(9, "a", "S3"), "must hold numbers"),
+                             (np.zeros(9, [("x", "f8")]), "must hold numbers"),
+                             (np.zeros(9, complex), "must hold numbers"),
+                             (np.ones(9, bool), "must hold numbers"),
+                             (np.ones(()), "has 0 dimensions, must have 1 or 2"),
+                             (np.ones((9, 1, 1)), "has 3 dimensions"),
+                             (np.ones((9, 2)), "has shape 9 x 2, must be n x 1"),
+                             (np.ones((9, 0)), "has shape 9 x 0"),
+                             (np.ones(0), "has 0 rows, must have 9"),
+                             (h5py.Empty("f8"), "dimensions, must have 1 or 2"),
+                             (np.full(9, np.nan), "entry 0 has the value nan"),
+                             (np.full(9, np.inf), "must be finite"),
+                             (np.full(9, -1.0), "entry 0 is -1, must be > 0"),
+                             (np.full(9, 1e300), "at most 1e30")):
             self.replaced("/bodies/mass", values, word)
         self.replaced("/bodies/position", np.ones((0, 3)), "at least one body")
 
     def test_indices(self):
-        for values, word in ((np.full((8, 2), 0.5), "must hold integers"), ([[0, 9]] * 8, "is 9, must be between 0 and 9"),
+        for values, word in ((np.full((8, 2), 0.5), "must hold integers"),
+                             ([[0, 9]] * 8, "is 9, must be between 0 and 9"),
                              ([[-1, 3]] * 8, "is -1"), ([[0, 2**40]] * 8, "is 2147483647"),
-                             (np.full((8, 2), "a", "S1"), "must hold integers"), ([[0, 0]] * 8, "to itself"),
-                             ([[1, 0]] * 8, "smaller index first"), ([[0, 1], [2, 3], [0, 1]], "rows 0 and 2 both join bodies 0 and 1")):
+                             (np.full((8, 2), "a", "S1"), "must hold integers"),
+                             ([[0, 0]] * 8, "to itself"),
+                             ([[1, 0]] * 8, "smaller index first"),
+                             ([[0, 1], [2, 3], [0, 1]], "rows 0 and 2 both join bodies 0 and 1")):
             self.replaced("/beams/bodies", values, word)
 
     def test_every_beam_twice(self):
@@ -187,13 +209,15 @@ class Datasets(HostileTest):
         self.change("lattice_file", twice, "/beams/bodies: rows 0 and 8 both join bodies 0 and 1")
 
     def test_claimed_and_not_there(self):
-        """Terabytes that take no room: never written, in holes of a sparse file, in chunks that are missing, packed."""
+        """Terabytes that take no room: never written, in holes of a sparse file, in chunks that are
+        missing, packed."""
         n = 10**11
         for how in ({}, {"chunks": (10**6,)}, {"chunks": (10**6,), "compression": "gzip"}):
             def claim(file, how=how):
                 del file["bodies/mass"]
                 file.create_dataset("bodies/mass", (n,), "f8", **how)
-            self.change("lattice_file", claim, "/bodies/mass has values that its file does not hold")
+            self.change("lattice_file", claim,
+                        "/bodies/mass has values that its file does not hold")
 
         def huge(file):
             del file["bodies/position"]
@@ -205,7 +229,8 @@ class Datasets(HostileTest):
             plan = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
             plan.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
             plan.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
-            h5py.h5d.create(file["bodies"].id, b"mass", h5py.h5t.NATIVE_DOUBLE, h5py.h5s.create_simple((10**10,)), plan)
+            h5py.h5d.create(file["bodies"].id, b"mass", h5py.h5t.NATIVE_DOUBLE,
+                            h5py.h5s.create_simple((10**10,)), plan)
         self.change("lattice_file", sparse, "/bodies/mass has values that its file does not hold")
 
         def packed(file):
@@ -221,10 +246,14 @@ class Datasets(HostileTest):
                 del file["bodies/mass"]
                 file["bodies/mass"] = link
             return change
-        self.change("lattice_file", linked(h5py.ExternalLink("other.h5", "/bodies/mass")), "is a link to another file")
-        self.change("lattice_file", linked(h5py.SoftLink("/nowhere")), "/bodies/mass is a link that leads nowhere")
-        self.change("lattice_file", linked(h5py.SoftLink("/bodies/mass")), "/bodies/mass is a link that leads nowhere")
-        self.change("lattice_file", linked(h5py.SoftLink("/bodies")), "/bodies/mass is not a dataset")
+        self.change("lattice_file", linked(h5py.ExternalLink("other.h5", "/bodies/mass")),
+                    "is a link to another file")
+        self.change("lattice_file", linked(h5py.SoftLink("/nowhere")),
+                    "/bodies/mass is a link that leads nowhere")
+        self.change("lattice_file", linked(h5py.SoftLink("/bodies/mass")),
+                    "/bodies/mass is a link that leads nowhere")
+        self.change("lattice_file", linked(h5py.SoftLink("/bodies")),
+                    "/bodies/mass is not a dataset")
 
         def whole(file):
             del file["bodies"]
@@ -257,7 +286,8 @@ class Datasets(HostileTest):
             for name in ("bodies/mass", "beams/bodies"):
                 values = file[name][:]
                 del file[name]
-                file.create_dataset(name, data=values, chunks=(4, *values.shape[1:]), compression="gzip", shuffle=True, fletcher32=True)
+                file.create_dataset(name, data=values, chunks=(4, *values.shape[1:]),
+                                    compression="gzip", shuffle=True, fletcher32=True)
         self.said(0)
 
     def test_a_group_in_place_of_a_dataset_and_the_other_way_round(self):
@@ -276,8 +306,10 @@ class Datasets(HostileTest):
         self.change("lattice_file", sets, "/sets/odd is not a dataset")
 
     def test_shapes(self):
-        for name, values, word in (("shapes/corners", [[0]], "has shape 1 x 1"), ("shapes/vertices", np.full((8, 3), np.nan), "nan"),
-                                   ("shapes/face_of", [0, 5], "must grow from 0 to 6"), ("shapes/corner_of", [], "")):
+        for name, values, word in (("shapes/corners", [[0]], "has shape 1 x 1"),
+                                   ("shapes/vertices", np.full((8, 3), np.nan), "nan"),
+                                   ("shapes/face_of", [0, 5], "must grow from 0 to 6"),
+                                   ("shapes/corner_of", [], "")):
             def change(file, name=name, values=values):
                 del file[name]
                 file[name] = values
@@ -299,8 +331,10 @@ class Datasets(HostileTest):
 
         def count(file):
             file["generators"].attrs["iterations_done"] = np.nan
-        for change, word in ((twice, "has a generator twice"), (nowhere, "a generator outside the sheet"),
-                             (outside, "a generator outside the sheet"), (rows, "the attribute length must be a number"),
+        for change, word in ((twice, "has a generator twice"),
+                             (nowhere, "a generator outside the sheet"),
+                             (outside, "a generator outside the sheet"),
+                             (rows, "the attribute length must be a number"),
                              (count, "has a bad number of iterations")):
             self.change("sheet: mesh_file", change, word)
 

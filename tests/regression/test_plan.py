@@ -17,8 +17,10 @@ sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
 beam: {damping_ratio: 1}
 time: {end: 0.02}
 """
-IMPLICIT = EXPLICIT.replace("explicit",
-                            "implicit") + "load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 0.01}}\n"
+IMPLICIT = EXPLICIT.replace("explicit", "implicit") + """load:
+  names: [p]
+  p: {point: [1, 2], force: [0, 0, -1e4], ramp: 0.01}
+"""
 STATIC = """forces: [beam, gravity, buoyancy]
 sheet: {length: 20, width: 20, thickness: 0.5, element_size: 2, iterations: 10}
 load: {names: [p], p: {point: [1, 2], force: [0, 0, -1e4], ramp: 1}}

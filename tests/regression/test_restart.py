@@ -396,7 +396,8 @@ contact: {young: 1e8, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
 obstacle:
   names: [slope, mover]
   slope: {shape: halfspace, point: [6.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
-  mover: {shape: cylinder, base: [1, 0, -3], radius: 1, height: 2.5, facets: 12, velocity: [0, 0, 0.5]}
+  mover: {shape: cylinder, base: [1, 0, -3], radius: 1, height: 2.5, facets: 12,
+          velocity: [0, 0, 0.5]}
 boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [1, 0, 0], ramp: 0.1}}
 time: {end: 0.8}
 checkpoint: {every: 1000}

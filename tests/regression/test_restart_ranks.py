@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Checkpoint and restart on several ranks: bit for bit on the same number, to 1e-9 on another.
 
-Beside test_restart.py, because a run on two ranks wants both cores: at every step one rank waits for the other.
+Beside test_restart.py, because a run on two ranks wants both cores: at every step one rank waits
+for the other.
 FLOE_FULL=1 kills 20 times instead of 4.
 """
 import unittest
@@ -24,13 +25,17 @@ class Stopped(RestartTest):
             self.assertEqual(set(first), set(second))
             for key, values in first.items():
                 scale = np.max(np.abs(values)) if np.size(values) else 0
-                np.testing.assert_allclose(second[key], values, rtol=1e-9, atol=1e-9 * scale, err_msg=key)
-            tables = [np.loadtxt(f / "history.csv", delimiter=",", skiprows=1) for f in (straight, b)]
+                np.testing.assert_allclose(second[key], values, rtol=1e-9, atol=1e-9 * scale,
+                                           err_msg=key)
+            tables = [np.loadtxt(f / "history.csv", delimiter=",", skiprows=1)
+                      for f in (straight, b)]
             names = (b / "history.csv").read_text().split("\n")[0].split(",")
             for name, one, two in zip(names, tables[0].T, tables[1].T):
-                energies = max(np.max(np.abs(c)) for n, c in zip(names, tables[0].T) if n.startswith("energy"))
+                energies = max(np.max(np.abs(c)) for n, c in zip(names, tables[0].T)
+                               if n.startswith("energy"))
                 scale = energies if name.startswith("energy") else np.max(np.abs(one))
-                np.testing.assert_allclose(two, one, rtol=1e-9, atol=1e-9 * max(scale, 1), err_msg=name)
+                np.testing.assert_allclose(two, one, rtol=1e-9, atol=1e-9 * max(scale, 1),
+                                           err_msg=name)
 
 
 class StoppedInThePlane(Stopped):

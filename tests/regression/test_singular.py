@@ -9,8 +9,8 @@ from running import RunningTest
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
 
-# Boxes that float on a corner and are turned by almost a whole turn: Newton's method throws some out of the water,
-# where nothing holds them.
+# Boxes that float on a corner and are turned by almost a whole turn: Newton's method throws some
+# out of the water, where nothing holds them.
 TURNED = """integrator: quasistatic
 lattice_file: boxes.h5
 forces: [gravity, buoyancy]
@@ -19,8 +19,10 @@ boundary:
   turned: {set: all, fix: rx ry rz, angular_velocity: [-5.92, -0.0152, 0.000867]}
 """
 # Where they begin: quaternions.
-TURNS = [[0.21424427, 0.50936062, 0.20485384, -0.80788988], [0.70590254, 0.34803657, -0.41866041, 0.45309559],
-         [0.50599447, 0.40823008, 0.03944758, 0.75878962], [-0.68379222, -0.15126069, -0.44764424, 0.55602431]]
+TURNS = [[0.21424427, 0.50936062, 0.20485384, -0.80788988],
+         [0.70590254, 0.34803657, -0.41866041, 0.45309559],
+         [0.50599447, 0.40823008, 0.03944758, 0.75878962],
+         [-0.68379222, -0.15126069, -0.44764424, 0.55602431]]
 
 
 class Singular(RunningTest):

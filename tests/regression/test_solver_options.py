@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Values of PETSc's own options that floe cannot use end with one line that names the option and what is allowed, with exit
-code 2 and before anything is made, at 1 and at 2 ranks, on the command line and in the environment."""
+"""Values of PETSc's own options that floe cannot use end with one line that names the option and
+what is allowed, with exit code 2 and before anything is made, at 1 and at 2 ranks, on the command
+line and in the environment."""
 import subprocess
 import tempfile
 import unittest
@@ -16,20 +17,27 @@ load: {names: [p], p: {set: right, force: [1e5, 0, 0]}}
 MOVING = "integrator: implicit\n" + STATIC + "time: {end: 0.01}\n"
 
 CASES = [(STATIC, "snes_lag_jacobian", "0", "-2"), (STATIC, "snes_max_it", "-1", ">= 1"),
-         (STATIC, "snes_rtol", "nan", "< 1"), (STATIC, "snes_rtol", "-1", ">= 0"), (STATIC, "snes_atol", "-1", ">= 0"),
-         (STATIC, "mat_mumps_icntl_7", "99", "one of 0 | 2 | 3"), (STATIC, "mat_type", "dense", "sbaij"),
-         (STATIC, "snes_view", "ascii:/nonexist/x", "no folder '/nonexist'"), (STATIC, "log_view", "abc:x", "hdf5"), (STATIC, "ksp_rtol", "inf", "< 1"),
+         (STATIC, "snes_rtol", "nan", "< 1"), (STATIC, "snes_rtol", "-1", ">= 0"),
+         (STATIC, "snes_atol", "-1", ">= 0"),
+         (STATIC, "mat_mumps_icntl_7", "99", "one of 0 | 2 | 3"),
+         (STATIC, "mat_type", "dense", "sbaij"),
+         (STATIC, "snes_view", "ascii:/nonexist/x", "no folder '/nonexist'"),
+         (STATIC, "log_view", "abc:x", "hdf5"), (STATIC, "ksp_rtol", "inf", "< 1"),
          (STATIC, "check_pointer_intensity", "3", "<= 2"), (MOVING, "ts_max_steps", "-5", ">= 0"),
          (MOVING, "ts_adapt_clip", "3,2", "shrink"), (MOVING, "ts_adapt_safety", "9", "<= 1"),
-         (MOVING, "ts_max_time", "-1", "> 0"), (MOVING, "ts_atol", "nan", ">= 0"), (MOVING, "ts_dt", "nan", "> 0"),
+         (MOVING, "ts_max_time", "-1", "> 0"), (MOVING, "ts_atol", "nan", ">= 0"),
+         (MOVING, "ts_dt", "nan", "> 0"),
          (MOVING, "ts_view", "abc", "viewers")]
 
 # What PETSc alone finds: while it begins, while its solvers are set up, or in the first solve.
-OF_PETSC = [("ksp_type", "conjugate"), ("snes_type", "abc"), ("pc_type", "abc"), ("snes_monitor", "abc"), ("fp_trap", "abc"),
-            ("ksp_error_if_not_converged", "abc"), ("malloc_debug", "abc"), ("device_enable", "3"), ("mat_mumps_view_info", "99"),
+OF_PETSC = [("ksp_type", "conjugate"), ("snes_type", "abc"), ("pc_type", "abc"),
+            ("snes_monitor", "abc"), ("fp_trap", "abc"),
+            ("ksp_error_if_not_converged", "abc"), ("malloc_debug", "abc"), ("device_enable", "3"),
+            ("mat_mumps_view_info", "99"),
             ("snes_linesearch_type", "abc")]
 # What makes PETSc crash, or start something that floe has not.
-USELESS = [("snes_monitor_fields", ""), ("snes_monitor_ksp", ""), ("snes_monitor_python", "x"), ("ksp_type", "python"),
+USELESS = [("snes_monitor_fields", ""), ("snes_monitor_ksp", ""), ("snes_monitor_python", "x"),
+           ("ksp_type", "python"),
            ("ksp_view_diagonal_scale", ""), ("ts_save_trajectory", "")]
 
 
@@ -37,9 +45,12 @@ class Values(unittest.TestCase):
     def run_with(self, scene, words, environment, ranks):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "s.yaml").write_text(scene)
-            done = subprocess.run(on_ranks(ranks, [str(FLOE), "s.yaml", *words]), cwd=folder, capture_output=True, text=True,
+            done = subprocess.run(on_ranks(ranks, [str(FLOE), "s.yaml", *words]), cwd=folder,
+                                  capture_output=True, text=True,
                                   timeout=600, env={**ENVIRONMENT, **environment})
-            return done.returncode, own_words(done.stderr).strip().splitlines(), Path(folder, "out").exists()
+            return done.returncode, own_words(done.stderr).strip().splitlines(), Path(folder,
+                                                                                      "out").exists(
+                                                                                          )
 
     def check(self, ranks):
         for scene, option, value, allowed in CASES:
@@ -69,7 +80,8 @@ class Values(unittest.TestCase):
                     self.assertIn(f"{option} {value}: PETSc cannot take it: ", said)
 
     def test_of_several_the_right_one_is_named(self):
-        said = self.refused("snes_monitor", "abc", ["-ksp_rtol", "1e-9", "-snes_monitor", "abc", "-snes_stol", "1e-9"])
+        said = self.refused("snes_monitor", "abc",
+                            ["-ksp_rtol", "1e-9", "-snes_monitor", "abc", "-snes_stol", "1e-9"])
         self.assertNotIn("ksp_rtol", said)
 
     def test_what_is_of_no_use(self):
@@ -83,7 +95,8 @@ class Values(unittest.TestCase):
         self.assertIn("snes_rtol", lines[0])
 
     def test_good_values_are_taken(self):
-        for words in (["-snes_rtol", "1e-11"], ["-mat_type", "aij", "-pc_type", "lu"], ["-snes_lag_jacobian", "-2"],
+        for words in (["-snes_rtol", "1e-11"], ["-mat_type", "aij", "-pc_type", "lu"],
+                      ["-snes_lag_jacobian", "-2"],
                       ["-mat_mumps_icntl_7", "0"]):
             code, lines, _ = self.run_with(STATIC, words, {}, 1)
             self.assertEqual(code, 0, lines)

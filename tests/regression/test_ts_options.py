@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""What PETSc's -ts_* options do to explicit runs, by leapfrog and by rk: times, steps, monitors, types, adaptive steps;
+"""What PETSc's -ts_* options do to explicit runs, by leapfrog and by rk: times, steps, monitors,
+types, adaptive steps;
 restarts of rk; and which of the options are refused, with the reason.
 """
 import csv
@@ -94,14 +95,16 @@ class Adaptive(TsTest):
             self.assertLessEqual(time, 0.001 * n + largest)
 
     def test_a_number_that_is_not_finite_stops_it(self):
-        _, err = self.pull(*DP5, "-ts_adapt_type", "basic", "-ts_adapt_dt_min", "0.005", "-time_dt", "0.005",
+        _, err = self.pull(*DP5, "-ts_adapt_type", "basic", "-ts_adapt_dt_min", "0.005", "-time_dt",
+                           "0.005",
                            "-time_allow_unstable", "-time_end", "5", "-limit_velocity", "1e300",
                            "-limit_energy_error", "1e300", code=1)
         self.assertIn("not finite after time", err)
         self.assertNotIn("internal", err)
 
     def test_steps_that_are_never_accepted_stop_it(self):
-        _, err = self.pull(*DP5, "-ts_adapt_type", "basic", "-ts_atol", "1e-14", "-ts_rtol", "0", "-ts_max_reject",
+        _, err = self.pull(*DP5, "-ts_adapt_type", "basic", "-ts_atol", "1e-14", "-ts_rtol", "0",
+                           "-ts_max_reject",
                            "0", code=1)
         self.assertIn("rejected again and again at time 0 s", err)
         self.assertEqual(self.summary()["status"], "failed")
@@ -110,13 +113,16 @@ class Adaptive(TsTest):
 class Limits(TsTest):
     def test_blowing_up(self):
         for ranks in (1, 2):
-            _, err = self.pull(*RK4, "-time_dt", "0.001", "-time_allow_unstable", "-time_end", "0.5", ranks=ranks,
+            _, err = self.pull(*RK4, "-time_dt", "0.001", "-time_allow_unstable", "-time_end",
+                               "0.5", ranks=ranks,
                                code=1)
             self.assertRegex(err, r"at time \S+ s.*limit: (velocity|energy_error)")
 
     def test_not_finite(self):
-        _, err = self.pull(*RK4, "-time_dt", "0.001", "-time_allow_unstable", "-time_end", "0.5", "-limit_velocity",
-                           "1e300", "-limit_energy_error", "1e300", "-output_history", "0.5", code=1)
+        _, err = self.pull(*RK4, "-time_dt", "0.001", "-time_allow_unstable", "-time_end", "0.5",
+                           "-limit_velocity",
+                           "1e300", "-limit_energy_error", "1e300", "-output_history", "0.5",
+                           code=1)
         self.assertRegex(err, r"not finite at time \S+ s, body \d+ at \(")
 
 
@@ -138,7 +144,8 @@ class Restarts(RestartTest):
         self.check(*ADAPTIVE)
 
     def test_bodies_are_the_same_on_any_number_of_ranks(self):
-        one, two = (self.run_whole(*RK4, "-time_dt", "5e-4", "-time_end", "1", dir=f"r{n}", ranks=n) for n in (1, 2))
+        one, two = (self.run_whole(*RK4, "-time_dt", "5e-4", "-time_end", "1", dir=f"r{n}", ranks=n)
+                    for n in (1, 2))
         first, second = contents(one / "checkpoint.h5"), contents(two / "checkpoint.h5")
         self.assertTrue((first["bodies/records"] == second["bodies/records"]).all())
 
@@ -147,9 +154,11 @@ class Restarts(RestartTest):
         said = self.finish(self.begin(*RK4, "-checkpoint_restart", "b/checkpoint.h5", dir="b"), 2)
         self.assertIn("is of ts_type 'leapfrog'", said)
         self.run_whole(*RK4, "-time_end", "1", dir="c")
-        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", "-ts_type", "leapfrog", dir="c"), 2)
+        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", "-ts_type",
+                                      "leapfrog", dir="c"), 2)
         self.assertIn("is of ts_type 'rk'", said)
-        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", "-ts_rk_type", "5dp", dir="c"), 2)
+        said = self.finish(self.begin("-checkpoint_restart", "c/checkpoint.h5", "-ts_rk_type",
+                                      "5dp", dir="c"), 2)
         self.assertIn("is of steps by 'rk 4', this run's are by 'rk 5dp'", said)
 
 
@@ -169,7 +178,8 @@ checkpoint: {every: 1000}
 
 class ChangingSteps(RestartTest):
     def test_go_on_bit_for_bit(self):
-        subprocess.run([launch.REPOSITORY / "tools/make_lattice", "block", "--size", "2", "2", "0.5", "--height", "-5",
+        subprocess.run([launch.REPOSITORY / "tools/make_lattice", "block", "--size", "2", "2",
+                        "0.5", "--height", "-5",
                         "block.h5"], cwd=self.folder, check=True, capture_output=True)
         for kind in ((), RK4):
             summary = self.check_parts(PUSHED, [0.05, 0.3, 0.301, 0.9], *kind)
@@ -181,9 +191,11 @@ class Refused(TsTest):
     def test_with_the_reason(self):
         basic = ("-ts_adapt_type", "basic")
         for options, words in (
-                (("-ts_type", "rk", "-ts_rk_type", "2a"), ("2a", "imaginary axis", "damp the beams", "body")),
+                (("-ts_type", "rk", "-ts_rk_type", "2a"),
+                 ("2a", "imaginary axis", "damp the beams", "body")),
                 (("-ts_type", "rk", "-ts_rk_type", "5f"), ("5f", "imaginary axis")),
-                (("-ts_type", "rk", "-ts_rk_type", "1fe", "-beam_damping_ratio", "1"), ("1fe", "Euler")),
+                (("-ts_type", "rk", "-ts_rk_type", "1fe", "-beam_damping_ratio", "1"),
+                 ("1fe", "Euler")),
                 (("-ts_type", "rk", "-ts_rk_type", "44"), ("ts_rk_type", "44")),
                 ((*RK4, *basic), ("basic", "estimates its error", "5dp")),
                 ((*DP5, "-ts_adapt_type", "dsp"), ("dsp", "must be none", "basic")),

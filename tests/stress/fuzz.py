@@ -212,7 +212,9 @@ class Case:
     def check_results(self, folder):
         """Which rule of this kind a run breaks that ended well: a restart from a damaged checkpoint
         is the undamaged run's."""
-        if self.kind != "checkpoint" or not self.damaged or not self.base.checked or "-check" in self.words:
+        if self.kind != "checkpoint" or not self.damaged:
+            return None
+        if not self.base.checked or "-check" in self.words:
             return None
         straight, resumed = (f / "out/s/history.csv" for f in (self.base.folder / "d", folder))
         return None if straight.read_bytes() == resumed.read_bytes() else ("a damaged checkpoint "

@@ -23,7 +23,10 @@ sheet: {length: 6, width: 4, thickness: 0.5, element_size: 1.5, iterations: 5}
 beam: {damping_ratio: 0.1}
 fracture: {tensile_strength: 1e4, energy: 0.01}
 contact: {young: 1e8, restitution: 0.5}
-obstacle: {names: [o], o: {shape: cylinder, base: [1, 0, -1.46], radius: 0.5, height: 1, facets: 8, velocity: [0, 0, 1]}}
+obstacle:
+  names: [o]
+  o: {shape: cylinder, base: [1, 0, -1.46], radius: 0.5, height: 1, facets: 8,
+      velocity: [0, 0, 1]}
 time: {end: 100}
 limit: {energy_error: 1}
 output: {history: 0.002, fields: 0.005}

@@ -203,8 +203,8 @@ class Scenes:
             scene.pop(("obstacle", name, word), None)
         if shape != "halfspace":
             place = {"box": "centre", "file": "point"}.get(shape, "base")
-            scene[("obstacle", name,
-                   place)] = f"[{chance.choice([0, 5, 9, 30])}, 0, {chance.choice([-20, -3, 0, 3])}]"
+            x, z = chance.choice([0, 5, 9, 30]), chance.choice([-20, -3, 0, 3])
+            scene[("obstacle", name, place)] = f"[{x}, 0, {z}]"
         else:
             scene.pop(("obstacle", name, "angular_velocity"), None)
             scene[("obstacle", name, "point")] = f"[{chance.choice([5, 6.01, 50])}, 0, 0]"

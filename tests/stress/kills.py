@@ -32,7 +32,9 @@ beam: {damping_ratio: 0.1}
 fracture: {tensile_strength: 3e5, shear_strength: 3e5, energy: 15, weibull_modulus: 8}
 water: {drag_coefficient: 1, drag_linear: 200}
 contact: {young: 1e8, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
-obstacle: {names: [slope], slope: {shape: halfspace, point: [6.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}}
+obstacle:
+  names: [slope]
+  slope: {shape: halfspace, point: [6.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
 boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [0.5, 0, 0], ramp: 0.1}}
 limit: {energy_error: 1e9}
 output: {history: 0.004, fields: 0.02}

@@ -47,14 +47,16 @@ KINDS = {
 VALUES = ("-1", "0", "3", "1e300", "nan", "abc", "", "/nonexist/x", ":/nonexist/x", "1,2")
 # They wait for somebody, end the process by design, or open windows.
 LEFT_OUT = re.compile(
-    r"debugger|^help|^display|^draw_|saws|^on_error_|x_virtual|^petsc_ci|stop_for|^version$|_draw|_lg$|_lg_|_pause")
+    r"debugger|^help|^display|^draw_|saws|^on_error_|x_virtual|^petsc_ci|stop_for|^version$|_draw|"
+    r"_lg$|_lg_|_pause")
 LISTENER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
 int PetscOptionsSetValue(void*, const char*, const char*);
+typedef int Initialize(int*, char***, const char*, const char*);
 int PetscInitialize(int* n, char*** words, const char* file, const char* help) {
   PetscOptionsSetValue(0, "-help", "true");
-  return ((int (*)(int*, char***, const char*, const char*))dlsym(RTLD_NEXT, "PetscInitialize"))(n, words, file, help);
+  return ((Initialize*)dlsym(RTLD_NEXT, "PetscInitialize"))(n, words, file, help);
 }
 """
 # A few of all, where PETSc is not asked.

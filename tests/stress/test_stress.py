@@ -319,7 +319,9 @@ class Stress(unittest.TestCase):
 
     def test_load_steps_far_too_large(self):
         """The 45-degree bend in one step, and at a hundred times its load."""
-        scene = CANTILEVER + 'load: {names: [tip], tip: {set: tip, force: [0, 0, 600], ramp: 1}}\ntime: {end: 1}\n'
+        scene = CANTILEVER + """load: {names: [tip], tip: {set: tip, force: [0, 0, 600], ramp: 1}}
+time: {end: 1}
+"""
         scene = scene.replace("load: {names: [tip], tip: {",
                               "load:\n  names: [tip]\n  tip: {").replace("ramp: 1}}", "ramp: 1}")
         bend = fl.bend45(32)
@@ -341,7 +343,9 @@ class Stress(unittest.TestCase):
         stiffness = section.young * section.width * section.height**3 / 12
         euler = np.pi**2 * stiffness / (4 * length**2)
         side = 1e-6 * euler
-        scene = CANTILEVER + "load:\n  names: [tip]\n  tip: {set: tip, force: [0, 0, 0], ramp: 1}\ntime: {end: 1, dt: 0.1}\n"
+        scene = CANTILEVER + """load: {names: [tip], tip: {set: tip, force: [0, 0, 0], ramp: 1}}
+time: {end: 1, dt: 0.1}
+"""
         for part in (0.5, 0.9, 0.99, 1.05):
             run = Run(scene, "-load_tip_force", f"{-part * euler!r},0,{side!r}", lattice=column)
             if part > 1:
