@@ -1,16 +1,20 @@
 #include "floe/base/on_root.h"
 
-#include <array>
-
 namespace floe {
 
+void share(std::string& text, MPI_Comm comm) {
+  auto length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
+  text.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
+}
+
 void share_outcome(Outcome outcome, MPI_Comm comm) {
-  std::array<int, 2> head{outcome.kind, static_cast<int>(outcome.why.size())};
-  MPI_Bcast(head.data(), 2, MPI_INT, 0, comm);
-  if (head[0] == Outcome::good) return;
-  outcome.why.resize(static_cast<std::size_t>(head[1]));
-  MPI_Bcast(outcome.why.data(), head[1], MPI_CHAR, 0, comm);
-  if (head[0] == Outcome::bad_input) throw InputError(outcome.why);
+  int kind = outcome.kind;
+  MPI_Bcast(&kind, 1, MPI_INT, 0, comm);
+  if (kind == Outcome::good) return;
+  share(outcome.why, comm);
+  if (kind == Outcome::bad_input) throw InputError(outcome.why);
   throw RunFailed(outcome.why);
 }
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "option_names.h"
 #include "option_values.h"
 
 namespace floe {
@@ -290,6 +291,23 @@ std::string solver_option_problem(std::string_view name, std::string_view value)
     if (is_no_number(word)) return refused(name, value, "finite");
   }
   return viewer_problem(name, value);
+}
+
+std::string solver_options_help(std::string_view topic) {
+  std::string wanted(topic.substr(topic.starts_with('-') ? 1 : 0));
+  while (wanted.ends_with(':') || wanted.ends_with('_')) wanted.pop_back();
+  if (wanted.empty() || !is_petsc_option(wanted + "_")) return {};
+  std::string text =
+      "Options of PETSc's, for the command line or a scene; its manual explains them "
+      "and has more:\nhttps://petsc.org/release/manualpages\n";
+  for (const OptionSpec& line : table) {
+    if (line.key != wanted && !line.key.starts_with(wanted + "_")) continue;
+    std::string option = "  -" + std::string(line.key);
+    option.resize(std::max<std::size_t>(option.size() + 1, 36), ' ');
+    text += option + std::string(line.allowed) +
+            (line.unit.empty() ? "" : " [" + std::string(line.unit) + "]") + "\n";
+  }
+  return text;
 }
 
 }  // namespace floe

@@ -166,13 +166,6 @@ std::string new_run() {
   return text.data();
 }
 
-void share(std::string& text, MPI_Comm comm) {
-  int length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  text.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
-}
-
 /// Into the room that was kept for it. Only calls of the system: the disk may be full.
 bool write_into_reserve(const std::string& dir, const std::string& text) {
   const std::string path = dir + reserve;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/option_values.h"
+#include "base/solver_options.h"
 #include "floe/base/spelling.h"
 #include "floe/base/version.h"
 #include "floe/scene.h"
@@ -63,6 +64,12 @@ std::string help() {
          "options (floe help sheet), version.\n";
 }
 
+/// A section, a key, or a family of PETSc's; empty if the topic is none of them.
+std::string options_about(const std::string& topic) {
+  const std::string keys = options_topic(topic);
+  return keys.empty() ? solver_options_help(topic) : keys;
+}
+
 int help(std::string_view topic) {
   if (topic.empty()) return say(help(), done);
   if (topic == "options") return say(options_help(), done);
@@ -73,8 +80,8 @@ int help(std::string_view topic) {
     std::array<char*, 3> words{name.data(), option.data(), nullptr};
     return run_subcommand(words.data());
   }
-  if (const std::string keys = options_topic(std::string(topic)); !keys.empty())
-    return say(keys, done);
+  if (const std::string options = options_about(std::string(topic)); !options.empty())
+    return say(options, done);
   std::vector<std::string_view> known{"options", "scenes", "version"};
   for (const Subcommand& tool : subcommands()) known.push_back(tool.name);
   const std::string near = nearest_word(topic, known);
@@ -119,8 +126,8 @@ std::optional<int> answer(int argc, char** argv) {
 int print_options(const Help& help) {
   if (help.kind == Help::markdown) return say(options_markdown(), done);
   if (help.topic.empty()) return say(options_help(), done);
-  const std::string keys = options_topic(help.topic);
-  if (!keys.empty()) return say(keys, done);
+  const std::string options = options_about(help.topic);
+  if (!options.empty()) return say(options, done);
   return say("floe: -help: there is no section or key " + shown(help.topic) +
                  " (floe -help lists them all)\n",
              bad_input, stderr);

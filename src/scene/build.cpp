@@ -153,6 +153,7 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
                         scene.output.dir + "/STOP",
                         scene.checkpoint.restart,
                         lattice_id,
+                        fingerprint(scene.obstacles),
                         scene.options_yaml,
                         scene.path,
                         scene.checkpoint.wall_time,

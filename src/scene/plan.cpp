@@ -76,8 +76,11 @@ PlannedOutput planned_output(const Scene& scene, const RunPlan& plan, const Outp
   output.rows = 1 + std::max(1.0, std::min(std::ceil(history), most));
   if (scene.output.history == 0)  // whatever is a sample is a row
     output.rows = std::max(output.rows, 1 + std::min(std::ceil(history) + output.frames, most));
+  // Of checkpoints the one before the last is kept too.
+  const bool several = (plan.steps - plan.done) * plan.seconds_a_step > scene.checkpoint.every;
+  const double generations = several ? 2 : 1;
   output.bytes = size.once + output.rows * size.row + output.frames * size.frame +
-                 (is_static ? 0 : size.checkpoint);
+                 (is_static ? 0 : generations * size.checkpoint);
   return output;
 }
 

@@ -93,19 +93,12 @@ Found newest_checkpoint(const std::string& dir) {
   return found;
 }
 
-/// Rank 0's texts on all ranks.
-void share(std::string& text, MPI_Comm comm) {
-  auto length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  text.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
-}
-
+/// Rank 0's on all ranks.
 void share(Found& found, MPI_Comm comm) {
   CheckpointHead& head = found.head;
   for (std::string* text : {&found.file, &found.done_in, &found.remark, &head.version,
                             &head.built_for, &head.options, &head.scene, &head.run})
-    share(*text, comm);
+    floe::share(*text, comm);
   MPI_Bcast(&head.ranks, 1, MPI_INT64_T, 0, comm);
   MPI_Bcast(&head.time, 1, MPI_DOUBLE, 0, comm);
   MPI_Bcast(&found.done_time, 1, MPI_DOUBLE, 0, comm);

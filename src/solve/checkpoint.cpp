@@ -19,7 +19,7 @@
 namespace floe {
 namespace {
 
-constexpr std::int64_t layout = 3;  // of the file; another one is refused
+constexpr std::int64_t layout = 4;  // of the file; another one is refused
 
 /// FNV-1a over 64-bit words.
 class Hash {
@@ -31,6 +31,7 @@ class Hash {
   }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
   void add(std::int32_t value) { add(static_cast<std::uint64_t>(value)); }
+  void add(const Vec3<double>& v) { add(std::array{v.x, v.y, v.z}); }
   template <class T, std::size_t n>
   void add(const std::array<T, n>& values) {
     for (const T& value : values) add(value);
@@ -40,7 +41,11 @@ class Hash {
     add(static_cast<std::uint64_t>(values.size()));
     for (const T& value : values) add(value);
   }
-  std::uint64_t value() const { return value_; }
+  std::string text() const {
+    std::array<char, 17> text{};
+    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(value_));
+    return text.data();
+  }
 
  private:
   std::uint64_t value_ = 0xcbf29ce484222325U;
@@ -77,10 +82,17 @@ std::string fingerprint(const Lattice& lattice) {
     hash.add(*values);
   if (!m.shear_factor_y.empty()) hash.add(m.shear_factor_y);
   hash.add(lattice.shapes.vertices);
-  std::array<char, 17> text{};
-  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(hash.value()));
   return std::to_string(lattice.bodies.size()) + " bodies, " +
-         std::to_string(lattice.beams.size()) + " beams, " + text.data();
+         std::to_string(lattice.beams.size()) + " beams, " + hash.text();
+}
+
+std::string fingerprint(std::span<const Obstacle> obstacles) {
+  Hash hash;
+  for (const Obstacle& obstacle : obstacles) {
+    hash.add(obstacle.point), hash.add(obstacle.vertices);
+    for (const HalfSpace& plane : obstacle.planes) hash.add(plane.normal), hash.add(plane.offset);
+  }
+  return std::to_string(obstacles.size()) + ", " + hash.text();
 }
 
 Checkpoints::Checkpoints(const CheckpointOptions& options, const Part& part)
@@ -183,7 +195,7 @@ void make_newest(const std::string& restart, const std::string& file, MPI_Comm c
 /// What every checkpoint says first. \throws OtherRun
 void Checkpoints::head(Memory& memory) {
   std::string version = FLOE_VERSION, built = built_for(part_.comm), lattice = options_.lattice,
-              options = options_.options, scene = options_.scene;
+              obstacles = options_.obstacles, options = options_.options, scene = options_.scene;
   std::int64_t number = layout, ranks = size(part_.comm);
   memory.enter("");
   memory.common("layout", number);
@@ -191,12 +203,17 @@ void Checkpoints::head(Memory& memory) {
   memory.common("built_for", built);
   memory.common("ranks", ranks, 1);
   memory.common("lattice", lattice);
+  memory.common("obstacles", obstacles);
   memory.common("options", options);
   memory.common("scene", scene);
   if (number != layout) throw OtherRun(named(options_.restart) + "is of another version of floe");
   if (lattice != options_.lattice)
     throw OtherRun(named(options_.restart) + "is of another lattice (" + lattice +
                    "; this scene's is " + options_.lattice + ")");
+  if (obstacles != options_.obstacles)
+    throw OtherRun(named(options_.restart) +
+                   "is of obstacles of other shapes: a file of theirs "
+                   "has changed");
 }
 
 void Checkpoints::save(const std::function<void(Memory&)>& remember,

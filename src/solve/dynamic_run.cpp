@@ -44,7 +44,9 @@ void DynamicRun<Space>::read_options(TS ts) {
     const HiddenMaxSteps hidden;
     check(TSSetFromOptions(ts));
   }
+  const double of_scene = options_.dt;
   check(TSGetTimeStep(ts, &options_.dt));
+  if (options_.dt > 0 && options_.dt != of_scene) dt_key_ = "ts_dt";
   check(TSGetMaxTime(ts, &options_.end));
   given_ = options_.dt > 0;
 }
@@ -61,8 +63,11 @@ void DynamicRun<Space>::plan(double wanted) {
 
 template <class Space>
 void DynamicRun<Space>::require_few_steps(double steps, double step) const {
-  if (steps <= options_.most_steps) return;
-  throw InputError("time: dt: " + text(step) + " s" +
+  constexpr double countable = 1e18;  // in 64 bits
+  if (steps <= countable &&
+      std::min(steps, static_cast<double>(most_steps_)) <= options_.most_steps)
+    return;
+  throw InputError(dt_key_ + ": " + text(step) + " s" +
                    (result_.limited_by.empty()
                         ? ""
                         : " (stable: " + text(result_.stable_dt) + " s, limited by the " +

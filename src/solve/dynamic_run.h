@@ -127,6 +127,8 @@ class DynamicRun {
   Model<Space>& model() { return model_; }
   const Model<Space>& model() const { return model_; }
   const DynamicOptions& options() const { return options_; }
+  /// What gave the step: "time: dt" or "ts_dt".
+  const std::string& dt_key() const { return dt_key_; }
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
   RunResult& result() { return result_; }
@@ -187,6 +189,7 @@ class DynamicRun {
   bool adaptive_ = false;
   // Step step_base_ ended at time_base_; equal ones follow.
   std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1;
+  std::string dt_key_ = "time: dt";
   std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
   std::int64_t show_every_ = 1;
   std::int64_t piece_ = 0;  // the TS's step 0

@@ -47,7 +47,7 @@ void ExplicitRun<Space>::choose_step() {
   this->result().limited_by = stable.limit;
   const double given = this->options().dt;
   if (given > stable.dt && !explicit_options_.allow_unstable)
-    throw InputError("time: dt: " + text(given) + " must be <= " + text(stable.dt) +
+    throw InputError(this->dt_key() + ": " + text(given) + " must be <= " + text(stable.dt) +
                      " [s], the stable step, limited by the " + stable.limit +
                      " (time: allow_unstable: true takes it all the same)");
   const double wanted = given > 0 ? given : explicit_options_.safety * stable.dt;

@@ -1,5 +1,5 @@
 """A library that is loaded before floe's: it notes how files get to the disk, and ends or
-interrupts the run at a given call.
+interrupts the run at a given call, or lets the closing of a file fail, as on a full network disk.
 
 Calls that count are those that make, rename or remove a checkpoint or bring something to the disk.
 """
@@ -42,6 +42,15 @@ static void name_of(int file, char* path, int size) {
   path[length > 0 ? length : 0] = 0;
 }
 
+/* Whether the file is the one whose closing is to fail. */
+static int fails_to_close(int file) {
+  char path[4096];
+  const char* wanted = getenv("TEST_NO_CLOSE");
+  if (wanted == NULL) return 0;
+  name_of(file, path, sizeof path);
+  return strstr(path, wanted) != NULL;
+}
+
 #define REAL(name) ((__typeof__(name)*)dlsym(RTLD_NEXT, #name))
 
 int rename(const char* a, const char* b) {
@@ -65,6 +74,11 @@ int fsync(int file) {
   name_of(file, path, sizeof path);
   note("fsync", path, "");
   return REAL(fsync)(file);
+}
+int close(int file) {
+  const int fails = fails_to_close(file);
+  const int done = REAL(close)(file);
+  return fails ? (errno = EDQUOT, -1) : done;
 }
 ssize_t write(int file, const void* text, size_t size) {
   static int rows = 0;

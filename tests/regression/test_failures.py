@@ -8,8 +8,10 @@ import signal
 import subprocess
 import unittest
 
+from interposed import library
 from launch import ENVIRONMENT, FLOE, on_ranks, own_words
 from running import FAILED, RunningTest
+from small_scenes import AFLOAT
 
 STATIC = """forces: [beam]
 sheet: {length: 120, thickness: 1, element_size: 1, iterations: 2}
@@ -70,6 +72,22 @@ class OutOfMemory(RunningTest):
         self.assertIn("out of memory: the factorisation of the tangent needs more (MUMPS says "
                       "INFOG(1) = ", said)
         self.assertEqual(self.summary()["status"], "failed")
+
+
+class Close(RunningTest):
+    def test_of_each_result(self):
+        """A network disk may say only when a file is closed that it is full."""
+        self.write(AFLOAT.replace("100000", "0.02") + "checkpoint: {every: 600}\n")
+        environment = library(self.folder)
+        for name in ("options.yaml", "lattice.h5", "fields/", "fields.xmf", "history.csv",
+                     "checkpoint"):
+            with self.subTest(name=name):
+                said = self.floe("-output_overwrite", code=FAILED,
+                                 environment={**environment, "TEST_NO_CLOSE": name})
+                self.assertEqual(said.count("\n"), 1, said)
+                self.assertIn(name, said)
+                self.assertIn("Disk quota exceeded", said)
+                self.assertEqual(self.summary()["status"], "failed")
 
 
 class Crash(RunningTest):

@@ -100,6 +100,11 @@ class Words(NewcomerTest):
         for name in ("sheet_length", "sheet: length"):
             self.assertEqual(re.findall(r"^  (-\w+)", said(name), re.M), ["-sheet_length"])
         self.assertIn("there is no section or key shett", said("shett", code=2))
+        # PETSc's families, and where they are explained
+        for name in ("snes", "snes_rtol"):
+            self.assertRegex(said(name), r"petsc\.org.*\n(.*\n)*  -snes_rtol +>= 0, < 1\n")
+        self.assertNotIn("-ts_dt", said("snes"))
+        self.assertIn("petsc.org", said("dm"))
 
 
 class Results(NewcomerTest):

@@ -168,6 +168,11 @@ class Refused(PlanTest):
         self.plan(EXPLICIT, "-time_dt", "1e-12", "-time_end", "20", "-limit_steps", "1e14",
                   "-check")
 
+    def test_steps_that_ts_max_steps_ends(self):
+        few = ("-ts_dt", "1e-12", "-limit_steps", "100", "-ts_max_steps")
+        self.refuse(EXPLICIT, *few, "101", said=("ts_dt: 1e-12", "2e+10 steps", "at most 100"))
+        self.plan(EXPLICIT, *few, "100", "-check")
+
     def test_steps_of_the_own_choice(self):
         self.refuse(EXPLICIT, "-time_end", "1e9",
                     said=("time: dt: ", "stable: ", "limited by the", "limit: steps"))

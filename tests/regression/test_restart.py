@@ -23,6 +23,7 @@ import numpy as np
 from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, on_ranks, own_words
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+import floe_lattice as fl  # noqa: E402
 from floe_output import frames_of  # noqa: E402
 
 # Damping loss, load work, boundary work and the water's forces all have a history or energies of
@@ -298,6 +299,19 @@ class Refused(RestartTest):
             file["beams/young"][0] *= 1.001
         said = self.refused("-checkpoint_restart", "f/checkpoint.h5", dir="f")
         self.assertIn("is of another lattice", said)
+
+    def test_an_obstacle_of_another_shape(self):
+        """A file of the same name may hold another one."""
+        (self.folder / "scene.yaml").write_text(
+            SCENE.replace("drag]", "drag, contact]")
+            + "obstacle: {names: [o], o: {shape: file, file: o.h5, point: [50, 0, 0]}}\n")
+        fl.block([1, 1, 1]).write(self.folder / "o.h5")
+        self.run_whole("-time_end", "1", dir="f")
+        fl.block([1, 1, 1 + 1e-12]).write(self.folder / "o.h5")
+        said = self.refused("-checkpoint_restart", "f/checkpoint.h5", dir="f")
+        self.assertIn("is of obstacles of other shapes: a file of theirs has changed", said)
+        fl.block([1, 1, 1]).write(self.folder / "o.h5")
+        self.run_whole("-checkpoint_restart", "f/checkpoint.h5", "-time_end", "2", dir="f")
 
     def test_other_forces(self):
         said = self.refused("-checkpoint_restart", "b/checkpoint.h5", "-forces", "beam,drag",

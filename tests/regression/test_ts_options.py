@@ -62,7 +62,7 @@ class Times(TsTest):
             self.pull(*kind, "-ts_dt", "1e-5")
             self.assertAlmostEqual(self.summary()["dt"], 1e-5, 12)
             _, err = self.pull(*kind, "-ts_dt", "1e-2", code=2)
-            self.assertIn("must be <=", err)
+            self.assertIn("ts_dt: 0.01 must be <=", err)
             self.assertIn("the stable step", err)
 
     def test_monitor_and_view(self):

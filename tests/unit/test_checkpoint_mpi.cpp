@@ -146,6 +146,9 @@ TEST_F(Checkpoint, RefusesWhatIsNotThereAndWhatIsOfAnotherLattice) {
   }),
                InputError);
   CheckpointOptions other = kept.options;
+  other.obstacles = "others";
+  EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), OtherRun);
+  other.obstacles = kept.options.obstacles;
   other.lattice = "of another";
   EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
   other = kept.options;

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "floe/contact/obstacle.h"
 #include "floe/lattice/memory.h"
 
 namespace floe {
@@ -20,6 +22,7 @@ struct CheckpointOptions {
   std::string stop_file;  ///< its presence asks for a checkpoint and a stop
   std::string restart;    ///< the one to go on from; empty: from t = 0
   std::string lattice;    ///< what identifies it
+  std::string obstacles;  ///< what identifies their shapes
   std::string options;    ///< every option as used
   std::string scene;      ///< the path of the scene's file
   /// Of the process, by rank 0's clock: a checkpoint and a stop before it is over [s].
@@ -63,6 +66,8 @@ void make_newest(const std::string& restart, const std::string& file, MPI_Comm c
 
 /// A number that two lattices share only if they are the same, to the last bit.
 std::string fingerprint(const Lattice& lattice);
+/// The same of the shapes of obstacles, which files may give.
+std::string fingerprint(std::span<const Obstacle> obstacles);
 
 /// Writes checkpoints and says when. Collective throughout.
 class Checkpoints {
