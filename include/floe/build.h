@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "floe/forces/load.h"
+#include "floe/forces/dead_load.h"
 #include "floe/output/output.h"
 #include "floe/output/size.h"
 #include "floe/scene.h"
-#include "floe/solve/integrator.h"
+#include "floe/solve/quasistatic.h"
 
 namespace floe {
 

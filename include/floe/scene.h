@@ -12,13 +12,14 @@
 #include <vector>
 
 #include "floe/base/given.h"
-#include "floe/contact/law.h"
+#include "floe/contact/contact_options.h"
 #include "floe/contact/obstacle.h"
-#include "floe/forces/beam.h"
+#include "floe/forces/beam_options.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/calibration.h"
-#include "floe/forces/drag.h"
-#include "floe/forces/fracture.h"
+#include "floe/forces/drag_options.h"
+#include "floe/forces/fracture_options.h"
+#include "floe/forces/load.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
 

@@ -26,6 +26,7 @@
 #include "base/simd.h"
 #include "floe/base/rotation.h"
 #include "floe/forces/beam_types.h"
+#include "floe/lattice/kinematics.h"
 
 namespace floe {
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "floe/base/petsc.h"
+#include "floe/forces/beam.h"
 
 namespace floe {
 namespace {

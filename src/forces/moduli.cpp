@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "floe/forces/beam.h"
+
 namespace floe {
 namespace {
 

@@ -11,6 +11,8 @@
 #include "floe/forces/contact.h"
 #include "floe/forces/drag.h"
 #include "floe/forces/gravity.h"
+#include "floe/solve/explicit.h"
+#include "floe/solve/implicit.h"
 #include "lattice_command.h"
 #include "mesh_file.h"
 #include "reading.h"

@@ -4,7 +4,7 @@
 
 #include "floe/output/size.h"
 #include "floe/scene.h"
-#include "floe/solve/integrator.h"
+#include "floe/solve/result.h"
 
 namespace floe {
 

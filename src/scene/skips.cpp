@@ -4,6 +4,7 @@
 
 #include "floe/base/petsc.h"
 #include "floe/build.h"
+#include "floe/solve/explicit.h"
 
 namespace floe {
 namespace {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "floe/solve/integrator.h"
+#include "floe/solve/quasistatic.h"
 #include "solve/rotation_unknowns.h"
 
 namespace floe {

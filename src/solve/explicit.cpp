@@ -1,10 +1,12 @@
+#include "floe/solve/explicit.h"
+
 #include "floe/forces/contact.h"
 #include "floe/forces/fracture.h"
 #include "solve/explicit_run.h"
+#include "solve/explicit_ts_options.h"
 #include "solve/leapfrog.h"
 #include "solve/planar_motion.h"
 #include "solve/stable_step.h"
-#include "solve/ts_options.h"
 
 namespace floe {
 namespace {

@@ -3,6 +3,7 @@
 /// where that falls in the course of the run.
 #pragma once
 
+#include "floe/solve/explicit.h"
 #include "solve/dynamic_run.h"
 #include "solve/stable_step.h"
 

@@ -1,5 +1,7 @@
 // Implicit dynamics by the TS type liealpha: what PETSc calls, when a factorisation is kept, the
 // books of a step, and where steps end.
+#include "floe/solve/implicit.h"
+
 #include <petscts.h>
 
 #include <algorithm>
@@ -10,12 +12,12 @@
 #include "base/format.h"
 #include "solve/dynamic_run.h"
 #include "solve/expected_cost.h"
+#include "solve/implicit_ts_options.h"
 #include "solve/liealpha.h"
 #include "solve/motion_equations.h"
 #include "solve/newton.h"
 #include "solve/numbers.h"
 #include "solve/step_plan.h"
-#include "solve/ts_options.h"
 
 namespace floe {
 namespace {

@@ -1,3 +1,5 @@
+#include "floe/solve/quasistatic.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -5,7 +7,6 @@
 
 #include "base/format.h"
 #include "floe/base/log.h"
-#include "floe/solve/integrator.h"
 #include "solve/equilibrium.h"
 #include "solve/expected_cost.h"
 

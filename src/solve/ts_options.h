@@ -1,5 +1,5 @@
 /// \file
-/// What of PETSc's options dynamics takes.
+/// What of PETSc's options of TS all integrators in time ask for.
 #pragma once
 
 #include <cstdint>
@@ -8,14 +8,14 @@
 
 namespace floe {
 
-/// The stepper's type: `leapfrog`, or what -ts_type says. \throws InputError for options of solvers
-/// (-snes_*, -ksp_*, -pc_*, -mat_*), types that cannot step the bodies of a scene, and options of
-/// TS that would have no effect, naming the option and the reason
-std::string explicit_type();
+/// Value of an option, as "-ts_type"; nothing if it is not given.
+std::optional<std::string> ts_option(const char* option);
 
-/// \throws InputError for an -ts_type other than `liealpha` and for options of TS that would upset
-/// samples and checkpoints, naming the option and the reason
-void check_implicit_options();
+/// \throws InputError that names the option and the reason, if it is given
+void refuse_ts_option(const char* option, const std::string& why, const char* integrator);
+
+/// Refuses options that would upset samples and checkpoints. \throws InputError
+void refuse_ts_times(const char* integrator);
 
 /// -ts_max_steps, beyond PETSc's 32 bits; nothing if it is not given. \throws InputError
 std::optional<std::int64_t> given_max_steps();

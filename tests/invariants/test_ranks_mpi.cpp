@@ -9,10 +9,10 @@
 
 #include "floe/base/petsc.h"
 #include "floe/forces/buoyancy.h"
+#include "floe/forces/dead_load.h"
 #include "floe/forces/gravity.h"
-#include "floe/forces/load.h"
-#include "floe/solve/integrator.h"
 #include "floe/solve/model.h"
+#include "floe/solve/quasistatic.h"
 #include "output/gather.h"
 #include "support/lattices.h"
 #include "support/states.h"

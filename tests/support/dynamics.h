@@ -10,6 +10,7 @@
 #include <string>
 
 #include "floe/build.h"
+#include "floe/solve/explicit.h"
 #include "solve/planar_motion.h"
 #include "support/frames.h"
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "floe/build.h"
+#include "floe/solve/implicit.h"
 #include "support/static_solution.h"
 
 namespace floe::test {

@@ -5,8 +5,8 @@
 #include "floe/base/petsc.h"
 #include "floe/forces/beam.h"
 #include "floe/forces/buoyancy.h"
+#include "floe/forces/dead_load.h"
 #include "floe/forces/gravity.h"
-#include "floe/forces/load.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
 

@@ -10,8 +10,8 @@
 
 #include "floe/base/petsc.h"
 #include "floe/forces/buoyancy.h"
+#include "floe/forces/dead_load.h"
 #include "floe/forces/gravity.h"
-#include "floe/forces/load.h"
 #include "floe/solve/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"

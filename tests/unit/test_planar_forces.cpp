@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "floe/base/petsc.h"
+#include "floe/forces/dead_load.h"
 #include "floe/forces/drag.h"
-#include "floe/forces/load.h"
 #include "floe/solve/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"

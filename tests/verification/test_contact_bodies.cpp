@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "floe/forces/contact.h"
-#include "floe/solve/integrator.h"
+#include "floe/solve/explicit.h"
 #include "solve/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"

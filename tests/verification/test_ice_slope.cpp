@@ -9,7 +9,7 @@
 
 #include "floe/build.h"
 #include "floe/forces/fracture.h"
-#include "floe/solve/integrator.h"
+#include "floe/solve/explicit.h"
 #include "support/blocks.h"
 #include "support/record.h"
 

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "floe/contact/obstacle_motion.h"
-#include "floe/geometry/overlap.h"
+#include "floe/geometry/half_space.h"
+#include "floe/geometry/polyhedron.h"
 
 namespace floe {
 

@@ -7,29 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include "floe/forces/beam_options.h"
 #include "floe/forces/beam_types.h"
 #include "floe/forces/force.h"
 
 namespace floe {
-
-/// Transverse stiffness of a beam (model.md section 2): the same energy with a different k_s.
-enum class Shear {
-  one_point,  ///< kappa G A / l: linear Timoshenko element with one-point quadrature; the paper's
-  exact,      ///< 12 E I / (l^3 (1 + Phi)): locking-free Timoshenko
-  none,       ///< 12 E I / l^3: Euler-Bernoulli
-};
-
-enum class DampingModes {
-  all,    ///< dashpots on all six strains
-  axial,  ///< on the elongation only
-};
-
-struct BeamOptions {
-  Shear shear = Shear::one_point;
-  Kinematics kinematics = Kinematics::corotational;
-  double damping_ratio = 0;  ///< zeta of each dashpot, c = 2 zeta sqrt(m_s k_s)
-  DampingModes damping_modes = DampingModes::all;
-};
 
 /// Stiffness of beam m of `beams` (model.md section 2).
 BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear);

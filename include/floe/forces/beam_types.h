@@ -1,13 +1,8 @@
 /// \file
-/// What kernels of beams share with those who ask for them; free of PETSc and MPI.
+/// Stiffnesses of a beam; free of PETSc and MPI, as kernels are.
 #pragma once
 
 namespace floe {
-
-enum class Kinematics {
-  corotational,  ///< any rotation (Crisfield 1990, 1997)
-  linear,        ///< small displacements and rotations: strains are linear in the unknowns
-};
 
 /// The six stiffnesses of a beam: axial, shear (from I_z, from I_y), torsion, bending about axes 2
 /// and 3.

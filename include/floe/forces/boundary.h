@@ -1,5 +1,5 @@
 /// \file
-/// Prescribed motions and dead loads, as a scene states them.
+/// Prescribed motions, as a scene states them.
 #pragma once
 
 #include <array>
@@ -27,17 +27,6 @@ struct Boundary {
   /// Their rates [m/s, rad/s] and accelerations, from the right; what happens at once has none.
   std::array<double, 6> rate(double time) const;
   std::array<double, 6> acceleration(double time) const;
-};
-
-/// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in
-/// plan (carried by the nearest body, statically equivalent: a force at a body-fixed point).
-struct Load {
-  std::string name;
-  std::string set;              ///< empty: at a point
-  std::optional<Point2> point;  ///< [m]
-  Point3 force{};               ///< [N]
-  Point3 moment{};              ///< [N m]
-  Ramp ramp;
 };
 
 }  // namespace floe

@@ -4,16 +4,10 @@
 
 #include <memory>
 
+#include "floe/forces/drag_options.h"
 #include "floe/forces/force.h"
 
 namespace floe {
-
-struct DragOptions {
-  double linear = 0;       ///< c [N s/m^3] (the paper: Stokes)
-  double coefficient = 0;  ///< C_d of the quadratic law
-  double density = 1010;   ///< rho_w [kg/m^3]
-  Point3 current{};        ///< velocity of the water [m/s]
-};
 
 /// Force -(c + rho_w C_d |v|/2) A_plan v times the submerged part of the volume, at the centroid; v
 /// is the velocity against the water, A_plan the plan area of the body at rest. Reports as

@@ -1,30 +1,24 @@
 /// \file
-/// Dead loads of a scene as a force.
+/// Dead loads, as a scene states them.
 #pragma once
 
-#include <memory>
-#include <vector>
+#include <optional>
+#include <string>
 
-#include "floe/forces/beam.h"
-#include "floe/forces/boundary.h"
-#include "floe/forces/force.h"
+#include "floe/base/ramp.h"
+#include "floe/geometry/polyhedron.h"
 
 namespace floe {
 
-/// A load resolved on bodies: each carries the same share; the force acts at a body-fixed point.
-struct PlacedLoad {
-  Load load;
-  std::vector<std::int32_t> bodies;  ///< global indices
-  Point3 arm{};                      ///< from the centroid to where the force acts, at rest [m]
+/// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in
+/// plan (carried by the nearest body, statically equivalent: a force at a body-fixed point).
+struct Load {
+  std::string name;
+  std::string set;              ///< empty: at a point
+  std::optional<Point2> point;  ///< [m]
+  Point3 force{};               ///< [N]
+  Point3 moment{};              ///< [N m]
+  Ramp ramp;
 };
-
-/// Finds the bodies of a load: those of its set, or the one whose centroid is nearest in plan to
-/// its point. \throws InputError for an unknown set
-PlacedLoad place(const Load& load, const Lattice& lattice);
-
-/// \param part  must outlive the force
-template <class Space>
-std::unique_ptr<Force<Space>> make_load(const Part& part, PlacedLoad load,
-                                        Kinematics kinematics = Kinematics::corotational);
 
 }  // namespace floe

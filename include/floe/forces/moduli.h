@@ -5,7 +5,8 @@
 
 #include <complex>
 
-#include "floe/forces/beam.h"
+#include "floe/forces/beam_options.h"
+#include "floe/lattice/lattice.h"
 #include "floe/lattice/material.h"
 
 namespace floe {

@@ -11,15 +11,10 @@
 #include <vector>
 
 #include "floe/base/rotation.h"
+#include "floe/geometry/half_space.h"
 #include "floe/geometry/polyhedron.h"
 
 namespace floe {
-
-/// A half-space: r with normal . r <= offset. The normal is a unit vector.
-struct HalfSpace {
-  Vec3<double> normal;
-  double offset = 0;  ///< [m]
-};
 
 struct Overlap {
   double volume = 0;        ///< V [m^3]

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "floe/forces/boundary.h"
-#include "floe/forces/load.h"
+#include "floe/forces/dead_load.h"
 #include "floe/lattice/memory.h"
 #include "floe/solve/integrator.h"
 

@@ -1,0 +1,16 @@
+/// \file
+/// Drag of the water, as a scene states it.
+#pragma once
+
+#include "floe/geometry/polyhedron.h"
+
+namespace floe {
+
+struct DragOptions {
+  double linear = 0;       ///< c [N s/m^3] (the paper: Stokes)
+  double coefficient = 0;  ///< C_d of the quadratic law
+  double density = 1010;   ///< rho_w [kg/m^3]
+  Point3 current{};        ///< velocity of the water [m/s]
+};
+
+}  // namespace floe

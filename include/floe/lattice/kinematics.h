@@ -1,0 +1,12 @@
+/// \file
+/// How rotations of the bodies are counted.
+#pragma once
+
+namespace floe {
+
+enum class Kinematics {
+  corotational,  ///< any rotation (Crisfield 1990, 1997)
+  linear,        ///< small displacements and rotations: strains are linear in the unknowns
+};
+
+}  // namespace floe
