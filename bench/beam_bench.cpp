@@ -2,7 +2,7 @@
 // `linear`: with linear kinematics, and the same forces as a product with the assembled matrix.
 #include <benchmark/benchmark.h>
 
-#include "floe/forces/beam.h"
+#include "beams/beam.h"
 #include "sheet.h"
 
 namespace {

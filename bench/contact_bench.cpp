@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "floe/contact/contacts.h"
+#include "contact/contacts.h"
 
 namespace floe {
 namespace {

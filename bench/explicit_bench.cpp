@@ -15,12 +15,12 @@
 #include <map>
 #include <tuple>
 
-#include "floe/solve/model.h"
-#include "forces/beam_blocks.h"
-#include "forces/beam_spatial.h"
+#include "beams/beam_blocks.h"
+#include "beams/beam_spatial.h"
+#include "explicit/leapfrog.h"
+#include "explicit/planar_motion.h"
+#include "model/model.h"
 #include "sheet.h"
-#include "solve/leapfrog.h"
-#include "solve/planar_motion.h"
 
 namespace {
 

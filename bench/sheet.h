@@ -9,8 +9,8 @@
 
 #include "floe/base/petsc.h"
 #include "floe/lattice/lattice.h"
-#include "floe/lattice/partition.h"
 #include "floe/lattice/state.h"
+#include "lattice/partition.h"
 
 namespace floe::bench {
 

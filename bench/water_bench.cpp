@@ -1,9 +1,9 @@
 // ns per body of the water's forces on a slightly tilted floating sheet: buoyancy and drag.
 #include <benchmark/benchmark.h>
 
-#include "floe/forces/buoyancy.h"
-#include "floe/forces/drag.h"
 #include "sheet.h"
+#include "water/buoyancy.h"
+#include "water/drag.h"
 
 namespace {
 

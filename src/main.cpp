@@ -7,25 +7,25 @@
 #include <utility>
 #include <vector>
 
+#include "base/environment.h"
+#include "base/files.h"
+#include "base/run_log.h"
+#include "base/run_place.h"
+#include "base/scene_text.h"
+#include "base/signals.h"
 #include "floe/base/command_line.h"
-#include "floe/base/environment.h"
-#include "floe/base/files.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
-#include "floe/base/run_log.h"
-#include "floe/base/run_place.h"
-#include "floe/base/scene_text.h"
-#include "floe/base/signals.h"
 #include "floe/base/version.h"
-#include "floe/build.h"
-#include "floe/lattice/folded.h"
-#include "floe/output/output.h"
-#include "floe/output/run_folder.h"
-#include "floe/restart.h"
+#include "lattice/folded.h"
+#include "output/output.h"
+#include "output/run_folder.h"
 #include "program/go_on.h"
 #include "program/log_heading.h"
 #include "program/program.h"
+#include "scene/build.h"
+#include "scene/restart.h"
 
 namespace {
 

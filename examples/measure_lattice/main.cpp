@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "floe/forces/moduli.h"
+#include "floe/beams/moduli.h"
 #include "floe/lattice/lattice.h"
 
 namespace {

@@ -12,16 +12,16 @@
 #include <vector>
 
 #include "floe/base/given.h"
+#include "floe/beams/beam_options.h"
+#include "floe/beams/calibration.h"
 #include "floe/contact/contact_options.h"
 #include "floe/contact/obstacle.h"
-#include "floe/forces/beam_options.h"
 #include "floe/forces/boundary.h"
-#include "floe/forces/calibration.h"
-#include "floe/forces/drag_options.h"
-#include "floe/forces/fracture_options.h"
 #include "floe/forces/load.h"
+#include "floe/fracture/fracture_options.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
+#include "floe/water/drag_options.h"
 
 namespace floe {
 

@@ -1,4 +1,4 @@
-#include "floe/base/audit.h"
+#include "base/audit.h"
 
 #include <petsc/private/petscimpl.h>  // PetscObjectStateGet
 

@@ -1,4 +1,4 @@
-#include "floe/base/clock.h"
+#include "base/clock.h"
 
 #include <chrono>
 

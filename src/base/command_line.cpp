@@ -4,8 +4,8 @@
 #include <array>
 #include <string_view>
 
+#include "base/scene_text.h"
 #include "floe/base/petsc.h"
-#include "floe/base/scene_text.h"
 #include "option_names.h"
 #include "option_values.h"
 

@@ -7,10 +7,10 @@
 #include <cstring>
 #include <string_view>
 
+#include "base/run_log.h"
+#include "base/run_place.h"
 #include "blame.h"
 #include "failure.h"
-#include "floe/base/run_log.h"
-#include "floe/base/run_place.h"
 
 namespace floe {
 namespace {

@@ -1,4 +1,4 @@
-#include "floe/base/environment.h"
+#include "base/environment.h"
 
 #include <sys/stat.h>
 

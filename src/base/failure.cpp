@@ -11,10 +11,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "base/run_log.h"
+#include "base/run_place.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
-#include "floe/base/run_log.h"
-#include "floe/base/run_place.h"
 #include "launcher.h"
 
 namespace floe {

@@ -1,4 +1,4 @@
-#include "floe/base/files.h"
+#include "base/files.h"
 
 #include <fcntl.h>
 #include <unistd.h>

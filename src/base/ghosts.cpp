@@ -1,4 +1,4 @@
-#include "floe/base/ghosts.h"
+#include "base/ghosts.h"
 
 #include <utility>
 

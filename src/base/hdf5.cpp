@@ -1,4 +1,4 @@
-#include "floe/base/hdf5.h"
+#include "base/hdf5.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <limits>
 
-#include "floe/base/hdf5.h"
+#include "base/hdf5.h"
 #include "floe/base/petsc.h"
 #include "hdf5_id.h"
 

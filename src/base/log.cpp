@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <string>
 
+#include "base/run_log.h"
 #include "floe/base/petsc.h"
-#include "floe/base/run_log.h"
 
 namespace floe {
 namespace {

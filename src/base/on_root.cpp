@@ -1,4 +1,4 @@
-#include "floe/base/on_root.h"
+#include "base/on_root.h"
 
 namespace floe {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cctype>
 
-#include "floe/base/spelling.h"
+#include "base/spelling.h"
 #include "option_values.h"
 
 namespace floe {

@@ -11,10 +11,10 @@
 #include <string>
 #include <string_view>
 
+#include "base/run_log.h"
 #include "blame.h"
 #include "failure.h"
 #include "floe/base/options.h"
-#include "floe/base/run_log.h"
 #include "launcher.h"
 #include "option_names.h"
 #include "solver_options.h"

@@ -1,4 +1,4 @@
-#include "floe/base/run_log.h"
+#include "base/run_log.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "floe/base/files.h"
+#include "base/files.h"
 
 namespace floe {
 namespace {

@@ -1,4 +1,4 @@
-#include "floe/base/scene_text.h"
+#include "base/scene_text.h"
 
 #include <sys/stat.h>
 #include <yaml.h>

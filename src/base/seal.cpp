@@ -1,4 +1,4 @@
-#include "floe/base/seal.h"
+#include "base/seal.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "floe/base/files.h"
+#include "base/files.h"
 
 namespace floe {
 namespace {

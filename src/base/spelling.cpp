@@ -1,4 +1,4 @@
-#include "floe/base/spelling.h"
+#include "base/spelling.h"
 
 #include <algorithm>
 #include <numeric>

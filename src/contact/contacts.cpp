@@ -1,11 +1,11 @@
 // One step of all contacts: evaluation, and what a step leaves behind.
 
-#include "floe/contact/contacts.h"
+#include "contact/contacts.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "floe/contact/separation.h"
+#include "contact/separation.h"
 
 namespace floe {
 namespace {

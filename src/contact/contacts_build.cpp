@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "contact/broad_phase.h"
-#include "floe/contact/contacts.h"
-#include "floe/contact/separation.h"
+#include "contact/contacts.h"
+#include "contact/separation.h"
 
 namespace floe {
 namespace {

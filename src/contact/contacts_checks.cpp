@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "floe/contact/contacts.h"
+#include "contact/contacts.h"
 
 namespace floe {
 

@@ -1,4 +1,4 @@
-#include "floe/contact/law.h"
+#include "contact/law.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "floe/contact/separation.h"
+#include "contact/separation.h"
 
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "floe/forces/dead_load.h"
+#include "forces/dead_load.h"
 
 #include <Eigen/Core>
 

@@ -1,4 +1,4 @@
-#include "floe/forces/gravity.h"
+#include "forces/gravity.h"
 
 namespace floe {
 namespace {

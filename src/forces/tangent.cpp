@@ -1,4 +1,4 @@
-#include "floe/forces/tangent.h"
+#include "forces/tangent.h"
 
 #include <algorithm>
 #include <numeric>

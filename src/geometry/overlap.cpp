@@ -1,4 +1,4 @@
-#include "floe/geometry/overlap.h"
+#include "geometry/overlap.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "floe/lattice/folded.h"
+#include "lattice/folded.h"
 
 #include <algorithm>
 

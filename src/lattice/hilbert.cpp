@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include "floe/lattice/partition.h"
+#include "lattice/partition.h"
 
 namespace floe {
 namespace {

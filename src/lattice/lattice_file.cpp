@@ -7,13 +7,13 @@
 #include <span>
 #include <utility>
 
+#include "base/hdf5.h"
 #include "base/option_values.h"
-#include "floe/base/hdf5.h"
+#include "base/spelling.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
-#include "floe/base/spelling.h"
-#include "floe/geometry/overlap.h"
 #include "floe/lattice/lattice.h"
+#include "geometry/overlap.h"
 
 namespace floe {
 namespace {

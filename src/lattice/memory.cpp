@@ -1,4 +1,4 @@
-#include "floe/lattice/memory.h"
+#include "lattice/memory.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "floe/lattice/partition.h"
+#include "lattice/partition.h"
 
 #include <algorithm>
 #include <numeric>

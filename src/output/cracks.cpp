@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "floe/base/hdf5.h"
-#include "floe/base/on_root.h"
+#include "base/hdf5.h"
+#include "base/on_root.h"
 #include "floe/base/petsc.h"
 #include "lattice/pieces.h"
 

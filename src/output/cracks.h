@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "floe/forces/fracture.h"
 #include "floe/lattice/lattice.h"
+#include "fracture/fracture.h"
 
 namespace floe {
 

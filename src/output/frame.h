@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "floe/base/hdf5.h"
+#include "base/hdf5.h"
+#include "beams/beam.h"
 #include "floe/base/rotation.h"
-#include "floe/forces/beam.h"
 #include "output/xdmf.h"
 
 namespace floe {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <utility>
 
-#include "floe/base/files.h"
+#include "base/files.h"
 #include "floe/base/petsc.h"
 
 namespace floe {

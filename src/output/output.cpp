@@ -1,4 +1,4 @@
-#include "floe/output/output.h"
+#include "output/output.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,9 +10,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "floe/base/files.h"
+#include "base/files.h"
+#include "base/on_root.h"
 #include "floe/base/log.h"
-#include "floe/base/on_root.h"
 #include "floe/base/options.h"
 #include "output/cracks.h"
 #include "output/fields.h"

@@ -1,6 +1,6 @@
 #include <sstream>
 
-#include "floe/output/output.h"
+#include "output/output.h"
 
 namespace floe {
 namespace {

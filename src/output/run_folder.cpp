@@ -1,4 +1,4 @@
-#include "floe/output/run_folder.h"
+#include "output/run_folder.h"
 
 #include <fcntl.h>
 #include <pwd.h>
@@ -13,10 +13,10 @@
 #include <optional>
 #include <random>
 
-#include "floe/base/files.h"
+#include "base/files.h"
+#include "base/on_root.h"
+#include "base/run_log.h"
 #include "floe/base/log.h"
-#include "floe/base/on_root.h"
-#include "floe/base/run_log.h"
 #include "output/result_files.h"
 #include "output/run_lock.h"
 

@@ -15,7 +15,7 @@
 #include <sstream>
 #include <thread>
 
-#include "floe/base/files.h"
+#include "base/files.h"
 #include "floe/base/petsc.h"
 
 namespace floe {

@@ -1,4 +1,4 @@
-#include "floe/output/size.h"
+#include "output/size.h"
 
 namespace floe {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "floe/base/files.h"
+#include "base/files.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
 

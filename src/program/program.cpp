@@ -10,7 +10,7 @@
 
 #include "base/option_values.h"
 #include "base/solver_options.h"
-#include "floe/base/spelling.h"
+#include "base/spelling.h"
 #include "floe/base/version.h"
 #include "floe/scene.h"
 #include "manual.h"

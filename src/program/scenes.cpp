@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "floe/base/spelling.h"
+#include "base/spelling.h"
 #include "places.h"
 #include "program.h"
 #include "subcommands.h"

@@ -1,23 +1,23 @@
-#include "floe/build.h"
+#include "scene/build.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "base/signals.h"
+#include "contact_force/contact.h"
+#include "explicit/explicit.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
-#include "floe/base/signals.h"
-#include "floe/forces/buoyancy.h"
-#include "floe/forces/contact.h"
-#include "floe/forces/drag.h"
-#include "floe/forces/gravity.h"
-#include "floe/solve/explicit.h"
-#include "floe/solve/implicit.h"
+#include "forces/gravity.h"
+#include "implicit/implicit.h"
 #include "lattice_command.h"
 #include "mesh_file.h"
 #include "reading.h"
+#include "run/expected_cost.h"
 #include "scene/plan.h"
-#include "solve/expected_cost.h"
+#include "water/buoyancy.h"
+#include "water/drag.h"
 
 namespace floe {
 namespace {

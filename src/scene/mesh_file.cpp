@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "floe/base/files.h"
-#include "floe/base/hdf5.h"
-#include "floe/base/on_root.h"
+#include "base/files.h"
+#include "base/hdf5.h"
+#include "base/on_root.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"
 

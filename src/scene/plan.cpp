@@ -8,8 +8,8 @@
 
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
-#include "floe/build.h"
-#include "solve/expected_cost.h"
+#include "run/expected_cost.h"
+#include "scene/build.h"
 
 namespace floe {
 namespace {

@@ -2,9 +2,9 @@
 /// What a run is going to write.
 #pragma once
 
-#include "floe/output/size.h"
+#include "floe/run/result.h"
 #include "floe/scene.h"
-#include "floe/solve/result.h"
+#include "output/size.h"
 
 namespace floe {
 

@@ -1,4 +1,4 @@
-#include "floe/restart.h"
+#include "scene/restart.h"
 
 #include <algorithm>
 #include <array>
@@ -8,13 +8,13 @@
 #include <optional>
 #include <sstream>
 
+#include "base/on_root.h"
 #include "base/option_values.h"
-#include "floe/base/on_root.h"
-#include "floe/base/scene_text.h"
+#include "base/scene_text.h"
 #include "floe/base/version.h"
-#include "floe/output/run_folder.h"
-#include "floe/solve/checkpoint.h"
+#include "output/run_folder.h"
 #include "restart_changes.h"
+#include "run/checkpoint.h"
 
 namespace floe {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
-#include "floe/output/run_folder.h"
 #include "keys.h"
+#include "output/run_folder.h"
 #include "reading.h"
 #include "restart_changes.h"
 #include "units.h"

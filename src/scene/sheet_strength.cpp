@@ -2,10 +2,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/signals.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
-#include "floe/base/signals.h"
-#include "floe/build.h"
+#include "scene/build.h"
 
 namespace floe {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <string>
 
+#include "explicit/explicit.h"
 #include "floe/base/petsc.h"
-#include "floe/build.h"
-#include "floe/solve/explicit.h"
+#include "scene/build.h"
 
 namespace floe {
 namespace {

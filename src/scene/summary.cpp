@@ -7,8 +7,8 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
-#include "floe/build.h"
-#include "floe/forces/moduli.h"
+#include "floe/beams/moduli.h"
+#include "scene/build.h"
 
 namespace floe {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "floe/base/hdf5.h"
-#include "floe/forces/contact.h"
+#include "base/hdf5.h"
+#include "contact_force/contact.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "forces/contact_sharing.h"
+#include "contact_force/contact_sharing.h"
 #include "support/blocks.h"
 
 namespace floe {

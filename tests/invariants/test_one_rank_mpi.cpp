@@ -1,6 +1,6 @@
 // What lives on one rank only: a boundary, a load, a motion, an obstacle, a crack, all the beams.
 // Every integrator gives what it gives on one process; that it ends at all is half of the test (the
-// ranks are compared at every step: floe/base/audit.h).
+// ranks are compared at every step: base/audit.h).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "floe/base/audit.h"
+#include "base/audit.h"
 #include "floe/base/petsc.h"
-#include "floe/build.h"
+#include "scene/build.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"
 

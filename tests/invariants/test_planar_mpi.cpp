@@ -3,8 +3,8 @@
 
 #include <cstring>
 
+#include "explicit/planar_motion.h"
 #include "floe/base/petsc.h"
-#include "solve/planar_motion.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
 

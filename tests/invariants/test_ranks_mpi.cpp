@@ -8,14 +8,14 @@
 #include <cstring>
 
 #include "floe/base/petsc.h"
-#include "floe/forces/buoyancy.h"
-#include "floe/forces/dead_load.h"
-#include "floe/forces/gravity.h"
-#include "floe/solve/model.h"
-#include "floe/solve/quasistatic.h"
+#include "forces/dead_load.h"
+#include "forces/gravity.h"
+#include "model/model.h"
 #include "output/gather.h"
+#include "statics/quasistatic.h"
 #include "support/lattices.h"
 #include "support/states.h"
+#include "water/buoyancy.h"
 
 namespace floe {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "forces/beam_blocks.h"
+#include "beams/beam_blocks.h"
 #include "support/random.h"
 
 namespace floe {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "solve/body_update.h"
+#include "explicit/body_update.h"
 #include "support/random.h"
 
 namespace floe {

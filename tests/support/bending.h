@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-#include "floe/forces/moduli.h"
+#include "floe/beams/moduli.h"
 #include "support/static_solution.h"
 
 namespace floe::test {

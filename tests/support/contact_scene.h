@@ -2,8 +2,8 @@
 /// Scenes of loose blocks in contact, stepped from outside.
 #pragma once
 
-#include "floe/forces/contact.h"
-#include "solve/stable_step.h"
+#include "contact_force/contact.h"
+#include "explicit/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
 

@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
-#include "floe/build.h"
-#include "floe/solve/explicit.h"
-#include "solve/planar_motion.h"
+#include "explicit/explicit.h"
+#include "explicit/planar_motion.h"
+#include "scene/build.h"
 #include "support/frames.h"
 
 namespace floe::test {

@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "solve/stable_step.h"
+#include "explicit/stable_step.h"
 #include "support/dynamics.h"
 
 namespace floe::test {

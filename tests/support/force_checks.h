@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "floe/forces/force.h"
+#include "forces/force.h"
 #include "support/states.h"
 
 namespace floe::test {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "floe/build.h"
-#include "floe/solve/implicit.h"
+#include "implicit/implicit.h"
+#include "scene/build.h"
 #include "support/static_solution.h"
 
 namespace floe::test {

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "floe/base/audit.h"
+#include "base/audit.h"
 #include "floe/base/petsc.h"
 
 #ifdef __SANITIZE_ADDRESS__

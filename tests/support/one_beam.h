@@ -6,7 +6,7 @@
 #include <string>
 
 #include "floe/base/petsc.h"
-#include "floe/forces/fracture.h"
+#include "fracture/fracture.h"
 #include "support/frames.h"
 #include "support/states.h"
 

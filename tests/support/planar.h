@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "floe/lattice/partition.h"
 #include "floe/lattice/state.h"
+#include "lattice/partition.h"
 #include "support/random.h"
 
 namespace floe::test {

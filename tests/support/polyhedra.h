@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "floe/geometry/overlap.h"
+#include "geometry/overlap.h"
 #include "support/random.h"
 
 namespace floe::test {

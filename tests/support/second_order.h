@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "solve/liealpha.h"
+#include "implicit/liealpha.h"
 
 namespace floe::test {
 

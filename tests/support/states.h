@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "floe/lattice/partition.h"
 #include "floe/lattice/state.h"
+#include "lattice/partition.h"
 #include "support/random.h"
 
 namespace floe::test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "floe/build.h"
+#include "scene/build.h"
 
 namespace floe::test {
 

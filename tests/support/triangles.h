@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "floe/forces/moduli.h"
+#include "floe/beams/moduli.h"
 #include "floe/lattice/lattice.h"
 
 namespace floe::test {

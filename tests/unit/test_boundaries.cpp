@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "floe/base/given.h"
-#include "floe/solve/model.h"
+#include "model/model.h"
 #include "support/lattices.h"
 
 namespace floe {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "floe/forces/calibration.h"
+#include "floe/beams/calibration.h"
 #include "support/lattices.h"
 
 namespace floe::test {

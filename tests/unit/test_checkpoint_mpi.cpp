@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "floe/build.h"
-#include "floe/solve/checkpoint.h"
+#include "run/checkpoint.h"
+#include "scene/build.h"
 #include "support/lattices.h"
 
 namespace floe::test {

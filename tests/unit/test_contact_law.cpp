@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "floe/contact/law.h"
+#include "contact/law.h"
 
 namespace floe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "floe/contact/contacts.h"
+#include "contact/contacts.h"
 #include "support/blocks.h"
 
 namespace floe {

@@ -4,10 +4,10 @@
 
 #include <Eigen/Geometry>
 
-#include "floe/forces/beam.h"
-#include "floe/forces/drag.h"
+#include "beams/beam.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "water/drag.h"
 
 namespace floe {
 namespace {

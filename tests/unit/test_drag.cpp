@@ -1,16 +1,16 @@
 // Drag of the water: the law itself, its energy, the mass of water that bodies take along.
 
-#include "floe/forces/drag.h"
+#include "water/drag.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "floe/forces/buoyancy.h"
-#include "floe/solve/model.h"
-#include "forces/immersion.h"
+#include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "water/buoyancy.h"
+#include "water/immersion.h"
 
 namespace floe {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "floe/base/given.h"
+#include "run/expected_cost.h"
 #include "scene/plan.h"
-#include "solve/expected_cost.h"
 
 namespace floe {
 namespace {

@@ -1,7 +1,7 @@
 // A lattice folded for want of memory comes back to the last bit.
 #include <gtest/gtest.h>
 
-#include "floe/lattice/folded.h"
+#include "lattice/folded.h"
 #include "support/lattices.h"
 
 namespace floe {

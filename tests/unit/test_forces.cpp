@@ -2,13 +2,13 @@
 // wrenches; ramps.
 #include <gtest/gtest.h>
 
+#include "beams/beam.h"
 #include "floe/base/petsc.h"
-#include "floe/forces/beam.h"
-#include "floe/forces/buoyancy.h"
-#include "floe/forces/dead_load.h"
-#include "floe/forces/gravity.h"
+#include "forces/dead_load.h"
+#include "forces/gravity.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "water/buoyancy.h"
 
 namespace floe {
 namespace {

@@ -9,12 +9,12 @@
 #include <numeric>
 
 #include "floe/base/petsc.h"
-#include "floe/forces/buoyancy.h"
-#include "floe/forces/dead_load.h"
-#include "floe/forces/gravity.h"
-#include "floe/solve/model.h"
+#include "forces/dead_load.h"
+#include "forces/gravity.h"
+#include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "water/buoyancy.h"
 
 namespace floe {
 namespace {

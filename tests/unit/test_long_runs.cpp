@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "solve/dynamic_run.h"
-#include "solve/leapfrog.h"
-#include "solve/liealpha.h"
+#include "explicit/leapfrog.h"
+#include "implicit/liealpha.h"
+#include "run/dynamic_run.h"
 #include "support/implicit_run.h"
 #include "support/lattices.h"
 

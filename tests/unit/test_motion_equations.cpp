@@ -1,10 +1,10 @@
 // The equations of motion: tangent against finite differences, start, prescribed unknowns, sizes.
-#include "solve/motion_equations.h"
+#include "implicit/motion_equations.h"
 
 #include <gtest/gtest.h>
 
-#include "floe/build.h"
-#include "solve/numbers.h"
+#include "run/numbers.h"
+#include "scene/build.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"

@@ -1,10 +1,10 @@
 // Options of the command line over a scene's, those of the environment, and PETSc's.
 #include <gtest/gtest.h>
 
+#include "base/environment.h"
+#include "base/spelling.h"
 #include "floe/base/command_line.h"
-#include "floe/base/environment.h"
 #include "floe/base/options.h"
-#include "floe/base/spelling.h"
 #include "support/scene_options.h"
 
 namespace floe {

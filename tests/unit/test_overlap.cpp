@@ -8,7 +8,7 @@
 #include <cmath>
 #include <list>
 
-#include "floe/contact/separation.h"
+#include "contact/separation.h"
 #include "support/polyhedra.h"
 #include "support/record.h"
 

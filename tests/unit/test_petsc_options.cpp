@@ -11,9 +11,9 @@
 #include <string>
 
 #include "base/option_names.h"
+#include "explicit/leapfrog.h"
 #include "floe/base/petsc.h"
-#include "solve/leapfrog.h"
-#include "solve/liealpha.h"
+#include "implicit/liealpha.h"
 #include "support/implicit_run.h"
 
 namespace floe::test {

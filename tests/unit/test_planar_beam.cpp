@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "forces/beam_planar.h"
-#include "forces/beam_spatial.h"
+#include "beams/beam_planar.h"
+#include "beams/beam_spatial.h"
 #include "support/planar.h"
 #include "support/states.h"
 

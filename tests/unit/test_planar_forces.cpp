@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "floe/base/petsc.h"
-#include "floe/forces/dead_load.h"
-#include "floe/forces/drag.h"
-#include "floe/solve/model.h"
+#include "forces/dead_load.h"
+#include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
 #include "support/planar.h"
+#include "water/drag.h"
 
 namespace floe {
 namespace {

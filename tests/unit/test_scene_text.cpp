@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "floe/base/scene_text.h"
+#include "base/scene_text.h"
 #include "support/scene_options.h"
 
 namespace floe {

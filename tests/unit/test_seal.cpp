@@ -8,10 +8,10 @@
 #include <sstream>
 #include <string>
 
-#include "floe/base/files.h"
-#include "floe/base/hdf5.h"
+#include "base/files.h"
+#include "base/hdf5.h"
+#include "base/seal.h"
 #include "floe/base/petsc.h"
-#include "floe/base/seal.h"
 
 namespace floe::test {
 namespace {

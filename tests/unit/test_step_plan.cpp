@@ -1,5 +1,5 @@
 // How long implicit steps are: equal parts of the way to what is due, kept while they serve.
-#include "solve/step_plan.h"
+#include "implicit/step_plan.h"
 
 #include <gtest/gtest.h>
 

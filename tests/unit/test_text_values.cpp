@@ -4,9 +4,9 @@
 #include <array>
 #include <string>
 
+#include "base/scene_text.h"
 #include "floe/base/command_line.h"
 #include "floe/base/petsc.h"
-#include "floe/base/scene_text.h"
 #include "floe/lattice/lattice.h"
 
 namespace {

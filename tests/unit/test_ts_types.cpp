@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "explicit/leapfrog.h"
 #include "floe/base/petsc.h"
-#include "solve/leapfrog.h"
-#include "solve/liealpha.h"
+#include "implicit/liealpha.h"
 #include "support/implicit_run.h"
 #include "support/second_order.h"
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "floe/forces/contact.h"
-#include "floe/solve/explicit.h"
-#include "solve/stable_step.h"
+#include "contact_force/contact.h"
+#include "explicit/explicit.h"
+#include "explicit/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"

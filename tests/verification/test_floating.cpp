@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "floe/build.h"
+#include "scene/build.h"
 #include "support/box.h"
 #include "support/dynamics.h"
 #include "support/record.h"

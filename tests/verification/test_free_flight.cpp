@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solve/stable_step.h"
+#include "explicit/stable_step.h"
 #include "support/flying_bar.h"
 #include "support/record.h"
 

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <vector>
 
-#include "floe/build.h"
-#include "floe/forces/fracture.h"
-#include "floe/solve/explicit.h"
+#include "explicit/explicit.h"
+#include "fracture/fracture.h"
+#include "scene/build.h"
 #include "support/blocks.h"
 #include "support/record.h"
 

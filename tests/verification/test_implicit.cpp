@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <string>
 
-#include "solve/motion_equations.h"
-#include "solve/numbers.h"
+#include "implicit/motion_equations.h"
+#include "run/numbers.h"
 #include "support/explicit_run.h"
 #include "support/flying_bar.h"
 #include "support/implicit_run.h"

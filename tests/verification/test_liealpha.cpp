@@ -15,7 +15,7 @@
 
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
-#include "solve/liealpha.h"
+#include "implicit/liealpha.h"
 #include "support/implicit_run.h"
 #include "support/record.h"
 #include "support/second_order.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/stable_step.h"
+#include "explicit/stable_step.h"
 #include "support/dynamics.h"
 #include "support/record.h"
 #include "support/tension.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solve/stable_step.h"
+#include "explicit/stable_step.h"
 #include "support/dynamics.h"
 #include "support/random.h"
 #include "support/record.h"

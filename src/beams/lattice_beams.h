@@ -1,0 +1,220 @@
+/// \file
+/// The beams of a part in blocks of lanes, as a force.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/simd.h"
+#include "beams/beam.h"
+
+namespace floe {
+
+/// Loops over the beams of a part; space, kinematics, frames and damping are chosen outside them.
+/// \tparam Beam  SpatialLanes or PlanarLanes: one beam on records of its space, and in lanes
+template <class Beam, bool damped>
+class LatticeBeams : public BeamForce<typename Beam::Space> {
+ public:
+  using Pointwise = Beam;
+  using Space = typename Beam::Space;
+  using Block = typename Beam::Block;
+  using DashpotBlock = typename Beam::DashpotBlock;
+  using Constants = typename Beam::Constants;
+  using Dashpots = typename Beam::Dashpots;
+
+  LatticeBeams(const Part& part, const BeamOptions& options)
+      : part_(part),
+        blocks_((part.beams.bodies.size() + lanes - 1) / lanes, Block{}),
+        dashpots_(damped ? blocks_.size() : 0, DashpotBlock{}),
+        stiffness_(static_cast<std::size_t>(part.local)) {
+    // The last block is filled up with beams that have no stiffness, on body 0.
+    for (std::size_t m = part.beams.bodies.size(); m < blocks_.size() * lanes; ++m)
+      blocks_[m / lanes].set(m % lanes, Beam::none());
+    for (std::int32_t m = 0; m < part.beams.size(); ++m) set(m, options);
+  }
+
+  std::string_view name() const override { return "beam"; }
+
+  /// flatten: everything of the kernel in one body, or lanes travel through memory between its
+  /// functions.
+  [[gnu::flatten]] void add(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+    const double* records = state.records.data();
+    double* values = wrenches.values.data();
+    Lanes lost(0.0);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const std::size_t soon = std::min(b + blocks_ahead, blocks_.size() - 1);
+      prefetch(blocks_[soon]);
+      if constexpr (damped) prefetch(dashpots_[soon]);
+      lost +=
+          Beam::template add<damped>(blocks_[b], damped ? &dashpots_[b] : nullptr, records, values);
+    }
+    if constexpr (damped) power_lost_ = reduce(lost);
+  }
+
+  bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
+    typename Tangent<Space>::PairBlock block;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      // Without symmetry the dashpots' force is followed as the beam turns, which is little.
+      const Dashpots c = damped ? dashpots(m) : Dashpots{};
+      const Dashpots* followed = damped && !tangent.symmetric() ? &c : nullptr;
+      Beam::tangent(constants(m), followed, record(state, i), record(state, j), tangent.symmetric(),
+                    block);
+      tangent.add_pair(i, j, block);
+    });
+    return true;
+  }
+
+  void add_damping(const State<Space>& state, Tangent<Space>& tangent) const override {
+    if constexpr (damped) {
+      typename Tangent<Space>::PairBlock block;
+      for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+        Beam::damping(constants(m), dashpots(m), record(state, i), record(state, j), block);
+        tangent.add_pair(i, j, block);
+      });
+    }
+  }
+
+  bool add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+    if constexpr (damped) {
+      for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+        const auto [force, moment_i, moment_j] =
+            Beam::damping_force(constants(m), dashpots(m), record(state, i), record(state, j));
+        floe::add(wrenches, static_cast<std::size_t>(i), force, -1.0 * moment_i);
+        floe::add(wrenches, static_cast<std::size_t>(j), -1.0 * force, -1.0 * moment_j);
+      });
+    }
+    return damped;
+  }
+
+  double stiffness_bound(std::int32_t body) const override {
+    return stiffness_[static_cast<std::size_t>(body)];
+  }
+
+  void commit(const State<Space>&, double dt) override {
+    if constexpr (damped) {
+      take_losses(dt);
+      step_ = dt;
+    }
+  }
+
+  double power(const State<Space>&) const override { return -power_lost_; }
+  void take_work(double work) override { lost_ -= work; }
+
+  /// Of the stiffnesses that change with a beam's length, against the lighter of its bodies: k_n,
+  /// and k_s (l0/l)^2 + |N|/l across.
+  std::optional<double> fastest_rate(const State<Space>& state) const override {
+    if (Beam::Kernel::is_linear) return {};
+    double fastest2 = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      const Constants c = constants(m);
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      const Point3 &from = part_.bodies.position[a], &to = part_.bodies.position[b];
+      const Vec3<double> chord = Vec3<double>{to[0] - from[0], to[1] - from[1], to[2] - from[2]} +
+                                 (displacement(state, b) - displacement(state, a));
+      const double l = std::sqrt(dot(chord, chord)), stretch = c.l0 / l;
+      const double across =
+          Beam::shear_stiffness(c) * stretch * stretch + std::abs(c.kn * (l - c.l0)) / l;
+      fastest2 = std::max(
+          fastest2, std::max(c.kn, across) / std::min(part_.bodies.mass[a], part_.bodies.mass[b]));
+    });
+    return std::sqrt(fastest2);
+  }
+
+  void report(const State<Space>& state, Columns& columns) const override {
+    columns.add("energy_strain", stored(state));
+    if constexpr (damped) columns.add("energy_damping", lost_by_now());
+  }
+
+  void remember(Memory& checkpoint) override {
+    if constexpr (damped) {
+      checkpoint.share("energy_damping", lost_);
+      checkpoint.common("step", step_);
+    }
+  }
+
+  std::int64_t folded(const State<Space>& state) const override {
+    std::int64_t count = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      count += Beam::is_folded(constants(m), record(state, i), record(state, j));
+    });
+    return count;
+  }
+
+  std::vector<BeamSection> sections(const State<Space>& state) const override {
+    std::vector<BeamSection> all;
+    all.reserve(part_.beams.bodies.size());
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      all.push_back(Beam::section(constants(m), record(state, i), record(state, j)));
+    });
+    return all;
+  }
+
+ protected:
+  /// Energy of the beams that this rank counts [J].
+  virtual double stored(const State<Space>& state) const {
+    double energy = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      if (part_.counts_here[static_cast<std::size_t>(m)])
+        energy += Beam::energy(constants(m), record(state, i), record(state, j));
+    });
+    return energy;
+  }
+
+  /// What dashpots have lost at the time of the last evaluation [J]. Leapfrog's velocities lag half
+  /// a step: at t_n the sum has the powers up to n - 3/2, and what is due of the last one makes the
+  /// balance of second order (summation by parts of the power v_{n+1/2} C (v_{n-1/2} + v_{n+1/2})/2
+  /// that the scheme loses between t_n and t_n+1). The same share of the very first power is left
+  /// out.
+  virtual double lost_by_now() const { return lost_ + 0.75 * step_ * power_lost_; }
+  /// A step of dt follows the last evaluation.
+  virtual void take_losses(double dt) { lost_ += (step_ > 0 ? dt : 0.25 * dt) * power_lost_; }
+
+  /// Constants stream through once per step; fetched this far ahead they cost 15 ns per beam and
+  /// not 17.
+  static constexpr std::size_t blocks_ahead = 4;
+
+  void set(std::int32_t m, const BeamOptions& options) {
+    const auto k = static_cast<std::size_t>(m);
+    Block& block = blocks_[k / lanes];
+    const Constants c = Beam::make(part_, m, options.shear);
+    block.set(k % lanes, c);
+    const auto [i, j] = part_.beams.bodies[k];
+    block.i[k % lanes] = i;
+    block.j[k % lanes] = j;
+    for (const std::int32_t body : {i, j})
+      stiffness_[static_cast<std::size_t>(body)] += std::max(c.kn, Beam::shear_stiffness(c));
+    if constexpr (damped) {
+      const BeamStiffness springs = beam_stiffness(part_.beams, m, options.shear);
+      dashpots_[k / lanes].set(k % lanes, beam_damping(part_, m, springs, options),
+                               part_.counts_here[k] != 0);
+    }
+  }
+  Constants constants(std::int32_t m) const {
+    return blocks_[static_cast<std::size_t>(m) / lanes].get(static_cast<std::size_t>(m) % lanes);
+  }
+  Dashpots dashpots(std::int32_t m) const {
+    return dashpots_[static_cast<std::size_t>(m) / lanes].get(static_cast<std::size_t>(m) % lanes);
+  }
+  static const double* record(const State<Space>& state, std::int32_t body) {
+    return state.record(static_cast<std::size_t>(body));
+  }
+  void for_each(auto&& visit) const {
+    for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
+      const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+      visit(m, i, j);
+    }
+  }
+
+  const Part& part_;
+  std::vector<Block> blocks_;
+  std::vector<DashpotBlock> dashpots_;
+  std::vector<double> stiffness_;
+  mutable double power_lost_ = 0;  ///< in the last evaluation [W]; a by-product, no history
+  double lost_ = 0;                ///< [J]
+  double step_ = 0;                ///< the last one [s]
+};
+
+}  // namespace floe

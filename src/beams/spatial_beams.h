@@ -1,0 +1,36 @@
+/// \file
+/// The spatial beams of a part in blocks of lanes, as a force.
+#pragma once
+
+#include "beams/beam_blocks.h"
+#include "beams/beam_spatial.h"
+#include "beams/lattice_beams.h"
+
+namespace floe {
+
+/// A spatial beam in lanes.
+template <Kinematics kinematics, template <class> class Frame>
+struct SpatialLanes : SpatialBeam<kinematics> {
+  using Block = BeamBlock<Frame>;
+  using DashpotBlock = floe::DashpotBlock;
+  template <bool damped>
+  [[gnu::always_inline]] static Lanes add(const Block& block, const DashpotBlock* dashpots,
+                                          const double* records, double* wrenches) {
+    return add_block<kinematics, damped>(block, dashpots, records, wrenches);
+  }
+};
+
+template <Kinematics kinematics, bool damped, template <class> class Frame>
+using SpatialBeams = LatticeBeams<SpatialLanes<kinematics, Frame>, damped>;
+
+/// Whether all of a part's beams are flat. Collective: forces must not depend on how bodies are
+/// shared.
+inline bool all_flat(const Part& part) {
+  int flat = 1;
+  for (std::int32_t m = 0; m < part.beams.size() && flat == 1; ++m)
+    flat = is_flat(part.bodies, part.beams, m);
+  MPI_Allreduce(MPI_IN_PLACE, &flat, 1, MPI_INT, MPI_MIN, part.comm);
+  return flat == 1;
+}
+
+}  // namespace floe

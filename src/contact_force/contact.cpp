@@ -1,0 +1,267 @@
+#include "contact_force/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/all_gathered.h"
+#include "contact_force/contact_checks.h"
+#include "contact_force/contact_exchange.h"
+#include "contact_force/contact_sharing.h"
+#include "contact_force/contact_watch.h"
+#include "floe/base/petsc.h"
+
+namespace floe {
+namespace {
+
+std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int32_t, 2>> pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+class ContactOfModel final : public Contact {
+ public:
+  ContactOfModel(const Part& part, const Lattice& lattice, const ContactOptions& options,
+                 std::vector<Obstacle> obstacles)
+      : part_(part),
+        contacts_(lattice.shapes, lattice.bodies.mass, sorted(lattice.beams.bodies), options,
+                  std::move(obstacles)),
+        exchange_(part),
+        sharing_(part.comm),
+        watch_(contacts_, part.global_bodies),
+        here_(static_cast<std::size_t>(part.global_bodies), 0),
+        peak_(contacts_.obstacles().size()),
+        impulse_(contacts_.obstacles().size()),
+        rates_(contacts_.rates()),
+        possible_(contacts_.pieces() > 1 || lattice.beams.bodies.empty()) {
+    for (std::int32_t b = 0; b < part.owned; ++b)
+      here_[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])] = 1;
+  }
+
+  std::string_view name() const override { return "contact"; }
+
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+    if (contacts_.changed() || !watch_.started() || watch_.is_due(state, part_, contacts_, dt_))
+      build(state);
+    exchange_.gather(state, bodies_);
+    std::fill(mine_.begin(), mine_.end(), ContactWrench{});
+    contacts_.place(bodies_, state.time);
+    sharing_.evaluate(contacts_, mine_);
+    if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
+    const std::vector<std::int32_t>& local = exchange_.local();
+    for (std::size_t k = 0; k < local.size(); ++k) {
+      if (local[k] < 0) continue;
+      double* w = wrenches.of(static_cast<std::size_t>(local[k]));
+      const ContactWrench& c = mine_[k];
+      w[0] += c.force.x, w[1] += c.force.y, w[2] += c.force.z;
+      w[3] += c.moment.x, w[4] += c.moment.y, w[5] += c.moment.z;
+    }
+  }
+  bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
+  double stiffness_bound(std::int32_t body) const override {
+    return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
+  }
+  Rates own_rates() const override {
+    return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
+  }
+
+  const std::string& overlap_at_start() const override { return overlap_at_start_; }
+  StepLimit step_limit(const State<Spatial>& state) const override {
+    return travel_limit(contacts_, part_, state);
+  }
+  std::vector<Remark> take_remarks() override {
+    std::vector<Remark> remarks = remarks_.take(contacts_);
+    if (!overlap_told_ && !overlap_at_start_.empty() && rank(part_.comm) == 0)
+      remarks.push_back({0, overlap_at_start_});
+    overlap_told_ = true;
+    return remarks;
+  }
+
+  /// At rest; the run makes its own list. Collective.
+  void check_start() {
+    const State<Spatial> rest(static_cast<std::size_t>(part_.local));
+    Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
+    add(rest, none);
+    watch_ = ContactWatch(contacts_, part_.global_bodies);
+    refuse_enclosed(contacts_, part_.comm);
+    overlap_at_start_ = check_overlaps(contacts_, part_.comm);
+  }
+
+  void commit(const State<Spatial>& state, double dt) override {
+    exchange_.gather(state, bodies_);
+    contacts_.commit(bodies_, dt);
+    watch_.went(state, dt);
+    dt_ = dt;
+    watch_obstacles(dt);
+  }
+
+  void release(std::span<const std::array<std::int32_t, 2>> pairs) override {
+    std::vector<std::int32_t> mine;
+    for (const auto& pair : pairs) mine.insert(mine.end(), pair.begin(), pair.end());
+    const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
+    for (std::size_t k = 0; k + 1 < all.size(); k += 2) contacts_.release({all[k], all[k + 1]});
+  }
+
+  void report(const State<Spatial>&, Columns& columns) const override {
+    const ContactEnergies e = contacts_.energies();
+    columns.add("energy_contact", e.stored);
+    columns.add("energy_contact_viscous", e.viscous);
+    columns.add("energy_friction", e.friction);
+    columns.add("energy_crushing", e.crushing);
+    bool moving = false;
+    for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
+    if (moving) columns.add("energy_external", e.external);
+    columns.add("contacts", static_cast<double>(contacts_.touching()));
+    columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosed().size()));
+    const bool first = rank(part_.comm) == 0;  // of what all ranks know alike
+    for (std::size_t k = 0; k < contacts_.obstacles().size(); ++k) {
+      const std::string& obstacle = contacts_.obstacles()[k].name;
+      const ContactWrench& w = contacts_.on_obstacle(k);
+      put(columns, obstacle + "_force", w.force);
+      put(columns, obstacle + "_moment", w.moment);
+      put(columns, obstacle + "_peak_force", first ? peak_[k] : Vec3<double>{});
+      const double share = first && time_ > 0 ? 1 / time_ : 0.0;
+      put(columns, obstacle + "_mean_force", share * impulse_[k]);
+    }
+  }
+
+  void remember(Memory& memory) override;
+
+ private:
+  static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
+    columns.add(name + "_x", v.x);
+    columns.add(name + "_y", v.y);
+    columns.add(name + "_z", v.z);
+  }
+
+  bool anywhere(bool here) const {
+    int any = here ? 1 : 0;
+    if (size(part_.comm) > 1) MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, part_.comm);
+    return any != 0;
+  }
+
+  void build(const State<Spatial>& state) const {
+    contacts_.build(exchange_.poses(state), here_, state.time);
+    possible_ = possible_ || contacts_.pieces() > 1;
+    if (!possible_) possible_ = anywhere(contacts_.obstacle_listed());
+    if (!possible_) near_ = anywhere(contacts_.listed() > 0);
+    sharing_.plan(contacts_);
+    exchange_.choose(contacts_.involved());
+    bodies_.resize(contacts_.involved().size());
+    mine_.resize(bodies_.size());
+    watch_.start(state, part_.owned);
+  }
+
+  /// Peak and impulse of the forces on obstacles; with several ranks a sum over them per step.
+  void watch_obstacles(double dt) {
+    const std::size_t n = peak_.size();
+    if (n == 0) return;
+    std::vector<Vec3<double>>& forces = forces_;
+    forces.clear();
+    for (std::size_t k = 0; k < n; ++k) forces.push_back(contacts_.on_obstacle(k).force);
+    if (size(part_.comm) > 1)
+      MPI_Allreduce(MPI_IN_PLACE, forces.data(), static_cast<int>(3 * n), MPI_DOUBLE, MPI_SUM,
+                    part_.comm);
+    for (std::size_t k = 0; k < n; ++k) {
+      if (dot(forces[k], forces[k]) > dot(peak_[k], peak_[k])) peak_[k] = forces[k];
+      impulse_[k] = impulse_[k] + dt * forces[k];
+    }
+    time_ += dt;
+  }
+
+  const Part& part_;
+  mutable Contacts contacts_;
+  mutable ContactExchange exchange_;
+  mutable ContactSharing sharing_;
+  mutable ContactWatch watch_;
+  mutable std::vector<MovingPose> bodies_;
+  mutable std::vector<ContactWrench> mine_;
+  std::vector<std::uint8_t> here_;
+  std::vector<Vec3<double>> peak_, impulse_, forces_;
+  Contacts::Rates rates_;
+  /// Whether the stable step must bear contacts: with more than one piece or a lone body (no beam
+  /// keeps its step short), and once an obstacle has come near or bodies of the one piece have met.
+  mutable bool possible_;
+  mutable bool near_ = false;  ///< pairs are listed, on some rank
+  double dt_ = 0, time_ = 0;
+  std::string overlap_at_start_;
+  bool overlap_told_ = false;
+  ContactRemarks remarks_;
+};
+
+/// The list of pairs is made anew, from the state once contacts are possible: then it does not show
+/// in the results; what a pair remembers goes with it.
+void ContactOfModel::remember(Memory& memory) {
+  for (std::size_t k = 0; k < contacts_.sums().size(); ++k) {
+    // The last step and whether the start is known are no sums.
+    double& value = contacts_.sums()[k];
+    const std::string key = "sum_" + std::to_string(k);
+    k == 4 || k == 6 ? memory.common(key, value) : memory.share(key, value);
+  }
+  memory.common("dt", dt_);
+  memory.common("time", time_);
+  std::vector<double> rows = contacts_.history(), pairs;
+  if (!memory.loading()) {
+    const std::vector<double> all = all_gathered(rows, MPI_DOUBLE, part_.comm);
+    // In list order, whatever the ranks.
+    std::vector<std::array<double, Contacts::width>> in_order(all.size() / Contacts::width);
+    for (std::size_t k = 0; k < in_order.size(); ++k)
+      std::copy_n(&all[k * Contacts::width], Contacts::width, in_order[k].begin());
+    std::sort(in_order.begin(), in_order.end());
+    rows.clear();
+    for (const auto& row : in_order) rows.insert(rows.end(), row.begin(), row.end());
+    for (const auto& [a, b] : contacts_.released())
+      pairs.insert(pairs.end(), {static_cast<double>(a), static_cast<double>(b)});
+  }
+  bool changed = contacts_.changed();
+  memory.common("changed", changed);
+  memory.common("possible", possible_);
+  ContactWatch watch = watch_;
+  if (!possible_) watch.remember(memory, part_);  // what is listed decides when it becomes so
+  memory.common("pairs", rows);
+  memory.common("released", pairs);
+  for (std::size_t k = 0; k < peak_.size(); ++k) {
+    const std::string& obstacle = contacts_.obstacles()[k].name;
+    for (auto& [key, vector] :
+         {std::pair<std::string, Vec3<double>*>{"peak_", &peak_[k]}, {"impulse_", &impulse_[k]}}) {
+      memory.common(key + obstacle + "_x", vector->x);
+      memory.common(key + obstacle + "_y", vector->y);
+      memory.common(key + obstacle + "_z", vector->z);
+    }
+  }
+  if (!memory.loading()) return;
+  overlap_told_ = true;  // when the run began
+  for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
+    contacts_.release(
+        {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
+  contacts_.restore(rows, changed);
+  watch_ = ContactWatch(contacts_, part_.global_bodies);
+  if (possible_ || changed) return;
+  build(watch.at_build(part_));  // the list that the run had
+  watch_ = watch;
+}
+
+void check_shapes(const Lattice& lattice) {
+  if (lattice.shapes.empty())
+    throw InputError("forces: contact needs bodies with a shape; the lattice file has no /shapes");
+  for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
+    const double size = std::cbrt(volume_properties(lattice.shapes, b).volume);
+    constexpr double rounding = 1e-6;
+    if (concavity(lattice.shapes, b) > rounding * size)
+      throw InputError("forces: contact needs convex bodies; body " + std::to_string(b) +
+                       " of the lattice is not convex, or a face of it is not plane");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
+                                      const ContactOptions& options,
+                                      std::vector<Obstacle> obstacles) {
+  check_shapes(lattice);
+  auto contact = std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+  contact->check_start();
+  return contact;
+}
+
+}  // namespace floe

@@ -1,0 +1,173 @@
+#include "explicit/explicit_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "base/format.h"
+#include "base/ranks.h"
+
+namespace floe {
+namespace {
+
+/// Of an evaluation of all forces: what a step takes beside it.
+constexpr double moving = 0.25;
+
+}  // namespace
+
+template <class Space>
+ExplicitRun<Space>::ExplicitRun(std::string_view type, Model<Space>& model,
+                                const ExplicitOptions& options, const Observer<Space>& observer)
+    : DynamicRun<Space>("explicit", type, model, options, observer), explicit_options_(options) {
+  this->show_every(50);
+}
+
+template <class Space>
+StableStep ExplicitRun<Space>::look() {
+  const double began = MPI_Wtime();
+  StableStep stable = find_stable_step();
+  seconds_an_evaluation_ = (MPI_Wtime() - began) / std::max(stable.evaluations, 1);
+  if (const auto limit = step_limit(); limit.dt < stable.dt) {
+    stable.dt = limit.dt;
+    stable.limit = limit.reason;
+  }
+  evaluations_ = stable.evaluations;
+  last_look_ = this->done();
+  last_stable_ = stable.dt;
+  last_rate_ = fastest_rate();
+  last_own_ = own_stiffness();
+  return stable;
+}
+
+template <class Space>
+void ExplicitRun<Space>::choose_step() {
+  const StableStep stable = look();
+  this->result().stable_dt = stable.dt;
+  this->result().limited_by = stable.limit;
+  const double given = this->options().dt;
+  if (given > stable.dt && !explicit_options_.allow_unstable)
+    throw InputError(this->dt_key() + ": " + text(given) + " must be <= " + text(stable.dt) +
+                     " [s], the stable step, limited by the " + stable.limit +
+                     " (time: allow_unstable: true takes it all the same)");
+  const double wanted = given > 0 ? given : explicit_options_.safety * stable.dt;
+  if (!std::isfinite(wanted))
+    throw InputError("time: dt: auto finds no force that limits the step; give one");
+  this->plan(wanted);
+}
+
+/// Sum of the forces' own fastest rates, of all ranks' bodies; 0 if none has any.
+template <class Space>
+double ExplicitRun<Space>::fastest_rate() {
+  std::vector<double> rates;
+  for (const auto& force : this->model().forces()) {
+    if (const auto rate = force->fastest_rate(this->state())) rates.push_back(*rate);
+  }
+  if (rates.empty()) return 0;
+  largest_over_ranks(rates, this->model().part().comm);
+  return std::accumulate(rates.begin(), rates.end(), 0.0);
+}
+
+/// The shortest of the steps that forces limit for other reasons than stability. Collective.
+template <class Space>
+typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
+  typename Force<Space>::StepLimit least;
+  for (const auto& force : this->model().forces()) {
+    if (auto limit = force->step_limit(this->state()); limit.dt < least.dt) least = limit;
+  }
+  const MPI_Comm comm = this->model().part().comm;
+  struct {
+    double dt;
+    int rank;
+  } mine{least.dt, rank(comm)}, all{};
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
+  auto length = static_cast<int>(least.reason.size());
+  MPI_Bcast(&length, 1, MPI_INT, all.rank, comm);
+  least.dt = all.dt;
+  least.reason.resize(static_cast<std::size_t>(length));
+  MPI_Bcast(least.reason.data(), length, MPI_CHAR, all.rank, comm);
+  return least;
+}
+
+/// Sum of the bounds that forces give themselves [1/s^2].
+template <class Space>
+double ExplicitRun<Space>::own_stiffness() {
+  double sum = 0;
+  for (const auto& force : this->model().forces()) sum += force->own_rates().stiffness;
+  return sum;
+}
+
+/// The least stable step that dt is taken with.
+template <class Space>
+double ExplicitRun<Space>::needed() const {
+  return this->options().dt > 0 ? this->dt() : this->dt() / (0.5 * (1 + explicit_options_.safety));
+}
+
+template <class Space>
+bool ExplicitRun<Space>::look_is_due() {
+  if (explicit_options_.allow_unstable || this->done() == 0) return false;
+  if (own_stiffness() > last_own_) return true;
+  // A step costs about an evaluation, and the rates less than half of it.
+  constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
+  if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
+  if (!this->sampled() && this->done() % now_and_then != 0) return false;
+  if (step_limit().dt < needed()) return true;
+  const double rate = fastest_rate();
+  return rate > last_rate_ && !(last_stable_ * (last_rate_ / rate) >= needed());
+}
+
+template <class Space>
+bool ExplicitRun<Space>::keep_step_stable(TS ts) {
+  if (!look_is_due()) return true;
+  const StableStep stable = look();
+  if (stable.dt < this->result().stable_dt) {
+    this->result().stable_dt = stable.dt;
+    this->result().limited_by = stable.limit;
+  }
+  if (needed() <= stable.dt) return true;
+  if (this->options().dt > 0) {
+    this->give_up(
+        "the stable step has fallen to " + text(stable.dt) + " s, below dt, at time " +
+        text(this->time()) + " s, limited by the " + stable.limit +
+        " (time: dt: auto would take shorter steps from there on; allow_unstable: true goes on "
+        "all the same)");
+    return false;
+  }
+  if (!(this->options().end / stable.dt <= this->options().most_steps)) {
+    this->give_up("the stable step has fallen to " + text(stable.dt) + " s at time " +
+                  text(this->time()) + " s, limited by the " + stable.limit +
+                  ": more steps to time: end than are made (limit: steps)");
+    return false;
+  }
+  const double before = this->dt();
+  this->replan(ts, explicit_options_.safety * stable.dt);
+  step_changed(ts, before);
+  return true;
+}
+
+template <class Space>
+void ExplicitRun<Space>::add_to(RunPlan& plan) const {
+  if (!(seconds_an_evaluation_ > 0)) return;  // a restart has not looked
+  plan.seconds_a_step = evaluations_a_step() * (1 + moving) * seconds_an_evaluation_;
+  plan.measured = std::to_string(evaluations_) + " evaluations of the forces";
+}
+
+template <class Space>
+void ExplicitRun<Space>::remember_own(Memory& memory) {
+  std::string stepper = this->result().stepper;
+  memory.common("stepper", stepper);
+  if (stepper != this->result().stepper)
+    throw OtherRun("checkpoint: restart: '" + this->options().checkpoint.restart +
+                   "' is of steps by '" + stepper + "', this run's are by '" +
+                   this->result().stepper + "'");
+  memory.common("last_look", last_look_);
+  memory.common("look_evaluations", evaluations_);
+  memory.common("look_stable_dt", last_stable_, not_negative_or_infinite);
+  memory.common("look_rate", last_rate_, not_negative);
+  memory.common("look_own_stiffness", last_own_, not_negative);
+}
+
+template class ExplicitRun<Spatial>;
+template class ExplicitRun<Planar>;
+
+}  // namespace floe

@@ -1,0 +1,500 @@
+/// \file
+/// Beams that crack, as a force: the beams of spatial_beams.h with strengths and damage.
+#pragma once
+
+#include <cmath>
+
+#include "base/ranks.h"
+#include "beams/spatial_beams.h"
+#include "floe/base/petsc.h"
+#include "fracture/breakable_blocks.h"
+#include "fracture/fracture.h"
+
+namespace floe {
+
+/// Strengths of a part's local beams, Weibull's scatter included. Collective.
+std::vector<Strength<double>> strengths(const Part& part, const FractureOptions& options);
+
+/// Collects what the ranks count of their cracks, and spreads them again. \param cracks  with beams
+/// as global indices. Collective.
+void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks);
+
+/// The beam with the largest value over all ranks: the value and the global index, of equal ones
+/// the first. Collective.
+struct Worst {
+  double value;
+  int beam;
+};
+Worst worst_of(const Worst& mine, MPI_Comm comm);
+
+template <Kinematics kinematics, bool damped, template <class> class Frame>
+class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, public Fracture {
+  using Base = SpatialBeams<kinematics, damped, Frame>;
+  using Base::blocks_, Base::dashpots_, Base::part_, Base::constants, Base::for_each, Base::record;
+  using typename Base::Pointwise;
+
+ public:
+  BreakableBeams(const Part& part, const BeamOptions& beams, const FractureOptions& options)
+      : Base(part, beams),
+        beams_(beams),
+        options_(options),
+        strengths_(blocks_.size(), StrengthBlock{}),
+        damaged_(blocks_.size(), 0),
+        crack_of_(part.beams.bodies.size(), none),
+        viscous_(damped ? blocks_.size() : 0),
+        viscous_now_(viscous_) {
+    const auto all = strengths(part, options);
+    for (std::size_t m = 0; m < all.size(); ++m) strengths_[m / lanes].set(m % lanes, all[m]);
+  }
+
+  bool has_history() const override { return true; }
+
+  /// Every beam goes through the same instructions, whatever its neighbours in a block: a block
+  /// that gives way is added again as what damage leaves of it.
+  [[gnu::flatten]] void add(const State<Spatial>& state,
+                            Wrenches<Spatial>& wrenches) const override {
+    growing_.clear();
+    const double* records = state.records.data();
+    double* values = wrenches.values.data();
+    Lanes lost(0.0), lost_before(0.0);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const std::size_t soon = std::min(b + Base::blocks_ahead, blocks_.size() - 1);
+      prefetch(blocks_[soon]);
+      prefetch(strengths_[soon]);
+      if constexpr (damped) {
+        prefetch(dashpots_[soon]);
+        prefetch(viscous_[soon]);
+      }
+      const BeamBlock<Frame>* block = &blocks_[b];
+      const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
+      const StrengthBlock* strength = &strengths_[b];
+      const auto take_softened = [&] {
+        soften(b, state);
+        block = &soft_block_, dashpots = &soft_dashpots_, strength = &unbreakable_;
+      };
+      if (damaged_[b] != 0) take_softened();
+      bool again = false;
+      do {
+        again = false;
+        const auto give_way = [&] {
+          take_softened();
+          again = true;
+          return Lanes(0.0);
+        };
+        lost += add_block<kinematics, damped>(
+            *block, dashpots, records, values,
+            BreakableBlock{*strength, give_way, damped ? &viscous_[b] : nullptr,
+                           damped ? &viscous_now_[b] : nullptr, &lost_before});
+      } while (again);
+    }
+    if constexpr (damped) {
+      this->power_lost_ = reduce(lost);
+      power_before_ = reduce(lost_before);
+    }
+  }
+
+  /// With the damage of the last commit: the secant where a beam softens.
+  bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    Tangent<Spatial>::PairBlock block;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      if (broken(m)) return;
+      Pointwise::tangent(present(m, state), nullptr, record(state, i), record(state, j),
+                         tangent.symmetric(), block);
+      tangent.add_pair(i, j, block);
+    });
+    return true;
+  }
+
+  /// Takes over the damage of the last evaluation (dynamics) or of advance() (statics).
+  void commit(const State<Spatial>& state, double dt) override {
+    Base::commit(state, dt);
+    for (const Growth& g : growing_) take(g);
+    growing_.clear();
+    dt_ = dt;
+    released_.clear();
+    for (const std::int32_t m : newly_broken_) {
+      const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+      released_.push_back(
+          {part_.global[static_cast<std::size_t>(i)], part_.global[static_cast<std::size_t>(j)]});
+    }
+    newly_broken_.clear();
+    if (!options_.dynamic) {
+      kept_ = cracks_;
+      kept_energy_ = dissipated_;
+    }
+  }
+
+  void report(const State<Spatial>& state, Columns& columns) const override {
+    Base::report(state, columns);
+    double fracture = dissipated_;
+    std::array<double, 3> counts{};  // damaged, broken, brittle
+    const auto count = [&](const Crack& c, double sign) {
+      counts[0] += sign;
+      if (c.broken()) counts[1] += sign;
+      if (c.brittle()) counts[2] += sign;
+    };
+    for (const Crack& c : cracks_) {
+      if (counts_here(c.beam)) count(c, 1);
+    }
+    // What the last evaluation has found counts, although it is history after the step only.
+    for (const Growth& g : growing_) {
+      if (!counts_here(g.crack.beam)) continue;
+      fracture += g.dissipated;
+      if (const Crack* before = crack(g.crack.beam)) count(*before, -1);
+      count(g.crack, 1);
+    }
+    columns.add("energy_fracture", fracture);
+    columns.add("beams_damaged", counts[0]);
+    columns.add("beams_broken", counts[1]);
+    columns.add("beams_brittle", counts[2]);
+  }
+
+  void remember(Memory& checkpoint) override {
+    Base::remember(checkpoint);
+    checkpoint.share("energy_fracture", dissipated_);
+    checkpoint.common("last_dt", dt_);
+    std::vector<Crack> mine;
+    for (const Crack& c : cracks_) {
+      if (!counts_here(c.beam)) continue;
+      mine.push_back(c);
+      mine.back().beam = part_.global_beam[static_cast<std::size_t>(c.beam)];
+    }
+    remember_cracks(checkpoint, part_, mine);
+    if constexpr (damped) remember_dashpots(checkpoint);
+    if (checkpoint.loading()) set_cracks(std::move(mine));
+  }
+
+  std::int64_t folded(const State<Spatial>& state) const override {
+    std::int64_t count = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      count += !broken(m) && Pointwise::is_folded(constants(m), record(state, i), record(state, j));
+    });
+    return count;
+  }
+
+  std::vector<BeamSection> sections(const State<Spatial>& state) const override {
+    std::vector<BeamSection> all;
+    all.reserve(part_.beams.bodies.size());
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      all.push_back(
+          broken(m) ? BeamSection{}
+                    : Pointwise::section(present(m, state), record(state, i), record(state, j)));
+    });
+    return all;
+  }
+
+  // -- Fracture
+  double damage(std::int32_t beam) const override {
+    const Crack* c = crack(beam);
+    return c != nullptr ? c->damage : 0.0;
+  }
+  std::vector<Break> breaks() const override {
+    std::vector<Break> all;
+    for (const Crack& c : cracks_) {
+      if (c.broken() && counts_here(c.beam))
+        all.push_back({c.time, part_.global_beam[static_cast<std::size_t>(c.beam)], c.place,
+                       c.mode_mix, c.dissipated, c.nominal, c.brittle()});
+    }
+    return all;
+  }
+  std::span<const std::array<std::int32_t, 2>> released() const override { return released_; }
+
+  double overload(const State<Spatial>& state) const override {
+    double most = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Lanes s2 = criterion_of(b, state);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t m = b * lanes + lane;
+        if (m < crack_of_.size() && crack_of_[m] == none) most = std::max(most, double(s2[lane]));
+      }
+    }
+    return std::sqrt(largest_over_ranks(most, part_.comm));
+  }
+
+  Advance advance(const State<Spatial>& state) override {
+    constexpr double rounding = 1e-6;  // of s: growth below it is none
+    growing_.clear();
+    Worst worst{0, -1};
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Lanes s2 = criterion_of(b, state);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t at = b * lanes + lane;
+        if (at >= crack_of_.size()) continue;
+        const auto m = static_cast<std::int32_t>(at);
+        const double s = std::sqrt(s2[lane]);
+        if (broken(m) || s <= kappa(m) * (1 + rounding)) continue;
+        growing_.push_back(growth(m, s, state));
+        if (growing_.back().crack.broken() && s / kappa(m) > worst.value)
+          worst = {s / kappa(m), part_.global_beam[at]};
+      }
+    }
+    worst = worst_of(worst, part_.comm);
+    int mine = 0, any = 0;
+    for (const Growth& g : growing_) {
+      const bool chosen = part_.global_beam[static_cast<std::size_t>(g.crack.beam)] == worst.beam;
+      if (g.crack.broken() && !chosen) continue;
+      take(g);
+      mine = 1;
+    }
+    growing_.clear();
+    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, part_.comm);
+    if (worst.beam >= 0) return Advance::broke;
+    return any != 0 ? Advance::softened : Advance::none;
+  }
+
+  void retreat() override {
+    const std::vector<Crack> changed = cracks_;
+    for (const Crack& c : changed) restore(c.beam);
+    cracks_.clear();
+    newly_broken_.clear();
+    for (const Crack& c : kept_) put(c);
+    dissipated_ = kept_energy_;
+  }
+
+ private:
+  static constexpr std::int32_t none = -1;
+
+  /// A beam that the last evaluation found to have passed its kappa.
+  struct Growth {
+    Crack crack;        ///< as it will be
+    double released;    ///< by which the energy that it stores falls [J]
+    double dissipated;  ///< [J]
+  };
+
+  bool counts_here(std::int32_t m) const {
+    return part_.counts_here[static_cast<std::size_t>(m)] != 0;
+  }
+  const Crack* crack(std::int32_t m) const {
+    const std::int32_t at = crack_of_[static_cast<std::size_t>(m)];
+    return at == none ? nullptr : &cracks_[static_cast<std::size_t>(at)];
+  }
+  bool broken(std::int32_t m) const {
+    const Crack* c = crack(m);
+    return c != nullptr && c->broken();
+  }
+  double kappa(std::int32_t m) const {
+    const Crack* c = crack(m);
+    return c != nullptr ? c->kappa : 1.0;
+  }
+  /// What decides; the loop of add() only asks whether it is worth asking.
+  Lanes criterion_of(std::size_t b, const State<Spatial>& state) const {
+    return block_criterion<kinematics>(blocks_[b], strengths_[b], state.records.data());
+  }
+
+  BeamStrains<double> strains(std::int32_t m, const State<Spatial>& state) const {
+    const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+    return Pointwise::strains(constants(m), record(state, i), record(state, j));
+  }
+  static BeamStress<double> as_stress(const BeamStrains<double>& s) {
+    return {s.delta, s.gamma_y, s.gamma_z, s.psi};
+  }
+  /// Constants with what damage has left at the present strains.
+  BeamConstants<double> present(std::int32_t m, const State<Spatial>& state) const {
+    BeamConstants<double> c = constants(m);
+    if (const Crack* k = crack(m)) {
+      const Softening left = softening(k->damage, strains(m, state).delta > 0, k->broken());
+      c.kn *= left.axial;
+      for (double* rest : {&c.ksz, &c.ksy, &c.kt, &c.kby, &c.kbz}) *rest *= left.rest;
+    }
+    return c;
+  }
+
+  /// Dashpots do the work dt/2 v_{n+1/2}.(F_n + F_{n+1}) between t_n and t_{n+1}, where their
+  /// forces change as suddenly as beams break. So F_n is kept: the balance stays exact for linear
+  /// strains.
+  double lost_by_now() const override {
+    return this->lost_ + 0.5 * this->step_ * (power_before_ + this->power_lost_);
+  }
+  void take_losses(double) override {
+    this->lost_ = lost_by_now();
+    std::swap(viscous_, viscous_now_);
+  }
+
+  double stored(const State<Spatial>& state) const override {
+    double energy = 0;
+    for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+      if (counts_here(m) && !broken(m))
+        energy += Pointwise::energy(present(m, state), record(state, i), record(state, j));
+    });
+    for (const Growth& g : growing_) {
+      if (counts_here(g.crack.beam)) energy -= g.released;
+    }
+    return energy;
+  }
+
+  /// What happens to a beam whose s has passed kappa. In dynamics it dissipates what makes the
+  /// energy balance of leapfrog exact for linear strains: forces of this state on strains of the
+  /// last one, 1/2 e_n k e_(n-1) (D_n - D_(n-1)) (work by the mean of the forces at a step's ends).
+  /// In statics it comes straight from rest: U_1 s kappa (D - D_old), exact for any step.
+  [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s,
+                                             const State<Spatial>& state) const {
+    const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+    const BeamConstants<double> c = constants(m);
+    const BeamStrains<double> e = strains(m, state);
+    const BeamStress<double> strain = as_stress(e), force = elastic_stress(c, e);
+    const DamageEnergy energy = damage_energy(force, strain);
+    const Crack* known = crack(m);
+    Growth g{known != nullptr ? *known : Crack{}, 0, 0};
+    Crack& next = g.crack;
+    const double before = next.damage, passed = next.kappa;
+    if (known == nullptr) {
+      next.beam = m;
+      initiate(next, energy, s,
+               part_.beams.width[static_cast<std::size_t>(m)] *
+                   part_.beams.height[static_cast<std::size_t>(m)],
+               options_.energy, options_.energy_shear);
+    }
+    next.kappa = s;
+    next.damage = damage_at(next, s);
+    DamageEnergy path = energy;
+    BeamStress<double> rate{};
+    if (options_.dynamic) {
+      rate = rates(c, e, record(state, i), record(state, j));
+      path = damage_energy(force, {strain.n - dt_ * rate.n, strain.qy - dt_ * rate.qy,
+                                   strain.qz - dt_ * rate.qz, strain.c - dt_ * rate.c});
+    } else {
+      for (double* part : {&path.stretch, &path.shear, &path.bending}) *part *= passed / s;
+    }
+    g.dissipated = std::max(0.0, path.damaged() * (next.damage - before));
+    g.released = energy.damaged() * (next.damage - before);
+    if (next.broken()) {
+      g.dissipated += path.squeeze;
+      g.released += energy.squeeze;
+      next.time = state.time;
+      for (std::size_t k = 0; k < 3; ++k)
+        next.place[k] =
+            0.5 * (part_.bodies.position[static_cast<std::size_t>(i)][k] + record(state, i)[k] +
+                   part_.bodies.position[static_cast<std::size_t>(j)][k] + record(state, j)[k]);
+    }
+    next.dissipated += g.dissipated;
+    return g;
+  }
+
+  static BeamStress<double> rates(const BeamConstants<double>& c, const BeamStrains<double>& e,
+                                  const double* i, const double* j) {
+    const auto three = [](const double* r) { return Vec3<double>{r[0], r[1], r[2]}; };
+    return BeamKernel<kinematics>::rates(
+        c, e, three(j + Spatial::velocity) - three(i + Spatial::velocity),
+        three(i + Spatial::angular_velocity), three(j + Spatial::angular_velocity));
+  }
+
+  /// A block with a beam that is damaged or may become so: what this state's damage leaves of it.
+  [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
+                                                         const State<Spatial>& state) const {
+    const Lanes s2 = criterion_of(b, state);
+    std::array<Softening, lanes> left{};
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t at = b * lanes + lane;
+      if (at >= crack_of_.size()) continue;
+      const auto m = static_cast<std::int32_t>(at);
+      const Crack* c = crack(m);
+      const double passed = kappa(m);
+      if (options_.dynamic && s2[lane] > passed * passed && !broken(m)) {
+        growing_.push_back(growth(m, std::sqrt(s2[lane]), state));
+        c = &growing_.back().crack;
+      }
+      if (c != nullptr) left[lane] = softening(c->damage, strains(m, state).delta > 0, c->broken());
+    }
+    soft_block_ = softened(blocks_[b], left);
+    if constexpr (damped) soft_dashpots_ = softened(dashpots_[b], left);
+  }
+
+  void take(const Growth& g) {
+    put(g.crack);
+    if (g.crack.broken()) newly_broken_.push_back(g.crack.beam);
+    if (!counts_here(g.crack.beam)) return;
+    dissipated_ += g.dissipated;
+  }
+
+  /// A restart goes on with the forces of the last step's start.
+  void remember_dashpots(Memory& checkpoint) {
+    std::vector<std::int32_t> beams;
+    for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
+      if (checkpoint.loading() || counts_here(m)) beams.push_back(m);
+    }
+    std::vector<double> rows;
+    const auto each = [&](auto visit) {
+      for (const std::int32_t m : beams) {
+        for (auto& values : viscous_[static_cast<std::size_t>(m) / lanes].values)
+          visit(values[static_cast<std::size_t>(m) % lanes]);
+      }
+    };
+    each([&](float value) { rows.push_back(static_cast<double>(value)); });
+    checkpoint.beam_rows("viscous", beams, rows, 6);
+    std::size_t k = 0;
+    each([&](float& value) { value = static_cast<float>(rows[k++]); });
+  }
+
+  /// Enters a crack. A beam that has broken leaves its block: without stiffness, between a body and
+  /// itself, it costs what any other costs and adds nothing.
+  void put(const Crack& c) {
+    const auto m = static_cast<std::size_t>(c.beam);
+    std::int32_t& at = crack_of_[m];
+    if (at == none) {
+      at = static_cast<std::int32_t>(cracks_.size());
+      cracks_.push_back(c);
+    } else {
+      cracks_[static_cast<std::size_t>(at)] = c;
+    }
+    if (c.broken()) {
+      BeamBlock<Frame>& block = blocks_[m / lanes];
+      BeamConstants<double> nothing = block.get(m % lanes);
+      for (double* k :
+           {&nothing.kn, &nothing.ksz, &nothing.ksy, &nothing.kt, &nothing.kby, &nothing.kbz})
+        *k = 0;
+      block.set(m % lanes, nothing);
+      block.j[m % lanes] = block.i[m % lanes];
+      if constexpr (damped) {
+        for (auto& values : dashpots_[m / lanes].values) values[m % lanes] = 0;
+      }
+    }
+    mark(m / lanes);
+  }
+
+  /// The beam as it was at rest.
+  void restore(std::int32_t m) {
+    this->set(m, beams_);
+    crack_of_[static_cast<std::size_t>(m)] = none;
+    mark(static_cast<std::size_t>(m) / lanes);
+  }
+
+  void mark(std::size_t b) {
+    damaged_[b] = 0;
+    for (std::size_t m = b * lanes; m < std::min((b + 1) * lanes, crack_of_.size()); ++m) {
+      const Crack* c = crack(static_cast<std::int32_t>(m));
+      if (c != nullptr && !c->broken()) damaged_[b] = 1;
+    }
+  }
+
+  /// \param all  over all ranks, with global indices
+  void set_cracks(std::vector<Crack> all) {
+    for (Crack& c : all) {
+      const auto found =
+          std::lower_bound(part_.global_beam.begin(), part_.global_beam.end(), c.beam);
+      if (found == part_.global_beam.end() || *found != c.beam) continue;
+      c.beam = static_cast<std::int32_t>(found - part_.global_beam.begin());
+      put(c);
+    }
+  }
+
+  const BeamOptions beams_;
+  const FractureOptions options_;
+  std::vector<StrengthBlock> strengths_;
+  std::vector<std::uint8_t> damaged_;   ///< per block: some beam is damaged, but not broken
+  std::vector<std::int32_t> crack_of_;  ///< per local beam: its place in cracks_
+  std::vector<Crack> cracks_,
+      kept_;  ///< in the order of their initiation; statics: at the last commit
+  std::vector<std::int32_t> newly_broken_;  ///< since the last commit, local
+  std::vector<std::array<std::int32_t, 2>> released_;
+  std::vector<ViscousBlock> viscous_;              ///< at the start of the last step
+  mutable std::vector<ViscousBlock> viscous_now_;  ///< a by-product of the last evaluation
+  mutable double power_before_ = 0;  ///< of viscous_ at the rates of the last evaluation [W]
+  const StrengthBlock unbreakable_{};
+  mutable BeamBlock<Frame> soft_block_;  ///< work space of soften()
+  mutable DashpotBlock soft_dashpots_;
+  mutable std::vector<Growth> growing_;      ///< a by-product of the last evaluation, no history
+  double dissipated_ = 0, kept_energy_ = 0;  ///< by the beams that this rank counts [J]
+  double dt_ = 0;                            ///< the last step [s]
+};
+
+}  // namespace floe

@@ -1,0 +1,426 @@
+#include "run/dynamic_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "base/all_gathered.h"
+#include "base/format.h"
+#include "base/ranks.h"
+#include "run/numbers.h"
+#include "run/ts_options.h"
+
+namespace floe {
+
+template <class Space>
+DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Model<Space>& model,
+                              const DynamicOptions& options, const Observer<Space>& observer)
+    : model_(model),
+      options_(options),
+      observer_(observer),
+      state_(static_cast<std::size_t>(model.part().local)),
+      wrenches_(static_cast<std::size_t>(model.part().local)),
+      checkpoints_(options_.checkpoint, model.part()),
+      what_(what),
+      type_(type) {
+  // What strains of 1e-12 everywhere would store.
+  double mine = 0, all = 0;
+  const double strain = 1e-12 * model.length_scale();
+  for (std::int32_t b = 0; b < model.part().owned; ++b) {
+    for (const auto& force : model.forces()) mine += force->stiffness_bound(b) * strain * strain;
+  }
+  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
+  ledger_.set_floor(std::max(all, std::numeric_limits<double>::min()));
+}
+
+template <class Space>
+void DynamicRun<Space>::read_options(TS ts) {
+  check(TSSetTimeStep(ts, options_.dt > 0 ? options_.dt : -1.0));
+  check(TSSetMaxTime(ts, options_.end));
+  check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
+  if (const auto given = given_max_steps()) most_steps_ = *given;
+  {
+    const HiddenMaxSteps hidden;
+    check(TSSetFromOptions(ts));
+  }
+  const double of_scene = options_.dt;
+  check(TSGetTimeStep(ts, &options_.dt));
+  if (options_.dt > 0 && options_.dt != of_scene) dt_key_ = "ts_dt";
+  check(TSGetMaxTime(ts, &options_.end));
+  given_ = options_.dt > 0;
+}
+
+template <class Space>
+void DynamicRun<Space>::plan(double wanted) {
+  const double steps = std::ceil(options_.end / wanted * (1 - 1e-12));
+  if (!adaptive_) require_few_steps(steps, wanted);
+  steps_ = adaptive_ ? 1 : std::max<std::int64_t>(static_cast<std::int64_t>(steps), 1);
+  dt_ = adaptive_ ? std::min(wanted, options_.end) : options_.end / static_cast<double>(steps_);
+  result_.dt = dt_;
+  set_sampling();
+}
+
+template <class Space>
+void DynamicRun<Space>::require_few_steps(double steps, double step) const {
+  constexpr double countable = 1e18;  // in 64 bits
+  if (steps <= countable &&
+      std::min(steps, static_cast<double>(most_steps_)) <= options_.most_steps)
+    return;
+  throw InputError(dt_key_ + ": " + text(step) + " s" +
+                   (result_.limited_by.empty()
+                        ? ""
+                        : " (stable: " + text(result_.stable_dt) + " s, limited by the " +
+                              result_.limited_by + ")") +
+                   " would take " + text(steps) + " steps to time: end " + text(options_.end) +
+                   " s, at most " + text(options_.most_steps) + " are made (limit: steps)");
+}
+
+template <class Space>
+bool DynamicRun<Space>::announce() const {
+  if (!options_.on_plan) return true;
+  RunPlan plan;
+  plan.end = options_.end;
+  plan.dt = dt_;
+  plan.adaptive = adaptive_;
+  plan.given = given_;
+  plan.stable_dt = result_.stable_dt;
+  plan.limited_by = result_.limited_by;
+  if (!adaptive_) plan.steps = static_cast<double>(std::min(steps_, most_steps_));
+  plan.done = static_cast<double>(done_);
+  add_to(plan);
+  return options_.on_plan(plan);
+}
+
+template <class Space>
+void DynamicRun<Space>::replan(TS ts, double wanted) {
+  if (adaptive_) {
+    dt_ = std::min(dt_, wanted);
+  } else {
+    time_base_ = time_;
+    step_base_ = done_;
+    const double left = options_.end - time_;
+    steps_ = static_cast<std::int64_t>(std::ceil(left / wanted * (1 - 1e-12)));
+    dt_ = left / static_cast<double>(steps_);
+    steps_ += done_;
+    limit_steps(ts);
+  }
+  result_.dt = dt_;
+  check(TSSetTimeStep(ts, dt_));
+}
+
+/// All that a run goes on from. Collective.
+template <class Space>
+void DynamicRun<Space>::remember(Memory& memory) {
+  largest_ = largest_over_ranks(largest_, model_.part().comm);
+  memory.enter("run");
+  std::string type = type_;
+  memory.common("type", type);
+  if (type != type_)
+    throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of ts_type '" +
+                   type + "', which keeps its state in another way than this run's '" + type_ +
+                   "'");
+  const std::string space = std::is_same_v<Space, Planar> ? "planar" : "spatial";
+  std::string model = space;
+  memory.common("model", model);
+  if (model != space)
+    throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
+                   " model, this run's is " + space + " (model: planar)");
+  memory.common("step", done_);
+  memory.common("steps", steps_);
+  memory.common("time", state_.time, not_negative);
+  memory.common("dt", dt_, positive);
+  memory.common("time_base", time_base_, not_negative);
+  memory.common("step_base", step_base_);
+  memory.common("stable_dt", result_.stable_dt, not_negative_or_infinite);
+  memory.common("limited_by", result_.limited_by);
+  memory.common("next_sample", next_sample_, not_negative_or_infinite);
+  memory.common("sampled_step", sampled_, -1);
+  memory.common("largest_velocity2", largest_, not_negative);
+  remember_own(memory);
+  memory.enter("ledger");
+  ledger_.remember(memory);
+  memory.enter("bodies");
+  const std::vector<std::int32_t> owned = owned_bodies(model_.part());
+  memory.rows("records", owned, std::span(state_.records).first(owned.size() * Space::record),
+              Space::record);
+  for (std::size_t k = 0; k < model_.forces().size(); ++k) {
+    memory.enter("force_" + std::to_string(k) + "_" + std::string(model_.forces()[k]->name()));
+    model_.forces()[k]->remember(memory);
+  }
+}
+
+/// The checkpoint's step is kept, the end may lie further on.
+template <class Space>
+bool DynamicRun<Space>::restart() {
+  if (options_.checkpoint.restart.empty()) return false;
+  checkpoints_.load([&](Memory& memory) { remember(memory); });
+  result_.dt = dt_;
+  const double steps = std::ceil((options_.end - time_base_) / dt_ * (1 - 1e-12));
+  if (!adaptive_) {
+    require_few_steps(steps, dt_);
+    steps_ = step_base_ + static_cast<std::int64_t>(steps);
+  }
+  if (adaptive_ ? options_.end < state_.time : steps_ < done_)
+    throw InputError("time: end: " + text(options_.end) + " must be >= " + text(state_.time) +
+                     " [s], the time of the checkpoint");
+  set_sampling();
+  model_.part().ghosts.update(state_.records, Space::record);
+  before_ = done_;
+  time_ = state_.time;
+  return true;
+}
+
+template <class Space>
+RunResult DynamicRun<Space>::solve(TS ts) {
+  check(TSSetTime(ts, state_.time));
+  check(TSSetTimeStep(ts, dt_));
+  if (adaptive_) {
+    check(TSSetMaxTime(ts, options_.end));
+    check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_MATCHSTEP));
+  } else {
+    check(TSSetMaxTime(ts, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
+  }
+  check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
+  progress_.emplace(what_, options_.end);
+  {
+    const Timed timed(Event::solve);
+    result_.done = first() && step(ts) && finish();
+  }
+  if (result_.done && options_.checkpoint.at_end) save();
+  take_remarks();
+  result_.steps = done_;
+  result_.steps_now = done_ - before_;
+  result_.message = why_;
+  if (result_.stopped)
+    result_.message = stopped_by_ + " at time " + text(state_.time) + " s, " + step_text();
+  return result_;
+}
+
+/// All steps. False if the run did not come to its end.
+template <class Space>
+bool DynamicRun<Space>::step(TS ts) {
+  for (;;) {
+    begin_piece(ts);
+    const int ierr = TSSolve(ts, nullptr);
+    if (error_) std::rethrow_exception(error_);
+    if (ierr == PETSC_ERR_FP) {  // the error of an adaptive step
+      why_ = "a number that is not finite after time " + text(time_) + " s";
+      return false;
+    }
+    check(ierr);
+    TSConvergedReason reason = TS_CONVERGED_ITERATING;
+    check(TSGetConvergedReason(ts, &reason));
+    if (reason < 0 || is_last(reason)) return reason > 0;
+  }
+}
+
+/// The first piece's steps are the run's. Those of a later one begin with 1, since at step 0 a TS
+/// begins anew and forgets what it knows of the steps before.
+template <class Space>
+void DynamicRun<Space>::begin_piece(TS ts) {
+  const std::int64_t pieces = done_ / steps_of_a_piece;
+  piece_ = pieces == 0 ? 0 : pieces * steps_of_a_piece - 1;
+  check(TSSetStepNumber(ts, static_cast<PetscInt>(done_ - piece_)));
+  limit_steps(ts);
+}
+
+/// The TS goes to the end of the piece, or of the run.
+template <class Space>
+void DynamicRun<Space>::limit_steps(TS ts) {
+  const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
+  const std::int64_t last = std::max(std::min(last_step(), end), done_);
+  check(TSSetMaxSteps(ts, static_cast<PetscInt>(last - piece_)));
+}
+
+template <class Space>
+void DynamicRun<Space>::evaluate() {
+  model_.part().ghosts.update(state_.records, Space::record);
+  model_.evaluate(state_, wrenches_);
+}
+
+template <class Space>
+bool DynamicRun<Space>::moved(double time, double speed2) {
+  ++done_;
+  state_.time = time_ = time;
+  largest_ = std::isfinite(speed2) ? std::max(largest_, speed2) : speed2;
+  audit("a step");
+  return done_ % check_every != 0 || within_limits();
+}
+
+template <class Space>
+void DynamicRun<Space>::audit(const char* where) const {
+  if (!auditing()) return;
+  floe::audit(model_.part().comm, where, objects(),
+              std::array{time_, dt_, next_sample_, static_cast<double>(done_),
+                         static_cast<double>(steps_)});
+}
+
+template <class Space>
+bool DynamicRun<Space>::look_around() {
+  if (done_ % show_every_ == 0) progress_->update(state_.time, step_text());
+  const auto wish = checkpoints_.wish(done_);
+  if (wish == Checkpoints::Wish::none) return true;
+  if (!within_limits()) return false;  // no checkpoint of a state that is lost already
+  save();
+  result_.stopped = wish != Checkpoints::Wish::write;
+  stopped_by_ = wish == Checkpoints::Wish::stop
+                    ? "stopped on request"
+                    : "stopped, since checkpoint: wall_time is nearly over,";
+  return !result_.stopped;
+}
+
+template <class Space>
+void DynamicRun<Space>::save() {
+  checkpoints_.save([&](Memory& memory) { remember(memory); }, column_names());
+}
+
+/// Of what sample() hands out.
+template <class Space>
+std::vector<std::string> DynamicRun<Space>::column_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : model_.report(state_)) names.push_back(name);
+  const Columns own = own_columns();
+  for (const auto& [name, value] : own.values()) names.push_back(name);
+  for (const auto& [name, value] : ledger_.columns()) names.push_back(name);
+  return names;
+}
+
+template <class Space>
+std::string DynamicRun<Space>::step_text() const {
+  return "step " + std::to_string(done_) + (adaptive_ ? "" : " of " + std::to_string(steps_));
+}
+
+/// The last state, whose forces no step has asked for.
+template <class Space>
+bool DynamicRun<Space>::finish() {
+  if (sampled_ == done_) return true;  // as a checkpoint at the end of a run leaves it
+  evaluate();
+  return sample(true);
+}
+
+/// What forces have to say since the last look, in order of time, goes to the user. Collective.
+template <class Space>
+void DynamicRun<Space>::take_remarks() {
+  using Remark = typename Force<Space>::Remark;
+  std::vector<double> times;
+  std::vector<char> texts;  // each ended by a zero
+  for (const auto& force : model_.forces()) {
+    for (const Remark& remark : force->take_remarks()) {
+      times.push_back(remark.time);
+      texts.insert(texts.end(), remark.text.c_str(), remark.text.c_str() + remark.text.size() + 1);
+    }
+  }
+  const MPI_Comm comm = model_.part().comm;
+  times = all_gathered(times, MPI_DOUBLE, comm);
+  if (times.empty()) return;
+  texts = all_gathered(texts, MPI_CHAR, comm);
+  if (rank(comm) != 0) return;
+  std::vector<Remark> all;
+  const char* next = texts.data();
+  for (const double time : times) {
+    all.push_back({time, next});
+    next += all.back().text.size() + 1;
+  }
+  std::sort(all.begin(), all.end(), [](const Remark& a, const Remark& b) {
+    return std::tie(a.time, a.text) < std::tie(b.time, b.text);
+  });
+  for (const Remark& remark : all) {
+    warn(remark.text);
+    result_.warnings.push_back(remark.text);
+  }
+}
+
+/// Collective: all ranks agree.
+template <class Space>
+bool DynamicRun<Space>::within_limits() {
+  const double all = largest_over_ranks(largest_, model_.part().comm);
+  if (std::sqrt(all) <= options_.velocity_limit) return true;
+  why_ = (std::isfinite(all) ? "a velocity of " + text(std::sqrt(all)) + " m/s"
+                             : std::string("a velocity that is not finite")) +
+         " at time " + text(state_.time) + " s, " + where() + " (limit: velocity " +
+         text(options_.velocity_limit) + " m/s)";
+  return false;
+}
+
+template <class Space>
+void DynamicRun<Space>::set_sampling() {
+  sample_every_ = {options_.history > 0 ? options_.history : options_.end / 200, options_.fields};
+}
+
+/// The first state at or after the time, rounding aside: as the output counts too.
+template <class Space>
+bool DynamicRun<Space>::due() const {
+  return state_.time >= next_sample_ - early * dt_;
+}
+
+/// Hands the state out, if it is good.
+template <class Space>
+bool DynamicRun<Space>::sample(bool last) {
+  if (!within_limits()) return false;
+  const auto [kinetic, boundary] = energies();
+  const std::array<double, 2> mine{kinetic, boundary};
+  std::array<double, 2> all{};
+  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+  take_remarks();
+  auto reported = model_.report(state_);
+  const Columns own = own_columns();
+  for (const auto& [name, value] : own.values()) {
+    const double share = value;
+    double sum = 0;
+    MPI_Allreduce(&share, &sum, 1, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+    reported.emplace_back(name, sum);
+  }
+  ledger_.take(reported, all[0], all[1]);
+  if (!(ledger_.relative_error() <= options_.energy_limit)) {
+    why_ = "the energy balance is off by " + text(ledger_.relative_error()) +
+           " of the energies at time " + text(state_.time) + " s (limit: energy_error " +
+           text(options_.energy_limit) + ")";
+    return false;
+  }
+  observer_({state_, wrenches_, done_, ledger_.columns(), last, reported});
+  sampled_ = done_;
+  next_sample_ = std::numeric_limits<double>::infinity();
+  for (const double every : sample_every_) {
+    if (every > 0)
+      next_sample_ =
+          std::min(next_sample_, every * (std::floor((state_.time + early * dt_) / every) + 1));
+  }
+  return true;
+}
+
+/// The body that is fastest now.
+template <class Space>
+std::string DynamicRun<Space>::where() const {
+  struct {
+    double speed2 = -1;
+    int rank = 0;
+  } mine, best;
+  std::size_t at = 0;
+  const Part& part = model_.part();
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
+    const double* v = state_.record(b) + Space::velocity;
+    double speed2 = 0;
+    for (int k = 0; k < Space::translations; ++k) speed2 += v[k] * v[k];
+    if (!std::isfinite(speed2)) speed2 = std::numeric_limits<double>::max();
+    if (speed2 > mine.speed2) {
+      mine.speed2 = speed2;
+      at = b;
+    }
+  }
+  mine.rank = rank(part.comm);
+  MPI_Allreduce(&mine, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, part.comm);
+  std::array<double, 4> facts{};
+  if (best.rank == mine.rank) {
+    const Point3& x = part.bodies.position[at];
+    facts = {static_cast<double>(part.global[at]), x[0], x[1], x[2]};
+  }
+  MPI_Bcast(facts.data(), 4, MPI_DOUBLE, best.rank, part.comm);
+  return "body " + text(facts[0]) + " at (" + text(facts[1]) + ", " + text(facts[2]) + ", " +
+         text(facts[3]) + ")";
+}
+
+template class DynamicRun<Spatial>;
+template class DynamicRun<Planar>;
+
+}  // namespace floe

@@ -1,0 +1,73 @@
+#include "run/ledger.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <sstream>
+
+namespace floe {
+namespace {
+
+constexpr double rounding = 1e-12;
+
+}  // namespace
+
+void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
+                  double boundary) {
+  double stored = kinetic, lost = 0, external = boundary;
+  double size = std::abs(kinetic) + std::abs(boundary);
+  for (const auto& [name, value] : forces) {
+    if (name.rfind("energy_", 0) == 0) floor_ = std::max(floor_, rounding * std::abs(value));
+    if (name == "energy_damping" || name == "energy_drag" || name == "energy_fracture" ||
+        name == "energy_numerical") {
+      lost += value;
+      size += std::abs(value);  // a current gives energy
+    } else if (name == "energy_external") {
+      external += value;
+      size += std::abs(value);
+    } else if (name != "energy_load" && name.rfind("energy_", 0) == 0) {
+      stored += value;
+      size += std::abs(value - first_.try_emplace(name, value).first->second);
+    }
+  }
+  if (!started_) {
+    offset_ = stored + lost - external;
+    started_ = true;
+  }
+  kinetic_ = kinetic;
+  boundary_ = boundary;
+  error_ = stored + lost - external - offset_;
+  largest_ = std::max(largest_, size);
+}
+
+double Ledger::relative_error() const { return std::abs(error_) / std::max(largest_, floor_); }
+
+void Ledger::remember(Memory& memory) {
+  memory.common("started", started_);
+  for (const auto& [name, value] :
+       std::initializer_list<std::pair<const char*, double*>>{{"offset", &offset_},
+                                                              {"kinetic", &kinetic_},
+                                                              {"boundary", &boundary_},
+                                                              {"error", &error_},
+                                                              {"largest", &largest_}})
+    memory.common(name, *value, value == &largest_ ? not_negative : finite);
+  std::string names;
+  std::vector<double> values;
+  for (const auto& [name, value] : first_) {
+    names += name + " ";
+    values.push_back(value);
+  }
+  memory.common("first_names", names);
+  memory.common("first_values", values);
+  std::istringstream words(names);
+  std::size_t k = 0;
+  for (std::string name; words >> name && k < values.size();) first_[name] = values[k++];
+}
+
+std::vector<std::pair<std::string, double>> Ledger::columns() const {
+  return {{"energy_kinetic", kinetic_},
+          {"energy_boundary", boundary_},
+          {"energy_balance_error", error_}};
+}
+
+}  // namespace floe

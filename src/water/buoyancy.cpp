@@ -1,0 +1,139 @@
+#include "water/buoyancy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "floe/base/petsc.h"
+#include "water/immersion.h"
+
+namespace floe {
+namespace {
+
+const Part& with_shapes(const Part& part) {
+  if (part.shapes.empty() && part.owned > 0)
+    throw InputError("forces: buoyancy needs bodies with a shape; the lattice file has no /shapes");
+  return part;
+}
+
+/// With r from the body's centroid, V the submerged part and W its cut by the water (areas and
+/// moments of both are in Submerged): force rho g V, moment rho g (m_y, -m_x, 0), m = int_V r dV,
+/// and by Reynolds' theorem
+///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA   for a spin t.
+class Buoyancy final : public Force<Spatial> {
+ public:
+  Buoyancy(const Part& part, double weight_density)
+      : part_(part),
+        immersion_(with_shapes(part)),
+        owned_(static_cast<std::size_t>(part.owned)),
+        weight_(weight_density) {}
+
+  std::string_view name() const override { return "buoyancy"; }
+
+  [[gnu::flatten]] void add(const State<Spatial>& state,
+                            Wrenches<Spatial>& wrenches) const override {
+    const Lanes zero(0.0);
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
+      const BlockMotion m = block_motion<false>(immersion_, state, block);
+      const Immersion::Lane below = immersion_.of_block(state, block, m.u.z, m.q);
+      const Lanes turn_y = -weight_ * below.moment.x;
+      std::array<Row, lanes> rows;
+      scatter_four({zero, zero, weight_ * below.volume, weight_ * below.moment.y}, rows);
+      for (std::size_t b = block * lanes; b < std::min<std::size_t>((block + 1) * lanes, owned_);
+           ++b) {
+        double* w = wrenches.of(b);
+        add_row(w, rows[b % lanes]);
+        w[4] += turn_y[b % lanes];
+      }
+    }
+  }
+
+  bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      const Submerged s = immersion_.of(state, body);
+      Tangent<Spatial>::Block k{};
+      const auto at = [&k](int row, int column) -> double& {
+        return k[static_cast<std::size_t>(row * 6 + column)];
+      };
+      at(2, 2) = weight_ * s.waterplane;
+      at(2, 3) = at(3, 2) = weight_ * s.wy;
+      at(2, 4) = at(4, 2) = -weight_ * s.wx;
+      at(3, 3) = weight_ * (s.wyy + s.moment[2]);
+      at(4, 4) = weight_ * (s.wxx + s.moment[2]);
+      at(3, 4) = at(4, 3) = -weight_ * s.wxy;
+      // The exact derivative to t_z stands in the last column only; half of it in each is the
+      // Hessian.
+      const double share = tangent.symmetric() ? 0.5 : 1.0;
+      at(3, 5) = -share * weight_ * s.moment[0];
+      at(4, 5) = -share * weight_ * s.moment[1];
+      if (tangent.symmetric()) {
+        at(5, 3) = at(3, 5);
+        at(5, 4) = at(4, 5);
+      }
+      tangent.add_body(body, k);
+    }
+    return true;
+  }
+
+  double stiffness_bound(std::int32_t body) const override {
+    // The cut of a convex body by a plane is at most three times its mean cut, volume over height
+    // (a cone's base).
+    double low = 0, high = 0;
+    const auto b = static_cast<std::size_t>(body);
+    for (std::int32_t v = part_.shapes.vertex_of[b]; v < part_.shapes.vertex_of[b + 1]; ++v) {
+      low = std::min(low, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
+      high = std::max(high, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
+    }
+    return 3.0 * weight_ * immersion_.volume(body) / (high - low);
+  }
+
+  /// Of heave, about: bodies that the surface cuts have a stiffness, others none.
+  std::optional<double> fastest_rate(const State<Spatial>& state) const override {
+    double fastest2 = 0;
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
+      const BlockMotion m = block_motion<false>(immersion_, state, block);
+      const Lanes volume = immersion_.of_block(state, block, m.u.z, m.q).volume;
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t b = immersion_.body_of(block, lane);
+        const double whole = immersion_.volume(static_cast<std::int32_t>(b));
+        if (volume[lane] > 0 && volume[lane] < whole)
+          fastest2 = std::max(fastest2, weight_ * std::cbrt(whole * whole) / part_.bodies.mass[b]);
+      }
+    }
+    return std::sqrt(fastest2);
+  }
+
+  /// Potential of the displaced water: rho g times int_V (-z) dV, the work to push the body down
+  /// from the air.
+  void report(const State<Spatial>& state, Columns& columns) const override {
+    double energy = 0;
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      const Submerged s = immersion_.of(state, body);
+      energy -= weight_ * (s.moment[2] + immersion_.height(state, body) * s.volume);
+    }
+    columns.add("energy_water", energy);
+  }
+
+ private:
+  const Part& part_;
+  Immersion immersion_;
+  std::size_t owned_;
+  double weight_;
+};
+
+}  // namespace
+
+template <>
+std::unique_ptr<Force<Spatial>> make_buoyancy<Spatial>(const Part& part, double weight_density) {
+  return std::make_unique<Buoyancy>(part, weight_density);
+}
+
+std::vector<double> displaced_mass(const Part& part, double density) {
+  const Immersion immersion(with_shapes(part));
+  const State<Spatial> rest(static_cast<std::size_t>(part.local));
+  std::vector<double> mass;
+  for (std::int32_t body = 0; body < part.owned; ++body)
+    mass.push_back(density * immersion.of(rest, body).volume);
+  return mass;
+}
+
+}  // namespace floe

@@ -1,0 +1,254 @@
+#include "water/drag.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "floe/base/petsc.h"
+#include "lattice/memory.h"
+#include "water/immersion.h"
+
+namespace floe {
+namespace {
+
+const Part& with_shapes(const Part& part) {
+  if (part.shapes.empty() && part.owned > 0)
+    throw InputError("forces: drag needs bodies with a shape; the lattice file has no /shapes");
+  return part;
+}
+
+/// Velocities of a block's bodies and what of their plan areas counts: A_p V/V_0, V the submerged
+/// part of their volumes.
+struct MovingBlock {
+  Vec3<Lanes> v;
+  Lanes area;
+};
+
+struct alignas(64) LaneNumbers {
+  std::array<double, lanes> values;
+};
+
+template <class Space>
+class WettedBodies;
+
+template <>
+class WettedBodies<Spatial> {
+ public:
+  explicit WettedBodies(const Part& part)
+      : immersion_(with_shapes(part)), area_per_volume_(immersion_.blocks()) {
+    for (std::size_t k = 0; k < immersion_.blocks() * lanes; ++k) {
+      const auto body = static_cast<std::int32_t>(immersion_.body_of(k / lanes, k % lanes));
+      area_per_volume_[k / lanes].values[k % lanes] =
+          immersion_.plan_area(body) / immersion_.volume(body);
+    }
+  }
+  std::size_t blocks() const { return immersion_.blocks(); }
+  MovingBlock block(const State<Spatial>& state, std::size_t block) const {
+    const BlockMotion m = block_motion<true>(immersion_, state, block);
+    const Lanes volume = immersion_.of_block(state, block, m.u.z, m.q).volume;
+    return {m.v, volume * load(area_per_volume_[block].values.data())};
+  }
+  /// Of one body [m^2].
+  double area(const State<Spatial>& state, std::size_t b) const {
+    return per_volume(b) * immersion_.of(state, static_cast<std::int32_t>(b)).volume;
+  }
+  /// Its derivative to z, rx, ry: dV = -(W u_z + W_y t_x - W_x t_y) with the waterplane W and its
+  /// moments.
+  std::array<double, 3> slope(const State<Spatial>& state, std::size_t b) const {
+    const Submerged s = immersion_.of(state, static_cast<std::int32_t>(b));
+    if (s.volume == 0) return {};
+    return {-per_volume(b) * s.waterplane, -per_volume(b) * s.wy, per_volume(b) * s.wx};
+  }
+
+ private:
+  double per_volume(std::size_t b) const { return area_per_volume_[b / lanes].values[b % lanes]; }
+
+  Immersion immersion_;
+  std::vector<LaneNumbers> area_per_volume_;  ///< A_p/V_0 of each body [1/m]
+};
+
+/// In the plane what is submerged stays so.
+template <>
+class WettedBodies<Planar> {
+ public:
+  explicit WettedBodies(const Part& part) : owned_(static_cast<std::size_t>(part.owned)) {
+    const WettedBodies<Spatial> bodies(part);
+    const State<Spatial> rest(static_cast<std::size_t>(part.local));
+    area_.resize(bodies.blocks());
+    for (std::size_t k = 0; k < bodies.blocks() * lanes; ++k)
+      area_[k / lanes].values[k % lanes] = bodies.area(rest, std::min(k, owned_ - 1));
+  }
+  std::size_t blocks() const { return area_.size(); }
+  MovingBlock block(const State<Planar>& state, std::size_t block) const {
+    const auto [x, y, turn, none] = gather_four([&](std::size_t lane) {
+      return state.record(std::min(block * lanes + lane, owned_ - 1)) + Planar::velocity;
+    });
+    return {{x, y, Lanes(0.0)}, load(area_[block].values.data())};
+  }
+  double area(const State<Planar>&, std::size_t b) const {
+    return area_[b / lanes].values[b % lanes];
+  }
+
+ private:
+  std::size_t owned_;
+  std::vector<LaneNumbers> area_;  ///< [m^2]
+};
+
+/// The ledger: velocities are known half a step apart, so the force F_n at t_n does the work
+/// dt/2 F_n.(v_n-1/2 + v_n+1/2). That is what the kinetic energy m v_n-1/2.v_n+1/2 / 2 of a free
+/// body loses, to rounding. The first half is a by-product of evaluation; a report at t_n counts
+/// it, commit adds the second half.
+template <class Space>
+class Drag final : public Force<Space> {
+ public:
+  Drag(const Part& part, const DragOptions& options)
+      : part_(part),
+        bodies_(part),
+        current_{options.current[0], options.current[1], options.current[2]},
+        linear_(options.linear),
+        coefficient_(0.5 * options.density * options.coefficient),
+        quadratic_(options.coefficient > 0),
+        forces_(static_cast<std::size_t>(part.owned)) {}
+
+  std::string_view name() const override { return "drag"; }
+
+  void add(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+    quadratic_ ? add<true>(state, wrenches) : add<false>(state, wrenches);
+  }
+  /// F goes with the submerged volume: nothing symmetric, and little beside buoyancy's.
+  bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      if (tangent.symmetric()) return false;
+      for (std::size_t b = 0; b < forces_.size(); ++b) {
+        const Vec3<double> per_area = factor(state, b) * speed(state, b);
+        const std::array<double, 3> f{per_area.x, per_area.y, per_area.z},
+            slope = bodies_.slope(state, b);
+        Tangent<Spatial>::Block k{};
+        for (std::size_t r = 0; r < 3; ++r) {
+          for (std::size_t c = 0; c < 3; ++c) k[r * 6 + 2 + c] = f[r] * slope[c];
+        }
+        tangent.add_body(static_cast<std::int32_t>(b), k);
+      }
+      return true;
+    } else {
+      return (void)state, (void)tangent, false;
+    }
+  }
+  void add_damping(const State<Space>& state, Tangent<Space>& tangent) const override {
+    constexpr std::size_t n = Space::unknowns;
+    for (std::size_t b = 0; b < forces_.size(); ++b) {
+      const Vec3<double> v = speed(state, b);
+      const std::array<double, 3> along{v.x, v.y, v.z};
+      const double size = std::sqrt(dot(v, v)), area = bodies_.area(state, b);
+      const double rise = size > 0 ? coefficient_ / size * area : 0;
+      typename Tangent<Space>::Block c{};
+      for (std::size_t r = 0; r < Space::translations; ++r) {
+        c[r * n + r] = area * factor(state, b);
+        for (std::size_t k = 0; k < Space::translations; ++k)
+          c[r * n + k] += rise * along[r] * along[k];
+      }
+      tangent.add_body(static_cast<std::int32_t>(b), c);
+    }
+  }
+  bool add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+    add(state, wrenches);
+    return true;
+  }
+  double stiffness_bound(std::int32_t) const override { return 0; }
+
+  void commit(const State<Space>& state, double dt) override {
+    double power = 0;
+    for (std::size_t b = 0; b < forces_.size(); ++b) {
+      const double* v = state.record(b) + Space::velocity;
+      double mine = 0;
+      for (std::size_t k = 0; k < Space::translations; ++k) mine += forces_[b][k] * v[k];
+      power += mine;
+    }
+    lost_ -= 0.5 * (last_dt_ * power_ + dt * power);
+    last_dt_ = dt;
+  }
+
+  double power(const State<Space>&) const override { return power_; }
+  void take_work(double work) override { lost_ -= work; }
+
+  /// Of the derivative of the force to the velocity, along the flow.
+  std::optional<double> fastest_rate(const State<Space>& state) const override {
+    using std::sqrt;
+    const Vec3<Lanes> current{current_.x, current_.y, current_.z};
+    double fastest = 0;
+    for (std::size_t block = 0; block < bodies_.blocks(); ++block) {
+      const MovingBlock m = bodies_.block(state, block);
+      const Vec3<Lanes> v = m.v - current;
+      const Lanes drag = (linear_ + 2.0 * coefficient_ * sqrt(dot(v, v))) * m.area;
+      for (std::size_t b = block * lanes; b < std::min((block + 1) * lanes, forces_.size()); ++b)
+        fastest = std::max(fastest, drag[b % lanes] / part_.bodies.mass[b]);
+    }
+    return fastest;
+  }
+
+  void remember(Memory& checkpoint) override {
+    checkpoint.share("energy_drag", lost_);
+    checkpoint.common("last_dt", last_dt_);
+  }
+
+  void report(const State<Space>&, Columns& columns) const override {
+    columns.add("energy_drag", lost_ - 0.5 * last_dt_ * power_);
+  }
+
+ private:
+  template <bool quadratic>
+  [[gnu::flatten]] void add(const State<Space>& state, Wrenches<Space>& wrenches) const {
+    using std::sqrt;
+    const Vec3<Lanes> current{current_.x, current_.y, current_.z};
+    power_ = 0;
+    for (std::size_t block = 0; block < bodies_.blocks(); ++block) {
+      const MovingBlock m = bodies_.block(state, block);
+      const Vec3<Lanes> v = m.v - current;
+      Lanes factor(linear_);
+      if constexpr (quadratic) factor += coefficient_ * sqrt(dot(v, v));
+      const Lanes drag = -(factor * m.area);
+      const Vec3<Lanes> force = drag * v;
+      const Lanes power = dot(force, m.v);
+      std::array<Row, lanes> rows;
+      scatter_four({force.x, force.y, force.z, Lanes(0.0)}, rows);
+      for (std::size_t b = block * lanes; b < std::min((block + 1) * lanes, forces_.size()); ++b) {
+        add_row(wrenches.of(b), rows[b % lanes]);
+        store_row(forces_[b].data(), rows[b % lanes]);
+        power_ += power[b % lanes];
+      }
+    }
+  }
+  /// Velocity of an owned body against the water, and the drag over it and over the area
+  /// [N s/m^3].
+  Vec3<double> speed(const State<Space>& state, std::size_t b) const {
+    return velocity(state, b) - current_;
+  }
+  double factor(const State<Space>& state, std::size_t b) const {
+    const Vec3<double> v = speed(state, b);
+    return linear_ + coefficient_ * std::sqrt(dot(v, v));
+  }
+
+  const Part& part_;
+  WettedBodies<Space> bodies_;
+  Vec3<double> current_;
+  double linear_, coefficient_;  ///< c [N s/m^3] and rho_w C_d/2 [N s^2/m^4]
+  bool quadratic_;
+  mutable std::vector<std::array<double, 4>>
+      forces_;                ///< of the last evaluation [N], padded; a by-product
+  mutable double power_ = 0;  ///< of the last evaluation [W]; a by-product
+  double lost_ = 0;           ///< [J]
+  double last_dt_ = 0;        ///< of the step that led to the last state [s]
+};
+
+}  // namespace
+
+template <class Space>
+std::unique_ptr<Force<Space>> make_drag(const Part& part, const DragOptions& options) {
+  return std::make_unique<Drag<Space>>(part, options);
+}
+
+template std::unique_ptr<Force<Spatial>> make_drag<Spatial>(const Part&, const DragOptions&);
+template std::unique_ptr<Force<Planar>> make_drag<Planar>(const Part&, const DragOptions&);
+
+}  // namespace floe

@@ -1,0 +1,171 @@
+#include "water/immersion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace floe {
+
+Immersion::Immersion(const Part& part) : part_(part) {
+  const auto owned = static_cast<std::size_t>(part.owned);
+  blocks_.resize((owned + lanes - 1) / lanes);
+  for (std::size_t b = 0; b < owned; ++b) {
+    whole_.push_back(volume_properties(part.shapes, static_cast<std::int32_t>(b)));
+    double extent = 0;
+    for (std::int32_t v = part.shapes.vertex_of[b]; v < part.shapes.vertex_of[b + 1]; ++v) {
+      const Point3& r = part.shapes.vertices[static_cast<std::size_t>(v)];
+      extent = std::max(extent, std::hypot(r[0], r[1], r[2]));
+    }
+    extent_.push_back(extent);
+  }
+  for (std::size_t k = 0; k < blocks_.size() * lanes; ++k) {
+    const Prism<double> p = find_prism(body_of(k / lanes, k % lanes));
+    const std::array<double, Prism<double>::numbers> all{
+        p.axes.w, p.axes.x, p.axes.y, p.axes.z, p.z,  p.bottom, p.top,
+        p.area,   p.x,      p.y,      p.xx,     p.xy, p.yy,     p.radius2};
+    for (std::size_t n = 0; n < all.size(); ++n) blocks_[k / lanes].values[n][k % lanes] = all[n];
+  }
+}
+
+/// A prism along axis 3 has one face at the bottom, one at the top with a corner over each corner
+/// of the bottom, and no other vertex.
+Prism<double> Immersion::find_prism(std::size_t b) const {
+  const auto [qw, qx, qy, qz] = part_.bodies.orientation[b];
+  Prism<double> prism{};
+  prism.axes = {qw, qx, qy, qz};
+  prism.z = part_.bodies.position[b][2];
+  prism.radius2 = std::numeric_limits<double>::infinity();
+  const Shapes& shapes = part_.shapes;
+  const std::span vertices(shapes.vertices.data() + shapes.vertex_of[b],
+                           shapes.vertices.data() + shapes.vertex_of[b + 1]);
+  const auto [low, high] =
+      std::minmax_element(vertices.begin(), vertices.end(),
+                          [](const Point3& p, const Point3& q) { return p[2] < q[2]; });
+  const double bottom = (*low)[2], top = (*high)[2];
+  const double near = 1e-13 * extent_[b];
+  std::vector<Point2> plan;
+  for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
+       f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
+    const std::span corners(shapes.corners.data() + shapes.corner_of[f],
+                            shapes.corners.data() + shapes.corner_of[f + 1]);
+    const auto at = [&](std::int32_t v) { return shapes.vertices[static_cast<std::size_t>(v)]; };
+    if (!std::all_of(corners.begin(), corners.end(),
+                     [&](std::int32_t v) { return at(v)[2] <= bottom + near; }))
+      continue;
+    // Seen from outside counter-clockwise, so from above clockwise.
+    for (auto v = corners.rbegin(); v != corners.rend(); ++v)
+      plan.push_back({at(*v)[0], at(*v)[1]});
+  }
+  const auto over = [&](const Point2& p) {
+    return std::any_of(vertices.begin(), vertices.end(), [&](const Point3& v) {
+      return v[2] >= top - near && std::hypot(v[0] - p[0], v[1] - p[1]) <= near;
+    });
+  };
+  if (2 * plan.size() != vertices.size() || !std::all_of(plan.begin(), plan.end(), over))
+    return prism;
+
+  const PlanProperties p = plan_properties(plan);
+  const auto [x, y] = p.centroid;
+  prism.bottom = bottom, prism.top = top;
+  prism.area = p.area;
+  prism.x = p.area * x, prism.y = p.area * y;
+  prism.xx = p.xx + p.area * x * x;
+  prism.xy = p.xy + p.area * x * y;
+  prism.yy = p.yy + p.area * y * y;
+  prism.radius2 = 0;
+  for (const auto& [px, py] : plan) prism.radius2 = std::max(prism.radius2, px * px + py * py);
+  return prism;
+}
+
+Submerged Immersion::of(const State<Spatial>& state, std::int32_t body) const {
+  const auto index = static_cast<std::size_t>(body);
+  const Prism<double> b = prism(index);
+  const double z = b.z + state.record(index)[2];
+  const PrismBelow<double> p = prism_below(b, of_unit_length(rotation(state, index)), z);
+  const auto& [e1, e2, e3] = p.axes;
+  if (!sides_only(b, p.axes, z)) return clipped(body, p.axes, z);
+
+  Submerged s;
+  s.volume = p.volume;
+  s.moment = {p.moment.x, p.moment.y, p.moment.z};
+  // The point of the cut over the plan's (x, y) is at p0 + p1 x + p2 y, q0 + q1 x + q2 y.
+  const double p0 = e3.x * p.c0, p1 = e1.x - e3.x * p.sx, p2 = e2.x - e3.x * p.sy;
+  const double q0 = e3.y * p.c0, q1 = e1.y - e3.y * p.sx, q2 = e2.y - e3.y * p.sy;
+  const double px = p1 * b.x + p2 * b.y, qx = q1 * b.x + q2 * b.y;
+  s.waterplane = p.upright * b.area;
+  s.wx = p.upright * (p0 * b.area + px);
+  s.wy = p.upright * (q0 * b.area + qx);
+  s.wxx = p.upright * (p0 * (p0 * b.area + 2 * px) + p1 * (p1 * b.xx + p2 * b.xy) +
+                       p2 * (p1 * b.xy + p2 * b.yy));
+  s.wyy = p.upright * (q0 * (q0 * b.area + 2 * qx) + q1 * (q1 * b.xx + q2 * b.xy) +
+                       q2 * (q1 * b.xy + q2 * b.yy));
+  s.wxy = p.upright * (p0 * (q0 * b.area + qx) + q0 * px + p1 * (q1 * b.xx + q2 * b.xy) +
+                       p2 * (q1 * b.xy + q2 * b.yy));
+  return s;
+}
+
+void Immersion::replace(const State<Spatial>& state, std::size_t block, std::size_t lane,
+                        Lane& below) const {
+  const Submerged s = of(state, static_cast<std::int32_t>(body_of(block, lane)));
+  below.volume[lane] = s.volume;
+  below.moment.x[lane] = s.moment[0];
+  below.moment.y[lane] = s.moment[1];
+  below.moment.z[lane] = s.moment[2];
+}
+
+double Immersion::plan_area(std::int32_t body) const {
+  // Each point of the plan lies under one face that looks up and over one that looks down.
+  const auto b = static_cast<std::size_t>(body);
+  const Shapes& shapes = part_.shapes;
+  const Triad<double> axes = triad(prism(b).axes);
+  double twice = 0;
+  std::vector<Point2> face;
+  for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
+       f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
+    face.clear();
+    for (auto c = static_cast<std::size_t>(shapes.corner_of[f]);
+         c < static_cast<std::size_t>(shapes.corner_of[f + 1]); ++c) {
+      const Point3& r = shapes.vertices[static_cast<std::size_t>(shapes.corners[c])];
+      const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
+      face.push_back({p.x, p.y});
+    }
+    twice += std::abs(plan_properties(face).area);
+  }
+  return twice / 2;
+}
+
+Submerged Immersion::by_clipping(const State<Spatial>& state, std::int32_t body) const {
+  const auto b = static_cast<std::size_t>(body);
+  const Quat<double> axes = product(of_unit_length(rotation(state, b)), prism(b).axes);
+  return clipped_polyhedron(body, triad(axes), height(state, body));
+}
+
+Submerged Immersion::clipped(std::int32_t body, const Triad<double>& axes, double z) const {
+  const auto b = static_cast<std::size_t>(body);
+  if (z >= extent_[b]) return {};
+  if (z <= -extent_[b]) {
+    const auto& [x, y, c] = whole_[b].centroid;
+    const Vec3<double> moment = whole_[b].volume * axes.to_world({x, y, c});
+    Submerged s;
+    s.volume = whole_[b].volume;
+    s.moment = {moment.x, moment.y, moment.z};
+    return s;
+  }
+  return clipped_polyhedron(body, axes, z);
+}
+
+Submerged Immersion::clipped_polyhedron(std::int32_t body, const Triad<double>& axes,
+                                        double z) const {
+  const auto b = static_cast<std::size_t>(body);
+  const Shapes& shapes = part_.shapes;
+  placed_.clear();
+  for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
+    const Point3& r = shapes.vertices[static_cast<std::size_t>(v)];
+    const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
+    placed_.push_back({p.x, p.y, p.z});
+  }
+  return submerged(shapes, body, placed_, -z);
+}
+
+}  // namespace floe

@@ -1,0 +1,189 @@
+/// \file
+/// The part of each body that is below the water, z < 0: exact at any place and tilt.
+///
+/// Notation: (x, y, c) are a body's principal axes with the origin at its centroid; R takes them to
+/// the world, (s_x, s_y) = (R_31, R_32)/R_33 is the slope of its plan. Of a prism along c, whose
+/// plan has the area A and the moments S, I about the origin, the water cuts off what is above
+/// c_w(x, y) = c_0 - s_x x - s_y y, c_0 = -z(centroid)/R_33. While only the sides are cut, all
+/// integrals of c from the bottom to c_w are polynomials of A, S and I (physics: docs/model.md 6).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/simd.h"
+#include "floe/lattice/state.h"
+#include "lattice/partition.h"
+
+namespace floe {
+
+/// A body at rest, and its plan if it is a prism along axis 3. Of other bodies the circumradius is
+/// infinite, so that they never count as cut at the sides only.
+template <class T>
+struct Prism {
+  Quat<T> axes;              ///< principal axes
+  T z;                       ///< of the centroid [m]
+  T bottom, top;             ///< where the end faces are on axis 3 [m]
+  T area, x, y, xx, xy, yy;  ///< A, S and I of the plan
+  T radius2;                 ///< square of the circumradius about axis 3 [m^2]
+  static constexpr std::size_t numbers = 14;
+};
+
+/// What the water leaves of a prism of which it cuts the sides only.
+template <class T>
+struct PrismBelow {
+  Triad<T> axes;
+  T upright, sx, sy, c0;  ///< 1/R_33, slopes, height of the water over the centroid
+  T volume;               ///< [m^3]
+  Vec3<T> moment;         ///< int r dV, world axes about the centroid [m^4]
+};
+
+/// \param rotation  of unit length   \param z  of the centroid
+template <class T>
+PrismBelow<T> prism_below(const Prism<T>& b, const Quat<T>& rotation, const T& z) {
+  PrismBelow<T> p;
+  p.axes = triad(product(rotation, b.axes));
+  p.upright = 1.0 / p.axes.e3.z;
+  p.sx = p.axes.e1.z * p.upright;
+  p.sy = p.axes.e2.z * p.upright;
+  p.c0 = -(z * p.upright);
+  const T depth = p.c0 - b.bottom;
+  const T along = p.sx * b.x + p.sy * b.y;
+  const T tilt_x = p.sx * b.xx + p.sy * b.xy, tilt_y = p.sx * b.xy + p.sy * b.yy;
+  p.volume = b.area * depth - along;
+  p.moment = p.axes.to_world(
+      {T(depth * b.x - tilt_x), T(depth * b.y - tilt_y),
+       T(0.5 * T(depth * T(T(p.c0 + b.bottom) * b.area) + T(p.sx * tilt_x + p.sy * tilt_y)) -
+         p.c0 * along)});
+  return p;
+}
+
+/// Whether the water cuts the sides of a prism only. \param z  of the centroid
+template <class T>
+auto sides_only(const Prism<T>& b, const Triad<T>& axes, const T& z) {
+  // Heights of the end faces over the centroid's foot; their corners are within `reach` of them.
+  const T bottom = z + axes.e3.z * b.bottom, top = z + axes.e3.z * b.top;
+  const T reach2 = b.radius2 * T(axes.e1.z * axes.e1.z + axes.e2.z * axes.e2.z);
+  return axes.e3.z > 0.0 && bottom < 0.0 && top > 0.0 && bottom * bottom > reach2 &&
+         top * top > reach2;
+}
+
+/// A linearised quaternion (1, theta/2) is longer than 1 and would swell the body.
+template <class T>
+Quat<T> of_unit_length(const Quat<T>& q) {
+  using std::sqrt;
+  const T n = 1.0 / sqrt(T(T(q.w * q.w) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z)));
+  return {n * q.w, n * q.x, n * q.y, n * q.z};
+}
+
+class Immersion {
+ public:
+  /// \param part  with shapes; must outlive this
+  explicit Immersion(const Part& part);
+
+  /// Submerged part of an owned body; moments are about its centroid, in world axes.
+  Submerged of(const State<Spatial>& state, std::int32_t body) const;
+  /// The same by clipping the polyhedron, whatever the body is.
+  Submerged by_clipping(const State<Spatial>& state, std::int32_t body) const;
+
+  struct Lane {
+    Lanes volume;
+    Vec3<Lanes> moment;
+  };
+  /// Volume and moment of the bodies of one block, one per lane: body block * lanes + lane; lanes
+  /// beyond the last owned body repeat it. \param uz, q  their displacements and rotations
+  Lane of_block(const State<Spatial>& state, std::size_t block, const Lanes& uz,
+                const Quat<Lanes>& q) const {
+    const Prism<Lanes> b = blocks_[block].get();
+    const Lanes z = b.z + uz;
+    const PrismBelow<Lanes> p = prism_below<Lanes>(b, of_unit_length(q), z);
+    Lane below{p.volume, p.moment};
+    const auto good = sides_only<Lanes>(b, p.axes, z);
+    if (!all_of(good)) [[unlikely]] {
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        if (!good[lane]) replace(state, block, lane, below);
+    }
+    return below;
+  }
+  std::size_t blocks() const { return blocks_.size(); }
+  /// Body of a lane.
+  std::size_t body_of(std::size_t block, std::size_t lane) const {
+    return std::min(block * lanes + lane, whole_.size() - 1);
+  }
+
+  /// Height of an owned body's centroid over the water [m].
+  double height(const State<Spatial>& state, std::int32_t body) const {
+    const auto b = static_cast<std::size_t>(body);
+    return part_.bodies.position[b][2] + state.record(b)[2];
+  }
+  /// Volume of an owned body [m^3].
+  double volume(std::int32_t body) const { return whole_[static_cast<std::size_t>(body)].volume; }
+  /// Area of an owned body at rest seen from above [m^2].
+  double plan_area(std::int32_t body) const;
+  /// Whether an owned body is a prism along its axis 3.
+  bool is_prism(std::int32_t body) const {
+    return prism(static_cast<std::size_t>(body)).radius2 < std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  struct alignas(64) Block {
+    std::array<std::array<double, lanes>, Prism<double>::numbers> values;
+    template <class T>
+    static Prism<T> assemble(auto at) {
+      return {{at(0), at(1), at(2), at(3)},
+              at(4),
+              at(5),
+              at(6),
+              at(7),
+              at(8),
+              at(9),
+              at(10),
+              at(11),
+              at(12),
+              at(13)};
+    }
+    Prism<Lanes> get() const {
+      return assemble<Lanes>([&](std::size_t k) { return load(values[k].data()); });
+    }
+  };
+  Prism<double> prism(std::size_t body) const {
+    const Block& block = blocks_[body / lanes];
+    return Block::assemble<double>([&](std::size_t k) { return block.values[k][body % lanes]; });
+  }
+  Prism<double> find_prism(std::size_t body) const;
+  void replace(const State<Spatial>& state, std::size_t block, std::size_t lane, Lane& below) const;
+  Submerged clipped(std::int32_t body, const Triad<double>& axes, double z) const;
+  Submerged clipped_polyhedron(std::int32_t body, const Triad<double>& axes, double z) const;
+
+  const Part& part_;
+  std::vector<Block> blocks_;
+  std::vector<VolumeProperties> whole_;
+  std::vector<double> extent_;          ///< of the farthest vertex from the centroid [m]
+  mutable std::vector<Point3> placed_;  ///< work space of the clipping
+};
+
+/// Displacements, rotations and velocities of a block's bodies, and the way back of forces on them.
+struct BlockMotion {
+  Vec3<Lanes> u, v;
+  Quat<Lanes> q;
+};
+template <bool with_velocity>
+BlockMotion block_motion(const Immersion& immersion, const State<Spatial>& state,
+                         std::size_t block) {
+  const auto four = [&](std::size_t offset) {
+    return gather_four(
+        [&](std::size_t lane) { return state.record(immersion.body_of(block, lane)) + offset; });
+  };
+  const auto a = four(0), b = four(4);
+  BlockMotion m{{a[0], a[1], a[2]}, {}, {a[3], b[0], b[1], b[2]}};
+  if constexpr (with_velocity) {
+    const auto c = four(8);
+    m.v = {b[3], c[0], c[1]};
+  }
+  return m;
+}
+
+}  // namespace floe
