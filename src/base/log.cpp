@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <string>
 
+#include "base/collectives.h"
 #include "base/run_log.h"
 #include "floe/base/petsc.h"
 
@@ -57,15 +58,14 @@ double peak_memory_mb() {
 }
 
 double resident_memory_mb(MPI_Comm comm) {
-  double mine = 0, all = 0;
+  double mine = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
     long whole = 0, resident = 0;
     if (std::fscanf(file, "%ld %ld", &whole, &resident) == 2)
       mine = static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
     std::fclose(file);
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, comm);
-  return all;
+  return sum_over_ranks(mine, comm);
 }
 
 Progress::Progress(std::string_view what, double total)

@@ -8,9 +8,6 @@
 
 namespace floe {
 
-/// Rank 0's text on all ranks. Collective.
-void share(std::string& text, MPI_Comm comm);
-
 /// How a rank's work ended.
 struct Outcome {
   enum Kind : int { good, bad_input, failed } kind = good;

@@ -1,5 +1,6 @@
 // What was given: which line of the table it belongs to, and whether it has an effect.
 #include "floe/base/options.h"
+#include "base/collectives.h"
 
 #include <algorithm>
 #include <set>
@@ -270,10 +271,7 @@ std::string some_of(const std::vector<std::string>& items) {
   return text;
 }
 void throw_verdict(std::string verdict, MPI_Comm comm) {
-  auto length = static_cast<int>(verdict.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  verdict.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(verdict.data(), length, MPI_CHAR, 0, comm);
+  broadcast(verdict, comm);
   if (!verdict.empty()) throw InputError(verdict);
 }
 }  // namespace floe

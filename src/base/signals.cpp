@@ -3,6 +3,8 @@
 #include <array>
 #include <csignal>
 
+#include "base/collectives.h"
+
 namespace floe {
 namespace {
 
@@ -51,11 +53,7 @@ StopSignals::~StopSignals() {
 
 bool StopSignals::came() { return signal_came != 0; }
 
-bool StopSignals::came(MPI_Comm comm) {
-  int came_here = signal_came != 0 ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &came_here, 1, MPI_INT, MPI_MAX, comm);
-  return came_here != 0;
-}
+bool StopSignals::came(MPI_Comm comm) { return on_any_rank(signal_came != 0, comm); }
 
 void stop_if_asked(MPI_Comm comm) {
   if (StopSignals::came(comm))

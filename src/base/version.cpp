@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/collectives.h"
+
 namespace floe {
 namespace {
 
@@ -69,21 +71,18 @@ std::string built_for() {
 }
 
 std::string built_for(MPI_Comm comm) {
-  constexpr std::size_t longest = 64;
-  std::string mine = built_for();
-  mine.resize(longest, ' ');
+  const std::string mine = built_for();
   std::string first = mine;
-  MPI_Bcast(first.data(), longest, MPI_CHAR, 0, comm);
-  int alike = first == mine ? 1 : 0, ranks = 0;
-  MPI_Allreduce(MPI_IN_PLACE, &alike, 1, MPI_INT, MPI_MIN, comm);
-  if (alike == 1) return built_for();
-  MPI_Comm_size(comm, &ranks);
-  std::vector<char> all(static_cast<std::size_t>(ranks) * longest);
-  MPI_Allgather(mine.data(), longest, MPI_CHAR, all.data(), longest, MPI_CHAR, comm);
+  broadcast(first, comm);
+  if (on_all_ranks(first == mine, comm)) return mine;
   std::map<std::string, int> counts;
-  for (auto from = all.begin(); from != all.end(); from += longest) {
-    const std::string one(from, from + longest);
-    ++counts[one.substr(0, one.find_last_not_of(' ') + 1)];
+  std::vector<char> line(mine.begin(), mine.end());
+  line.push_back('\n');
+  const std::vector<char> all = all_gathered(line, comm);
+  for (auto from = all.begin(); from != all.end();) {
+    const auto end = std::find(from, all.end(), '\n');
+    ++counts[std::string(from, end)];
+    from = end + 1;
   }
   std::string text;
   for (const auto& [name, count] : counts)

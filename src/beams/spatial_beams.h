@@ -2,6 +2,7 @@
 /// The spatial beams of a part in blocks of lanes, as a force.
 #pragma once
 
+#include "base/collectives.h"
 #include "beams/beam_blocks.h"
 #include "beams/beam_spatial.h"
 #include "beams/lattice_beams.h"
@@ -26,11 +27,10 @@ using SpatialBeams = LatticeBeams<SpatialLanes<kinematics, Frame>, damped>;
 /// Whether all of a part's beams are flat. Collective: forces must not depend on how bodies are
 /// shared.
 inline bool all_flat(const Part& part) {
-  int flat = 1;
-  for (std::int32_t m = 0; m < part.beams.size() && flat == 1; ++m)
+  bool flat = true;
+  for (std::int32_t m = 0; m < part.beams.size() && flat; ++m)
     flat = is_flat(part.bodies, part.beams, m);
-  MPI_Allreduce(MPI_IN_PLACE, &flat, 1, MPI_INT, MPI_MIN, part.comm);
-  return flat == 1;
+  return on_all_ranks(flat, part.comm);
 }
 
 }  // namespace floe

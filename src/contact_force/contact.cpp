@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/all_gathered.h"
+#include "base/collectives.h"
 #include "contact_force/contact_checks.h"
 #include "contact_force/contact_exchange.h"
 #include "contact_force/contact_sharing.h"
@@ -98,7 +98,7 @@ class ContactOfModel final : public Contact {
   void release(std::span<const std::array<std::int32_t, 2>> pairs) override {
     std::vector<std::int32_t> mine;
     for (const auto& pair : pairs) mine.insert(mine.end(), pair.begin(), pair.end());
-    const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, part_.comm);
+    const std::vector<std::int32_t> all = all_gathered(mine, part_.comm);
     for (std::size_t k = 0; k + 1 < all.size(); k += 2) contacts_.release({all[k], all[k + 1]});
   }
 
@@ -135,9 +135,7 @@ class ContactOfModel final : public Contact {
   }
 
   bool anywhere(bool here) const {
-    int any = here ? 1 : 0;
-    if (size(part_.comm) > 1) MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, part_.comm);
-    return any != 0;
+    return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
 
   void build(const State<Spatial>& state) const {
@@ -159,9 +157,7 @@ class ContactOfModel final : public Contact {
     std::vector<Vec3<double>>& forces = forces_;
     forces.clear();
     for (std::size_t k = 0; k < n; ++k) forces.push_back(contacts_.on_obstacle(k).force);
-    if (size(part_.comm) > 1)
-      MPI_Allreduce(MPI_IN_PLACE, forces.data(), static_cast<int>(3 * n), MPI_DOUBLE, MPI_SUM,
-                    part_.comm);
+    if (size(part_.comm) > 1) sum_over_ranks(std::span(&forces[0].x, 3 * n), part_.comm);
     for (std::size_t k = 0; k < n; ++k) {
       if (dot(forces[k], forces[k]) > dot(peak_[k], peak_[k])) peak_[k] = forces[k];
       impulse_[k] = impulse_[k] + dt * forces[k];
@@ -202,7 +198,7 @@ void ContactOfModel::remember(Memory& memory) {
   memory.common("time", time_);
   std::vector<double> rows = contacts_.history(), pairs;
   if (!memory.loading()) {
-    const std::vector<double> all = all_gathered(rows, MPI_DOUBLE, part_.comm);
+    const std::vector<double> all = all_gathered(rows, part_.comm);
     // In list order, whatever the ranks.
     std::vector<std::array<double, Contacts::width>> in_order(all.size() / Contacts::width);
     for (std::size_t k = 0; k < in_order.size(); ++k)

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/all_gathered.h"
+#include "base/collectives.h"
 #include "base/format.h"
 #include "floe/base/petsc.h"
 
@@ -21,7 +21,7 @@ std::string name_of(const Contacts& contacts, std::int32_t body) {
 void refuse_enclosed(const Contacts& contacts, MPI_Comm comm) {
   std::vector<std::int32_t> mine;
   for (const auto& pair : contacts.enclosed()) mine.insert(mine.end(), pair.begin(), pair.end());
-  const std::vector<std::int32_t> all = all_gathered(mine, MPI_INT32_T, comm);
+  const std::vector<std::int32_t> all = all_gathered(mine, comm);
   if (all.empty()) return;
   std::array<std::int32_t, 2> first{all[0], all[1]};  // whatever the ranks
   for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
@@ -42,7 +42,7 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
       mine.insert(mine.end(),
                   {p.share, p.depth, static_cast<double>(p.a), static_cast<double>(p.b)});
   }
-  const std::vector<double> all = all_gathered(mine, MPI_DOUBLE, comm);
+  const std::vector<double> all = all_gathered(mine, comm);
   if (all.empty()) return {};
   std::array<double, 4> worst{};
   for (std::size_t k = 0; k < all.size(); k += 4) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "base/all_gathered.h"
+#include "base/collectives.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -11,13 +11,13 @@ ContactExchange::ContactExchange(const Part& part) : part_(part), alone_(size(pa
   const auto owned = static_cast<std::size_t>(part.owned);
   std::vector<int> counts;
   global_ = all_gathered(std::vector(part.global.begin(), part.global.begin() + part.owned),
-                         MPI_INT32_T, part.comm, &counts);
+                         part.comm, &counts);
   std::vector<double> mine;
   for (std::size_t b = 0; b < owned; ++b) {
     mine.insert(mine.end(), part.bodies.position[b].begin(), part.bodies.position[b].end());
     mine.insert(mine.end(), part.bodies.orientation[b].begin(), part.bodies.orientation[b].end());
   }
-  const std::vector<double> all = all_gathered(mine, MPI_DOUBLE, part.comm);
+  const std::vector<double> all = all_gathered(mine, part.comm);
   owner_.resize(global_.size());
   rest_.resize(global_.size());
   axes_.resize(global_.size());
@@ -40,7 +40,7 @@ std::vector<Pose> ContactExchange::poses(const State<Spatial>& state) const {
     const double* r = state.record(static_cast<std::size_t>(b));
     mine.insert(mine.end(), r, r + 7);
   }
-  const std::vector<double> all = all_gathered(mine, MPI_DOUBLE, part_.comm);
+  const std::vector<double> all = all_gathered(mine, part_.comm);
   std::vector<Pose> poses(global_.size());
   for (std::size_t k = 0; k < global_.size(); ++k) {
     const auto b = static_cast<std::size_t>(global_[k]);
@@ -63,7 +63,7 @@ void ContactExchange::choose(std::span<const std::int32_t> wanted) {
     if (!here) foreign.push_back(body);
   }
   if (alone_) return;
-  std::vector<std::int32_t> all = all_gathered(foreign, MPI_INT32_T, part_.comm);
+  std::vector<std::int32_t> all = all_gathered(foreign, part_.comm);
   // Each rank sends what any other wants of it, in order of owner and index; all ranks know that
   // order.
   std::sort(all.begin(), all.end(), [&](std::int32_t a, std::int32_t b) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/all_gathered.h"
+#include "base/collectives.h"
 
 namespace floe {
 namespace {
@@ -51,8 +51,8 @@ ContactSharing::ContactSharing(MPI_Comm comm) : comm_(comm) {}
 void ContactSharing::plan(Contacts& contacts) {
   if (size(comm_) == 1) return;
   const auto me = static_cast<std::size_t>(rank(comm_));
-  const auto shares = shared_pairs(all_gathered(
-      std::vector{static_cast<std::int64_t>(contacts.remembering())}, MPI_INT64_T, comm_));
+  const auto shares = shared_pairs(
+      all_gathered(std::vector{static_cast<std::int64_t>(contacts.remembering())}, comm_));
   std::int64_t mine = 0;
   shared_ = false;
   for (std::size_t r = 0; r < shares.size(); ++r) {
@@ -68,7 +68,7 @@ void ContactSharing::plan(Contacts& contacts) {
     lent.insert(lent.end(), pair.begin(), pair.end());
   lent_ = static_cast<std::size_t>(mine);
   // All ranks know all lent pairs, giver by giver; each giver's go to its takers in turn.
-  const std::vector<std::int32_t> all = all_gathered(lent, MPI_INT32_T, comm_);
+  const std::vector<std::int32_t> all = all_gathered(lent, comm_);
   std::vector<std::array<std::int32_t, 2>> borrowed;
   std::vector<std::int32_t> takers, places;
   std::vector<std::int32_t> taken(shares.size(), 0);

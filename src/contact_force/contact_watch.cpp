@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/all_gathered.h"
-#include "base/ranks.h"
+#include "base/collectives.h"
 
 namespace floe {
 namespace {
@@ -101,7 +100,7 @@ void ContactWatch::remember(Memory& memory, const Part& part) {
   memory.rows("at_build", owned, at_build_, Spatial::record);
   memory.common("build_time", time_);
   memory.common("asks_in", asks_in_, -(std::int64_t{1} << 53));  // it goes on counting
-  std::vector<double> all = all_gathered(std::vector{way_, speed_}, MPI_DOUBLE, part.comm);
+  std::vector<double> all = all_gathered(std::vector{way_, speed_}, part.comm);
   const std::size_t numbers = all.size();
   memory.common("ways_of_ranks", all);
   started_ = true;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/ranks.h"
+#include "base/collectives.h"
 #include "model/model.h"
 
 namespace floe {
@@ -50,10 +50,7 @@ class Operators {
   Eigen::Index size() const { return static_cast<Eigen::Index>(part_.owned) * n; }
 
   double dot(const Vector& a, const Vector& b) const {
-    const double mine = a.dot(b);
-    double all = 0;
-    MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, part_.comm);
-    return all;
+    return sum_over_ranks(a.dot(b), part_.comm);
   }
 
   /// World components of body b from mass-weighted ones, those of rotations along its principal

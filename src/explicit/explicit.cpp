@@ -1,5 +1,6 @@
 #include "explicit/explicit.h"
 
+#include "base/collectives.h"
 #include "contact_force/contact.h"
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
@@ -50,9 +51,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
   void release_broken() {
     if (contact_ == nullptr || this->model().fracture() == nullptr) return;
     const auto pairs = this->model().fracture()->released();
-    int any = pairs.empty() ? 0 : 1;
-    MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, this->model().part().comm);
-    if (any != 0) contact_->release(pairs);
+    if (on_any_rank(!pairs.empty(), this->model().part().comm)) contact_->release(pairs);
   }
   StableStep find_stable_step() override {
     const StableStep stable = stable_step(this->model(), this->state());

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "base/collectives.h"
 #include "base/format.h"
-#include "base/ranks.h"
 
 namespace floe {
 namespace {
@@ -76,16 +76,9 @@ typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
     if (auto limit = force->step_limit(this->state()); limit.dt < least.dt) least = limit;
   }
   const MPI_Comm comm = this->model().part().comm;
-  struct {
-    double dt;
-    int rank;
-  } mine{least.dt, rank(comm)}, all{};
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
-  auto length = static_cast<int>(least.reason.size());
-  MPI_Bcast(&length, 1, MPI_INT, all.rank, comm);
-  least.dt = all.dt;
-  least.reason.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(least.reason.data(), length, MPI_CHAR, all.rank, comm);
+  const Extreme of_all = least_of_ranks({least.dt, rank(comm)}, comm);
+  least.dt = of_all.value;
+  broadcast(least.reason, comm, of_all.index);
   return least;
 }
 

@@ -10,6 +10,7 @@
 #include <random>
 #include <sstream>
 
+#include "base/collectives.h"
 #include "explicit/difference_operators.h"
 #include "floe/base/log.h"
 
@@ -93,10 +94,8 @@ class Extreme {
 template <class Space>
 std::string describe(const Operators<Space>& a, const Model<Space>& model, const Vector& z) {
   constexpr int n = Space::unknowns;
-  struct {
-    double value = -1;
-    int rank = 0;
-  } mine, best;
+  const MPI_Comm comm = model.part().comm;
+  Extreme mine{-1, rank(comm)};
   Eigen::Index at = 0;
   for (Eigen::Index b = 0; b < a.size() / n; ++b) {
     const double share = z.segment<n>(b * n).squaredNorm();
@@ -105,11 +104,9 @@ std::string describe(const Operators<Space>& a, const Model<Space>& model, const
       at = b;
     }
   }
-  const MPI_Comm comm = model.part().comm;
-  MPI_Comm_rank(comm, &mine.rank);
-  MPI_Allreduce(&mine, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
+  const Extreme best = largest_of_ranks(mine, comm);
   std::array<double, 5> facts{};
-  if (best.rank == mine.rank) {
+  if (best.index == mine.index) {
     const auto b = static_cast<std::size_t>(at);
     const auto v = z.segment<n>(at * n);
     const Point3& x = model.part().bodies.position[b];
@@ -119,7 +116,7 @@ std::string describe(const Operators<Space>& a, const Model<Space>& model, const
                  ? 1.0
                  : 0.0};
   }
-  MPI_Bcast(facts.data(), 5, MPI_DOUBLE, best.rank, comm);
+  broadcast(facts, comm, best.index);
   std::ostringstream text;
   text << (facts[4] > 0.5 ? "turning" : "shifting") << " of body " << static_cast<long>(facts[0])
        << " at (" << facts[1] << ", " << facts[2] << ", " << facts[3] << ")";

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/ranks.h"
+#include "base/collectives.h"
 #include "beams/spatial_beams.h"
 #include "floe/base/petsc.h"
 #include "fracture/breakable_blocks.h"
@@ -18,14 +18,6 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
 /// Collects what the ranks count of their cracks, and spreads them again. \param cracks  with beams
 /// as global indices. Collective.
 void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks);
-
-/// The beam with the largest value over all ranks: the value and the global index, of equal ones
-/// the first. Collective.
-struct Worst {
-  double value;
-  int beam;
-};
-Worst worst_of(const Worst& mine, MPI_Comm comm);
 
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, public Fracture {
@@ -214,7 +206,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   Advance advance(const State<Spatial>& state) override {
     constexpr double rounding = 1e-6;  // of s: growth below it is none
     growing_.clear();
-    Worst worst{0, -1};
+    Extreme worst{0, -1};  // of the beams that break
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = criterion_of(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -228,18 +220,18 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
           worst = {s / kappa(m), part_.global_beam[at]};
       }
     }
-    worst = worst_of(worst, part_.comm);
-    int mine = 0, any = 0;
+    worst = largest_of_ranks(worst, part_.comm);
+    bool softened = false;
     for (const Growth& g : growing_) {
-      const bool chosen = part_.global_beam[static_cast<std::size_t>(g.crack.beam)] == worst.beam;
+      const bool chosen = part_.global_beam[static_cast<std::size_t>(g.crack.beam)] == worst.index;
       if (g.crack.broken() && !chosen) continue;
       take(g);
-      mine = 1;
+      softened = true;
     }
     growing_.clear();
-    MPI_Allreduce(&mine, &any, 1, MPI_INT, MPI_MAX, part_.comm);
-    if (worst.beam >= 0) return Advance::broke;
-    return any != 0 ? Advance::softened : Advance::none;
+    softened = on_any_rank(softened, part_.comm);
+    if (worst.index >= 0) return Advance::broke;
+    return softened ? Advance::softened : Advance::none;
   }
 
   void retreat() override {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/ranks.h"
+#include "base/collectives.h"
 #include "fracture/breakable_beams.h"
 
 namespace floe {
@@ -27,12 +27,12 @@ double mean_section(const Part& part) {
   for (std::size_t m = 0; m < part.beams.bodies.size(); ++m) largest = std::max(largest, area(m));
   largest = largest_over_ranks(largest, part.comm);
   constexpr double fine = 0x1p31;
-  std::int64_t sum = 0, all = 0;
+  std::int64_t sum = 0;
   for (std::size_t m = 0; m < part.beams.bodies.size(); ++m) {
     if (part.counts_here[m]) sum += std::llround(fine * (area(m) / largest));
   }
-  MPI_Allreduce(&sum, &all, 1, MPI_INT64_T, MPI_SUM, part.comm);
-  return largest * (static_cast<double>(all) / fine) / static_cast<double>(part.global_beams);
+  sum = sum_over_ranks(sum, part.comm);
+  return largest * (static_cast<double>(sum) / fine) / static_cast<double>(part.global_beams);
 }
 
 constexpr std::size_t crack_size = 11;
@@ -60,9 +60,7 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
   const auto sides = [&](const std::vector<double>& all) {
     return all.size() == beams.bodies.size();
   };
-  int missing = sides(beams.width) && sides(beams.height) ? 0 : 1;
-  MPI_Allreduce(MPI_IN_PLACE, &missing, 1, MPI_INT, MPI_MAX, part.comm);
-  if (missing != 0)
+  if (!on_all_ranks(sides(beams.width) && sides(beams.height), part.comm))
     throw InputError(
         "forces: fracture needs the sides of the beams' sections: the lattice file has no "
         "/beams/width and /beams/height");
@@ -97,17 +95,8 @@ double overload(const Part& part, const std::vector<BeamSection>& sections,
 
 void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks) {
   constexpr std::size_t width = crack_size;
-  std::vector<double> mine = packed(cracks), all;
-  const auto ranks = static_cast<std::size_t>(size(part.comm));
-  if (!memory.loading()) {
-    const int count = static_cast<int>(mine.size());
-    std::vector<int> counts(ranks), offsets(ranks, 0);
-    MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, part.comm);
-    for (std::size_t r = 1; r < ranks; ++r) offsets[r] = offsets[r - 1] + counts[r - 1];
-    all.resize(static_cast<std::size_t>(offsets.back() + counts.back()));
-    MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
-                   MPI_DOUBLE, part.comm);
-  }
+  std::vector<double> all;
+  if (!memory.loading()) all = all_gathered(packed(cracks), part.comm);
   memory.common("cracks", all);
   if (!memory.loading()) return;
   cracks.clear();
@@ -123,12 +112,6 @@ void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& crack
                       v[7],
                       {v[8], v[9], v[10]}});
   }
-}
-
-Worst worst_of(const Worst& mine, MPI_Comm comm) {
-  Worst all{};
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
-  return all;
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // Implicit dynamics by the TS type liealpha: what PETSc calls, when a factorisation is kept, the
 // books of a step, and where steps end.
 #include "implicit/implicit.h"
+#include "base/collectives.h"
 
 #include <petscts.h>
 
@@ -368,10 +369,9 @@ PetscErrorCode ImplicitRun<Space>::converged(SNES snes, PetscInt it, PetscReal, 
 template <class Space>
 PetscErrorCode ImplicitRun<Space>::in_domain(TS ts, PetscReal, Vec, PetscBool* good) noexcept {
   ImplicitRun& run = of(ts);
-  std::int64_t mine = 0, all = 0;
-  if (run.model().beams() != nullptr) mine = run.model().beams()->folded(run.state());
-  MPI_Allreduce(&mine, &all, 1, MPI_INT64_T, MPI_SUM, run.model().part().comm);
-  *good = all == 0 ? PETSC_TRUE : PETSC_FALSE;
+  std::int64_t folded = 0;
+  if (run.model().beams() != nullptr) folded = run.model().beams()->folded(run.state());
+  *good = on_any_rank(folded > 0, run.model().part().comm) ? PETSC_FALSE : PETSC_TRUE;
   return 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/collectives.h"
 #include "floe/base/log.h"
 #include "model/newton.h"
 #include "run/numbers.h"
@@ -166,9 +167,7 @@ void MotionEquations<Space>::residual(double time, Vec x, Vec v, Vec a, Vec f) {
 
 template <class Space>
 double MotionEquations<Space>::tolerance(double relative, double absolute) const {
-  const std::array<double, 2> mine{sizes2_, rounding2_};
-  std::array<double, 2> all{};
-  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, part_.comm);
+  const auto all = sum_over_ranks(std::array{sizes2_, rounding2_}, part_.comm);
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   return std::max({relative * std::sqrt(all[0]), rounding * std::sqrt(all[1]), absolute});
 }

@@ -5,22 +5,11 @@
 #include <cstdio>
 #include <numeric>
 
+#include "base/collectives.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
-namespace {
-
-void broadcast(std::vector<double>& values, MPI_Comm comm) {
-  auto count = static_cast<std::int64_t>(values.size());
-  MPI_Bcast(&count, 1, MPI_INT64_T, 0, comm);
-  values.resize(static_cast<std::size_t>(count));
-  constexpr std::int64_t piece = 1 << 28;  // MPI counts in int
-  for (std::int64_t at = 0; at < count; at += piece)
-    MPI_Bcast(values.data() + at, static_cast<int>(std::min(piece, count - at)), MPI_DOUBLE, 0,
-              comm);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void Memory::refuse(const std::string& why) const {
   throw InputError("checkpoint: restart: '" + name_ + "': " + why);
@@ -83,10 +72,7 @@ void Memory::common(const std::string& name, std::string& text) {
     return;
   }
   on_root(part_.comm, [&] { text = file_->read_text(group_ + name); });
-  auto size = static_cast<std::int64_t>(text.size());
-  MPI_Bcast(&size, 1, MPI_INT64_T, 0, part_.comm);
-  text.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, part_.comm);
+  broadcast(text, part_.comm);
 }
 
 void Memory::share(const std::string& name, double& value) {
@@ -139,9 +125,8 @@ void Memory::rows(const std::string& name, std::span<const std::int32_t> names,
     all_there = at < listed.size() && listed[at] == static_cast<double>(global[k]);
     if (all_there) std::copy_n(&values[at * w], w, &rows[k * w]);
   }
-  int mine = all_there ? 1 : 0, all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, part_.comm);
-  if (all == 0) refuse(group_ + name + " is of another lattice than this scene's");
+  if (!on_all_ranks(all_there, part_.comm))
+    refuse(group_ + name + " is of another lattice than this scene's");
 }
 
 void Memory::save_rows(const std::string& name, const std::vector<std::int32_t>& global,

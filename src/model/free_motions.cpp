@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/collectives.h"
 #include "floe/base/petsc.h"
 #include "lattice/pieces.h"
 #include "model/model.h"
@@ -187,12 +188,10 @@ void require_balance(const Model<Space>& model, const Lattice& lattice, const Fr
       work[12 * found->second + 6 + k] += std::abs(share[k]);
     }
   }
-  std::vector<double> total(work.size());
-  MPI_Allreduce(work.data(), total.data(), static_cast<int>(work.size()), MPI_DOUBLE, MPI_SUM,
-                part.comm);
+  sum_over_ranks(std::span(work), part.comm);
 
   for (const FreeMotion& m : free.motions) {
-    const double* sums = &total[12 * slot.at(m.piece)];
+    const double* sums = &work[12 * slot.at(m.piece)];
     double net = 0, size = 0;
     for (std::size_t k = 0; k < 6; ++k) {
       net += m.coefficients[k] * sums[k];

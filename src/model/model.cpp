@@ -7,6 +7,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/collectives.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 
@@ -219,10 +220,7 @@ std::vector<std::pair<std::string, double>> Model<Space>::report(const State<Spa
       found->second += value;
     }
   }
-  for (auto& [name, value] : sums) {
-    const double mine = value;
-    MPI_Allreduce(&mine, &value, 1, MPI_DOUBLE, MPI_SUM, part_.comm);
-  }
+  for (auto& [name, value] : sums) value = sum_over_ranks(value, part_.comm);
   return sums;
 }
 

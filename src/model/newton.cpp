@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/ranks.h"
+#include "base/collectives.h"
 
 namespace floe {
 
@@ -125,10 +125,9 @@ bool drop_failed_factor(KSP ksp) {
   PCFailedReason reason = PC_NOERROR;
   check(KSPGetPC(ksp, &pc));
   check(PCGetFailedReason(pc, &reason));
-  int failed = reason == PC_NOERROR ? 0 : 1;  // of one rank's part with some preconditioners
-  MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX,
-                PetscObjectComm(reinterpret_cast<PetscObject>(pc)));
-  if (failed == 0) return false;
+  // With some preconditioners it is the reason of one rank's part.
+  if (!on_any_rank(reason != PC_NOERROR, PetscObjectComm(reinterpret_cast<PetscObject>(pc))))
+    return false;
   check(PCReset(pc));
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/collectives.h"
 #include "base/hdf5.h"
 #include "base/on_root.h"
 #include "floe/base/petsc.h"
@@ -41,9 +42,8 @@ std::vector<Break> CrackLog::gather() const {
 }
 
 double CrackLog::update() {
-  const auto mine = static_cast<std::int64_t>(fracture_.breaks().size());
-  std::int64_t now = 0;
-  MPI_Allreduce(&mine, &now, 1, MPI_INT64_T, MPI_SUM, part_.comm);
+  const std::int64_t now =
+      sum_over_ranks(static_cast<std::int64_t>(fracture_.breaks().size()), part_.comm);
   if (now != written_) {
     const std::vector<Break> breaks = gather();
     on_root(part_.comm, [&] {
@@ -53,7 +53,7 @@ double CrackLog::update() {
     written_ = now;
   }
   auto fragments = static_cast<double>(mass_.size());
-  MPI_Bcast(&fragments, 1, MPI_DOUBLE, 0, part_.comm);
+  broadcast(fragments, part_.comm);
   return fragments;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "base/collectives.h"
 #include "base/files.h"
 #include "base/on_root.h"
 #include "floe/base/log.h"
@@ -29,12 +30,6 @@ struct LoadPoint {
   std::size_t count;  ///< over all ranks
   Vec3<double> arm;
 };
-
-Point3 sum_over_ranks(const Point3& mine, MPI_Comm comm) {
-  Point3 all{};
-  MPI_Allreduce(mine.data(), all.data(), 3, MPI_DOUBLE, MPI_SUM, comm);
-  return all;
-}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <random>
 
+#include "base/collectives.h"
 #include "base/files.h"
 #include "base/on_root.h"
 #include "base/run_log.h"
@@ -203,7 +204,7 @@ RunFolder::RunFolder(const FolderWish& wish, MPI_Comm comm)
     }
     if (!impl_->lock.warning().empty()) warn(impl_->lock.warning());
   });
-  share(run_, comm);
+  broadcast(run_, comm);
 }
 
 RunFolder::~RunFolder() = default;

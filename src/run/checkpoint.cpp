@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/clock.h"
+#include "base/collectives.h"
 #include "base/files.h"
 #include "base/on_root.h"
 #include "base/seal.h"
@@ -121,8 +122,8 @@ Checkpoints::Wish Checkpoints::look(std::int64_t step) {
     const double to_come = std::max(look_seconds, a_step) + save_seconds_;
     mine[4] = seconds_of_process() + to_come >= options_.wall_time ? 1 : 0;
   }
-  std::array<double, 5> all{};
-  MPI_Allreduce(mine.data(), all.data(), 5, MPI_DOUBLE, MPI_MAX, part_.comm);
+  auto all = mine;
+  largest_over_ranks(all, part_.comm);
   last_look_ = step;
   last_look_time_ = now;
   next_look_ = step + static_cast<std::int64_t>(

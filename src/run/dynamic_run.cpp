@@ -5,9 +5,8 @@
 #include <limits>
 #include <tuple>
 
-#include "base/all_gathered.h"
+#include "base/collectives.h"
 #include "base/format.h"
-#include "base/ranks.h"
 #include "run/numbers.h"
 #include "run/ts_options.h"
 
@@ -25,13 +24,13 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
       what_(what),
       type_(type) {
   // What strains of 1e-12 everywhere would store.
-  double mine = 0, all = 0;
+  double energy = 0;
   const double strain = 1e-12 * model.length_scale();
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
-    for (const auto& force : model.forces()) mine += force->stiffness_bound(b) * strain * strain;
+    for (const auto& force : model.forces()) energy += force->stiffness_bound(b) * strain * strain;
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
-  ledger_.set_floor(std::max(all, std::numeric_limits<double>::min()));
+  energy = sum_over_ranks(energy, model.part().comm);
+  ledger_.set_floor(std::max(energy, std::numeric_limits<double>::min()));
 }
 
 template <class Space>
@@ -312,9 +311,9 @@ void DynamicRun<Space>::take_remarks() {
     }
   }
   const MPI_Comm comm = model_.part().comm;
-  times = all_gathered(times, MPI_DOUBLE, comm);
+  times = all_gathered(times, comm);
   if (times.empty()) return;
-  texts = all_gathered(texts, MPI_CHAR, comm);
+  texts = all_gathered(texts, comm);
   if (rank(comm) != 0) return;
   std::vector<Remark> all;
   const char* next = texts.data();
@@ -359,18 +358,12 @@ template <class Space>
 bool DynamicRun<Space>::sample(bool last) {
   if (!within_limits()) return false;
   const auto [kinetic, boundary] = energies();
-  const std::array<double, 2> mine{kinetic, boundary};
-  std::array<double, 2> all{};
-  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model_.part().comm);
+  const auto all = sum_over_ranks(std::array{kinetic, boundary}, model_.part().comm);
   take_remarks();
   auto reported = model_.report(state_);
   const Columns own = own_columns();
-  for (const auto& [name, value] : own.values()) {
-    const double share = value;
-    double sum = 0;
-    MPI_Allreduce(&share, &sum, 1, MPI_DOUBLE, MPI_SUM, model_.part().comm);
-    reported.emplace_back(name, sum);
-  }
+  for (const auto& [name, value] : own.values())
+    reported.emplace_back(name, sum_over_ranks(value, model_.part().comm));
   ledger_.take(reported, all[0], all[1]);
   if (!(ledger_.relative_error() <= options_.energy_limit)) {
     why_ = "the energy balance is off by " + text(ledger_.relative_error()) +
@@ -392,30 +385,26 @@ bool DynamicRun<Space>::sample(bool last) {
 /// The body that is fastest now.
 template <class Space>
 std::string DynamicRun<Space>::where() const {
-  struct {
-    double speed2 = -1;
-    int rank = 0;
-  } mine, best;
-  std::size_t at = 0;
   const Part& part = model_.part();
+  Extreme mine{-1, rank(part.comm)};
+  std::size_t at = 0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
     const double* v = state_.record(b) + Space::velocity;
     double speed2 = 0;
     for (int k = 0; k < Space::translations; ++k) speed2 += v[k] * v[k];
     if (!std::isfinite(speed2)) speed2 = std::numeric_limits<double>::max();
-    if (speed2 > mine.speed2) {
-      mine.speed2 = speed2;
+    if (speed2 > mine.value) {
+      mine.value = speed2;
       at = b;
     }
   }
-  mine.rank = rank(part.comm);
-  MPI_Allreduce(&mine, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, part.comm);
+  const Extreme best = largest_of_ranks(mine, part.comm);
   std::array<double, 4> facts{};
-  if (best.rank == mine.rank) {
+  if (best.index == mine.index) {
     const Point3& x = part.bodies.position[at];
     facts = {static_cast<double>(part.global[at]), x[0], x[1], x[2]};
   }
-  MPI_Bcast(facts.data(), 4, MPI_DOUBLE, best.rank, part.comm);
+  broadcast(facts, part.comm, best.index);
   return "body " + text(facts[0]) + " at (" + text(facts[1]) + ", " + text(facts[2]) + ", " +
          text(facts[3]) + ")";
 }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "base/collectives.h"
+
 namespace floe {
 namespace {
 
@@ -80,9 +82,7 @@ double free_memory(MPI_Comm comm) {
   MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   const double mine = rank(machine) == 0 ? std::min(free_in_system(), free_in_group()) : 0;
   MPI_Comm_free(&machine);
-  double all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, comm);
-  return all;
+  return sum_over_ranks(mine, comm);
 }
 
 }  // namespace floe

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/collectives.h"
 #include "base/files.h"
 #include "base/hdf5.h"
 #include "base/on_root.h"
@@ -84,17 +85,14 @@ void write(const SheetPlan& plan, const std::string& path, const Relaxed& relaxe
 Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file, MPI_Comm comm,
                                   const std::function<void(int, double)>& on_iteration,
                                   std::function<void()>& keep) {
-  int me = 0, there = 0;
-  MPI_Comm_rank(comm, &me);
+  bool there = false;
   std::error_code ignored;  // what is there and cannot be read is no reason to make it anew
-  if (me == 0)
+  if (rank(comm) == 0)
     there = std::filesystem::symlink_status(file, ignored).type() !=
-                    std::filesystem::file_type::not_found
-                ? 1
-                : 0;
-  MPI_Bcast(&there, 1, MPI_INT, 0, comm);
+            std::filesystem::file_type::not_found;
+  broadcast(there, comm);
   Relaxed relaxed;
-  if (there != 0) {
+  if (there) {
     relaxed = read(plan, file);
   } else {
     Tessellation made = tessellate(plan, comm, on_iteration);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "base/collectives.h"
 #include "base/on_root.h"
 #include "base/option_values.h"
 #include "base/scene_text.h"
@@ -98,10 +99,10 @@ void share(Found& found, MPI_Comm comm) {
   CheckpointHead& head = found.head;
   for (std::string* text : {&found.file, &found.done_in, &found.remark, &head.version,
                             &head.built_for, &head.options, &head.scene, &head.run})
-    floe::share(*text, comm);
-  MPI_Bcast(&head.ranks, 1, MPI_INT64_T, 0, comm);
-  MPI_Bcast(&head.time, 1, MPI_DOUBLE, 0, comm);
-  MPI_Bcast(&found.done_time, 1, MPI_DOUBLE, 0, comm);
+    broadcast(*text, comm);
+  broadcast(head.ranks, comm);
+  broadcast(head.time, comm);
+  broadcast(found.done_time, comm);
 }
 
 /// Where a run writes whose scene has not been read yet.
@@ -178,12 +179,11 @@ Restart find_restart(const std::string& scene, UserOptions& user, MPI_Comm comm)
   // The run goes on in the folder where its files are, wherever that has been moved.
   std::string dir = fs::path(found.file).parent_path().string();
   if (dir.empty()) dir = ".";
-  int is_its_folder = 0, me = 0;
-  MPI_Comm_rank(comm, &me);
-  if (me == 0)
-    is_its_folder = !restart.run.empty() && RunFolder::run_in(dir) == restart.run ? 1 : 0;
-  MPI_Bcast(&is_its_folder, 1, MPI_INT, 0, comm);
-  if (is_its_folder == 1) user.checkpoint["output_dir"].value = dir;
+  bool is_its_folder = false;
+  if (rank(comm) == 0)
+    is_its_folder = !restart.run.empty() && RunFolder::run_in(dir) == restart.run;
+  broadcast(is_its_folder, comm);
+  if (is_its_folder) user.checkpoint["output_dir"].value = dir;
   if (found.done_in.empty())
     restart.remarks.push_back("goes on from '" + found.file + "', t = " + seconds(restart.time) +
                               " s");

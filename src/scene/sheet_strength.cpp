@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/collectives.h"
 #include "base/signals.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
@@ -39,12 +40,11 @@ void require_two_ends(const Lattice& lattice, const std::vector<Boundary>& ends,
 /// Force along `axis` that the first end's bodies take [N]. Collective.
 double force_on_first_end(const Model<Planar>& model, const Wrenches<Planar>& wrenches,
                           std::size_t axis) {
-  double mine = 0, all = 0;
+  double force = 0;
   for (const std::int32_t body : model.boundaries()[0].bodies) {
-    if (body < model.part().owned) mine += wrenches.of(static_cast<std::size_t>(body))[axis];
+    if (body < model.part().owned) force += wrenches.of(static_cast<std::size_t>(body))[axis];
   }
-  MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
-  return std::abs(all);
+  return std::abs(sum_over_ranks(force, model.part().comm));
 }
 
 /// Mean stress along an axis at which the first beam reaches its strength [Pa]. Collective.

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/collectives.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
@@ -46,8 +47,8 @@ double mean_x(const Model<Space>& model, const Boundary& boundary) {
       mine[1] += 1;
     }
   }
-  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, model.part().comm);
-  return all[0] / all[1];
+  const auto [sum, number] = sum_over_ranks(mine, model.part().comm);
+  return sum / number;
 }
 
 /// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width
@@ -261,9 +262,7 @@ Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& mo
   json["tangent_s"] = wall_seconds(Event::tangent);
   json["solve_s"] = wall_seconds(Event::solve);
   json["output_s"] = wall_seconds(Event::output);
-  const double mine = peak_memory_mb();
-  double memory = 0;
-  MPI_Allreduce(&mine, &memory, 1, MPI_DOUBLE, MPI_SUM, model.part().comm);
+  const double memory = sum_over_ranks(peak_memory_mb(), model.part().comm);
   json["peak_memory_mb"] = memory;
   json["version"] = version();
   json["built_for"] = built_for(model.part().comm);

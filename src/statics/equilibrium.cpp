@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/audit.h"
+#include "base/collectives.h"
 #include "base/format.h"
-#include "base/ranks.h"
 #include "base/signals.h"
 #include "floe/base/log.h"
 #include "model/newton.h"
@@ -198,9 +198,7 @@ typename Equilibrium<Space>::Scale Equilibrium<Space>::scale_of_forces() const {
     const Vec3<double> u = displacement(state_, b);
     noise2 += stiffness_[b] * stiffness_[b] * (dot(u, u) + l * l * turned2_[b]);
   }
-  const std::array<double, 2> mine{external2_, noise2};
-  std::array<double, 2> all{};
-  MPI_Allreduce(mine.data(), all.data(), 2, MPI_DOUBLE, MPI_SUM, part_.comm);
+  const auto all = sum_over_ranks(std::array{external2_, noise2}, part_.comm);
   return {std::sqrt(all[0]), rounding * std::sqrt(all[1])};
 }
 
@@ -451,10 +449,7 @@ bool Equilibrium<Space>::balance(double time) {
 template <class Space>
 std::int64_t Equilibrium<Space>::count_folded() const {
   if (model_.beams() == nullptr) return 0;
-  const std::int64_t mine = model_.beams()->folded(state_);
-  std::int64_t all = 0;
-  MPI_Allreduce(&mine, &all, 1, MPI_INT64_T, MPI_SUM, part_.comm);
-  return all;
+  return sum_over_ranks(model_.beams()->folded(state_), part_.comm);
 }
 
 /// The tangent on z, rx, ry at a planar state, into the planar one's matrix, whose size and pattern
