@@ -2,7 +2,7 @@
 // `linear`: with linear kinematics, and the same forces as a product with the assembled matrix.
 #include <benchmark/benchmark.h>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "sheet.h"
 
 namespace {

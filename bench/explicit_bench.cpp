@@ -15,10 +15,10 @@
 #include <map>
 #include <tuple>
 
-#include "beams/beam_blocks.h"
-#include "beams/beam_spatial.h"
+#include "beams/lanes.h"
+#include "beams/spatial.h"
 #include "explicit/leapfrog.h"
-#include "explicit/planar_motion.h"
+#include "explicit/planar_leapfrog_stepper.h"
 #include "model/model.h"
 #include "sheet.h"
 
@@ -65,7 +65,7 @@ class Case {
     section.thickness = 0.5;
     return bench::meshed_sheet(bodies, section);
   }
-  MotionOf<Space> start(double damping, bool breakable) {
+  LeapfrogStepperOf<Space> start(double damping, bool breakable) {
     BeamOptions options;
     options.damping_ratio = damping;
     model.set_beams(beams_of(options, breakable), Kinematics::corotational);
@@ -81,7 +81,7 @@ class Case {
         spin[b][k] = 1e-4 * std::cos(0.1 * x[1] - static_cast<double>(k));
       }
     }
-    MotionOf<Space> made(model);
+    LeapfrogStepperOf<Space> made(model);
     made.start(state, velocity, spin);
     return made;
   }
@@ -105,7 +105,7 @@ class Case {
   Model<Space> model;
   State<Space> state;
   Wrenches<Space> wrenches;
-  MotionOf<Space> motion;
+  LeapfrogStepperOf<Space> motion;
 };
 using InSpace = Case<Spatial>;
 

@@ -18,7 +18,7 @@
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
-#include "lattice/folded.h"
+#include "lattice/packed_lattice.h"
 #include "output/output.h"
 #include "output/run_folder.h"
 #include "program/go_on.h"
@@ -60,7 +60,7 @@ struct Start {
   std::optional<floe::RunFolder>& folder;
   floe::MeshReport mesh;
   floe::Lattice lattice;
-  floe::Skips skips;
+  floe::ModelChoice choice;
   std::string go_on;  ///< the command that goes on where this one stops
 };
 
@@ -96,8 +96,8 @@ int run(const floe::Scene& scene, Start& start) {
   const OutputSize size_of_output =
       output_size(lattice, scene.forces.fracture, scene.boundaries.size(), scene.loads.size(),
                   scene.obstacles.size());
-  Folded folded;
-  if (!needs_shapes(scene)) folded.fold_shapes(lattice);
+  PackedLattice packed;
+  if (!needs_shapes(scene)) packed.pack_shapes(lattice);
 
   // 3. The model: this rank's part of the lattice, boundaries, forces
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
@@ -107,17 +107,17 @@ int run(const floe::Scene& scene, Start& start) {
   const bool is_static = scene.integrator == Integrator::quasistatic;
   if (is_static) hold_free_motions(scene, lattice, model);
   std::optional<OutOfPlane> rest;
-  if (is_static && start.skips.planar) rest = out_of_plane(scene, lattice, loads, model.part());
+  if (is_static && start.choice.planar) rest = out_of_plane(scene, lattice, loads, model.part());
   release_setup(scene, model);
-  folded.fold_shapes(lattice);
-  folded.fold_beams(lattice);
-  if (size() == 1) folded.fold_bodies(lattice, model.part().bodies);
+  packed.pack_shapes(lattice);
+  packed.pack_beams(lattice);
+  if (size() == 1) packed.pack_bodies(lattice, model.part().bodies);
 
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.
   RunFolder* const folder = start.folder ? &*start.folder : nullptr;
   std::optional<Output<Space>> output;
-  std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
+  std::optional<OutputArchive> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
   const auto open = [&](const std::vector<std::string>& columns) {
     reject_unused_options(scene.unused_options);
@@ -131,7 +131,7 @@ int run(const floe::Scene& scene, Start& start) {
     if (restart) make_newest(scene.checkpoint.restart, checkpoint_file(scene), PETSC_COMM_WORLD);
     start.mesh.keep();
     start.mesh.keep = [] {};
-    if (rank() == 0) folded.unfold(lattice);  // others need no geometry but places
+    if (rank() == 0) packed.unpack(lattice);  // others need no geometry but places
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
                    std::move(lattice), model, loads, scene.options_yaml,
                    restart ? &*restart : nullptr);
@@ -145,7 +145,7 @@ int run(const floe::Scene& scene, Start& start) {
     if (!output) open(columns);
   };
   const auto observe = [&](const Accepted<Space>& accepted) {
-    if (accepted.step == 0 && scene.integrator != Integrator::leapfrog) {
+    if (accepted.step == 0 && scene.integrator != Integrator::explicit_) {
       first = First<Space>{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
       return;
     }
@@ -154,13 +154,13 @@ int run(const floe::Scene& scene, Start& start) {
     folder->note(accepted.state.time, accepted.step);
     run_place() = {"", accepted.state.time, accepted.step, 0};
   };
-  const auto remember = [&](Memory& checkpoint) {
-    if (checkpoint.loading()) {
-      restart.emplace().remember(checkpoint);
+  const auto remember = [&](Archive& archive) {
+    if (archive.loading()) {
+      restart.emplace().persist(archive);
     } else {
-      OutputMemory files = output->memory();
+      OutputArchive files = output->memory();
       files.run = folder->run();
-      files.remember(checkpoint);
+      files.persist(archive);
     }
   };
   // A checkpoint must not outlive the files that it knows of.
@@ -187,7 +187,7 @@ int run(const floe::Scene& scene, Start& start) {
   if (!goes_on) output->finish();
 
   // 6. Results
-  const Summary summary = summarise(scene, start.skips, model, start.mesh, result, output->first(),
+  const Summary summary = summarise(scene, start.choice, model, start.mesh, result, output->first(),
                                     output->last(), MPI_Wtime() - start.time);
   folder->finish(summary.json);
   say(summary.text);
@@ -255,10 +255,10 @@ int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
   stop_if_asked(PETSC_COMM_WORLD);
   set_initial(scene, start.lattice);
   if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
-  start.skips = skips_of(scene, start.lattice);
+  start.choice = choose_model(scene, start.lattice);
   for (const std::string& remark : scene.remarks) say(remark + "\n");
-  const std::string& why = start.skips.needs_space;
-  say("model: " + start.skips.text + (why.empty() ? "" : " (" + why + ")") + "\n");
+  const std::string& why = start.choice.needs_space;
+  say("model: " + start.choice.text + (why.empty() ? "" : " (" + why + ")") + "\n");
   const std::string processors = built_for(PETSC_COMM_WORLD);
   const bool mixed = processors != built_for();
   say("library: built for " + processors +
@@ -266,7 +266,7 @@ int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
 
   if (start.mesh.strength) say("strength: " + text_of(*start.mesh.strength) + "\n");
 
-  const int code = start.skips.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
+  const int code = start.choice.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
   if (scene.check_only) {
     const std::string problem = RunFolder::problem(wish, PETSC_COMM_WORLD);
     if (!problem.empty()) say("but a run would be refused now: " + problem + "\n");

@@ -25,7 +25,7 @@
 
 namespace floe {
 
-enum class Integrator { quasistatic, leapfrog, implicit };
+enum class Integrator { quasistatic, explicit_, implicit };
 
 /// Whether a model may leave out what does not move: by itself, always (or refuse), never.
 enum class Planarity { automatic, always, never };

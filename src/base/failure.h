@@ -11,7 +11,7 @@ namespace floe {
 
 constexpr int exit_failed = 1, exit_bad_input = 2;
 
-/// Memory that PETSc or a solver behind it asked for and did not get.
+/// Archive that PETSc or a solver behind it asked for and did not get.
 class OutOfMemory : public std::bad_alloc {};
 
 /// What PETSc says of an option after the first solve.

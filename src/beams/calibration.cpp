@@ -5,7 +5,7 @@
 #include <complex>
 #include <string>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "floe/base/petsc.h"
 
 namespace floe {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 
 namespace floe {
 
@@ -105,7 +105,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
 
   /// Of the stiffnesses that change with a beam's length, against the lighter of its bodies: k_n,
   /// and k_s (l0/l)^2 + |N|/l across.
-  std::optional<double> fastest_rate(const State<Space>& state) const override {
+  std::optional<double> rate_estimate(const State<Space>& state) const override {
     if (Beam::Kernel::is_linear) return {};
     double fastest2 = 0;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
@@ -128,10 +128,10 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
     if constexpr (damped) columns.add("energy_damping", lost_by_now());
   }
 
-  void remember(Memory& checkpoint) override {
+  void persist(Archive& archive) override {
     if constexpr (damped) {
-      checkpoint.share("energy_damping", lost_);
-      checkpoint.common("step", step_);
+      archive.share("energy_damping", lost_);
+      archive.common("step", step_);
     }
   }
 

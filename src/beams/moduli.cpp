@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 
 namespace floe {
 namespace {

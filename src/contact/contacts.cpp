@@ -58,7 +58,7 @@ RelativeMotion Contacts::relative(const Placed& a, const Placed& b, const Vec3<d
 }
 
 /// Of the elastic, viscous and friction terms.
-void Contacts::add_power(const Touch& touch, const RelativeMotion& motion,
+void Contacts::add_power(const ActiveContact& touch, const RelativeMotion& motion,
                          std::array<double, 4>& power) {
   const ContactForce& c = touch.contact;
   const double parting = dot(c.normal, motion.velocity);
@@ -68,13 +68,14 @@ void Contacts::add_power(const Touch& touch, const RelativeMotion& motion,
 }
 
 /// What a moving obstacle gives [W].
-double Contacts::power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle) {
+double Contacts::power_of_obstacle(const ActiveContact& touch, const Placed& a,
+                                   const Placed& obstacle) {
   const Vec3<double> arm = touch.centre + (a.x - obstacle.x);
   return dot(touch.contact.force(), obstacle.velocity + cross(obstacle.spin, arm)) +
          dot(touch.contact.couple, obstacle.spin);
 }
 
-Contacts::Meeting Contacts::meeting(const Pair& pair, const Placed& a, const Placed& b) {
+Contacts::PairOverlap Contacts::overlap_of(const Pair& pair, const Placed& a, const Placed& b) {
   // A's vertices in B's frame.
   const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
                            b.axes.to_local(a.axes.e3)};
@@ -93,31 +94,31 @@ Contacts::Meeting Contacts::meeting(const Pair& pair, const Placed& a, const Pla
 }
 
 /// Takes up a contact. \param memory  null: the pair remembers nothing
-void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
-                     const PairMemory* memory, std::span<ContactWrench> wrenches) {
+void Contacts::touch(std::int32_t index, const Placed& b, const PairOverlap& met,
+                     const PairHistory* memory, std::span<ContactWrench> wrenches) {
   const Pair& pair = pairs_[static_cast<std::size_t>(index)];
   const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
   const Vec3<double>& centre = met.overlap.centroid;
   const RelativeMotion motion = relative(a, b, centre);
   StoredEnergy stored;
-  touches_.push_back(
+  active_.push_back(
       {index, centre,
        contact_force(options_, constants(pair.a, pair.b), met.overlap, met.depth, motion,
-                     memory != nullptr ? *memory : PairMemory{}, pair.fresh, stored),
+                     memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible, stored),
        false});
-  const ContactForce& contact = touches_.back().contact;
+  const ContactForce& contact = active_.back().contact;
   // The mean depth V/|S| of what is elastic.
   constexpr double holds = 0.25;
   const double elastic = met.overlap.volume - contact.memory.plastic;
   const double most = holds * std::min(width_of(pair.a), width_of(pair.b));
-  touches_.back().deep =
+  active_.back().deep =
       elastic > 0 && elastic * elastic > most * most * dot(met.overlap.area, met.overlap.area);
   if (pair.counted) {
     ++touching_;
     totals_.stored.normal += stored.normal;
     totals_.stored.tangential += stored.tangential;
-    add_power(touches_.back(), motion, totals_.power);
-    if (pair.b < 0) totals_.power[3] += power_of_obstacle(touches_.back(), a, b);
+    add_power(active_.back(), motion, totals_.power);
+    if (pair.b < 0) totals_.power[3] += power_of_obstacle(active_.back(), a, b);
   }
   const Vec3<double> force = contact.force();
   ContactWrench& on_a = wrenches[static_cast<std::size_t>(pair.slot_a)];
@@ -131,9 +132,9 @@ void Contacts::touch(std::int32_t index, const Placed& b, const Meeting& met,
 
 void Contacts::place(std::span<const MovingPose> bodies, double time) {
   const auto move = [&](Placed& p, const Placed& to, double radius) {
-    const double way = placed_before_ ? p.way + farthest_way(p, to, radius) : 0.0;
+    const double travelled = placed_before_ ? p.travelled + farthest_travel(p, to, radius) : 0.0;
     p = to;
-    p.way = way;
+    p.travelled = travelled;
   };
   for (std::size_t s = 0; s < bodies.size(); ++s)
     move(placed_[s],
@@ -148,27 +149,27 @@ void Contacts::place(std::span<const MovingPose> bodies, double time) {
 }
 
 /// Bound of the way of any point of a body within `radius` of its centroid [m].
-double Contacts::farthest_way(const Placed& from, const Placed& to, double radius) {
+double Contacts::farthest_travel(const Placed& from, const Placed& to, double radius) {
   const Vec3<double> d1 = to.axes.e1 - from.axes.e1, d2 = to.axes.e2 - from.axes.e2,
                      d3 = to.axes.e3 - from.axes.e3, x = to.x - from.x;
   return std::sqrt(dot(x, x)) + radius * std::sqrt(dot(d1, d1) + dot(d2, d2) + dot(d3, d3));
 }
 
-void Contacts::meet_borrowed(std::span<Meeting> meetings) {
-  for (std::size_t k = 0; k < borrowed_.size(); ++k) {
-    const Pair& pair = borrowed_[k];
-    meetings[k] = meeting(pair, placed_[static_cast<std::size_t>(pair.slot_a)], partner(pair));
+void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
+  for (std::size_t k = 0; k < taken_on_.size(); ++k) {
+    const Pair& pair = taken_on_[k];
+    overlaps[k] = overlap_of(pair, placed_[static_cast<std::size_t>(pair.slot_a)], partner(pair));
   }
 }
 
 void Contacts::evaluate(std::span<ContactWrench> wrenches,
-                        const std::function<std::span<const Meeting>()>& lent) {
+                        const std::function<std::span<const PairOverlap>()>& offloaded) {
   std::fill(on_obstacle_.begin(), on_obstacle_.end(), ContactWrench{});
-  touches_.clear();
+  active_.clear();
   touching_ = 0;
   totals_ = {};
-  auto memory = memories_.cbegin();  // in the order of the pairs
-  std::span<const Meeting> given;    // to the lent pairs, in their order
+  auto memory = histories_.cbegin();   // in the order of the pairs
+  std::span<const PairOverlap> given;  // to the offloaded pairs, in their order
   std::size_t taken = 0;
   constexpr int tries = 8;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -176,30 +177,30 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
     const Placed& a = placed_[static_cast<std::size_t>(pair.slot_a)];
     const Placed& b = partner(pair);
     const auto index = static_cast<std::int32_t>(k);
-    const PairMemory* remembered = nullptr;
-    if (memory != memories_.cend() && memory->pair == index) remembered = &(memory++)->memory;
-    if (pair.lent) {
-      if (given.empty()) given = lent();
-      if (const Meeting& met = given[taken++]; met.overlap.volume > 0)
+    const PairHistory* remembered = nullptr;
+    if (memory != histories_.cend() && memory->pair == index) remembered = &(memory++)->memory;
+    if (pair.offloaded) {
+      if (given.empty()) given = offloaded();
+      if (const PairOverlap& met = given[taken++]; met.overlap.volume > 0)
         touch(index, b, met, remembered, wrenches);
       continue;
     }
     if (remembered == nullptr) {
-      const double ways = a.way + b.way;
-      if (ways < pair.safe) continue;
+      const double travels = a.travelled + b.travelled;
+      if (travels < pair.safe) continue;
       if (const double apart = gap(pair, a, b, tries); apart > rounding * radius(pair.a)) {
-        pair.safe = ways + (1 - 1e-6) * apart;  // less what ways lose by rounding
+        pair.safe = travels + (1 - 1e-6) * apart;  // less what travels lose by rounding
         continue;
       }
     }
-    if (const Meeting met = meeting(pair, a, b); met.overlap.volume > 0)
+    if (const PairOverlap met = overlap_of(pair, a, b); met.overlap.volume > 0)
       touch(index, b, met, remembered, wrenches);
   }
 }
 
 std::vector<std::array<std::int32_t, 2>> Contacts::enclosed() const {
   std::vector<std::array<std::int32_t, 2>> found;
-  for (const Touch& t : touches_) {
+  for (const ActiveContact& t : active_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
     const Vec3<double>& n = t.contact.normal;
     if (pair.counted && dot(n, n) == 0) found.push_back({pair.a, pair.b});
@@ -213,13 +214,13 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
     sums_[5] = energies().stored;
     sums_[6] = 1;
   }
-  memories_.clear();
+  histories_.clear();
   for (std::size_t k = 0; k < obstacles_at_.size(); ++k) {
     obstacles_at_[k].velocity = obstacles_[k].motion.rate(time_ + 0.5 * dt);
     obstacles_at_[k].spin = obstacles_[k].motion.spin(time_ + 0.5 * dt);
   }
   std::array<double, 4> power{};
-  for (const Touch& t : touches_) {
+  for (const ActiveContact& t : active_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
     const auto moving = [&](std::int32_t slot) {  // where it was, as it moves now
       const auto s = static_cast<std::size_t>(slot);
@@ -234,16 +235,16 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
       note_events(t);
     }
     if (pair.b < 0) power[3] += power_of_obstacle(t, a, b);
-    memories_.push_back(
+    histories_.push_back(
         {pair.a, pair.b, t.pair, slid(t.contact, motion, 0.5 * (a.spin + b.spin), dt)});
   }
   for (std::size_t k = 0; k < power.size(); ++k)
     sums_[k] += 0.5 * (last_dt * totals_.power[k] + dt * power[k]);
-  if (fresh_) {
-    for (Pair& pair : pairs_) pair.fresh = false;
+  if (some_newly_eligible_) {
+    for (Pair& pair : pairs_) pair.newly_eligible = false;
   }
-  fresh_ = at_rest_ = false;
-  touches_.clear();
+  some_newly_eligible_ = at_rest_ = false;
+  active_.clear();
   totals_ = {};
   sums_[4] = dt;
 }

@@ -65,25 +65,25 @@ class Contacts {
   std::span<const std::int32_t> involved() const { return involved_; }
 
   /// The overlap of a pair, in world axes from A's centroid; volume 0: there is none.
-  struct Meeting {
+  struct PairOverlap {
     Overlap overlap;
     double depth = 0;  ///< of its centroid below the first face of B [m]
   };
   /// Listed pairs that remember something: their overlaps are most of an evaluation.
-  std::size_t remembering() const { return memories_.size(); }
-  /// The last `count` of them: until the next build their meetings come from another rank.
-  std::vector<std::array<std::int32_t, 2>> lend(std::size_t count);
-  /// Pairs whose meetings another rank wants until the next build: their bodies are involved.
-  void borrow(std::span<const std::array<std::int32_t, 2>> pairs);
+  std::size_t with_history() const { return histories_.size(); }
+  /// The last `count` of them: until the next build their overlaps come from another rank.
+  std::vector<std::array<std::int32_t, 2>> offload(std::size_t count);
+  /// Pairs whose overlaps another rank wants until the next build: their bodies are involved.
+  void take_on(std::span<const std::array<std::int32_t, 2>> pairs);
 
   /// Before an evaluation. \param bodies  the involved ones
   void place(std::span<const MovingPose> bodies, double time);
-  /// Meetings of the borrowed pairs, in their order.
-  void meet_borrowed(std::span<Meeting> meetings);
+  /// Meetings of the taken_on pairs, in their order.
+  void overlaps_taken_on(std::span<PairOverlap> overlaps);
   /// Adds the contacts' wrenches on involved bodies, as placed; changes no history.
-  /// \param lent  called when the meetings of the lent pairs are needed, if there are any
+  /// \param offloaded  called when the overlaps of the offloaded pairs are needed, if there are any
   void evaluate(std::span<ContactWrench> wrenches,
-                const std::function<std::span<const Meeting>()>& lent = {});
+                const std::function<std::span<const PairOverlap>()>& offloaded = {});
   /// Takes over what the last evaluation found. \param bodies  after the step: velocities half a
   /// step on   \param dt  the step [s]
   void commit(std::span<const MovingPose> bodies, double dt);
@@ -168,27 +168,27 @@ class Contacts {
   struct Pair {
     std::int32_t a, b;            ///< bodies; b < 0: obstacle -1 - b
     std::int32_t slot_a, slot_b;  ///< among the involved
-    bool counted, fresh, lent;
+    bool counted, newly_eligible, offloaded;
     Vec3<double> axis;  ///< along which they were apart last, from B to A
-    double safe = 0;    ///< as long as their ways add up to less, there is still a gap [m]
+    double safe = 0;    ///< as long as their travels add up to less, there is still a gap [m]
   };
   /// A contact of the last evaluation.
-  struct Touch {
+  struct ActiveContact {
     std::int32_t pair;
     Vec3<double> centre;  ///< from A's centroid
     ContactForce contact;
     bool deep;  ///< its elastic term gives way by more than a quarter of the thinner one's width
   };
-  struct Remembered {
+  struct PairWithHistory {
     std::int32_t a, b;
     std::int32_t pair;  ///< -1: from a checkpoint
-    PairMemory memory;
+    PairHistory memory;
   };
   struct Placed {
     Vec3<double> x;
     Triad<double> axes;
     Vec3<double> velocity{}, spin{};
-    double way = 0;  ///< no point of it has gone farther since the last build [m]
+    double travelled = 0;  ///< no point of it has gone farther since the last build [m]
   };
   /// Over the contacts that are counted here: what they store [J], and their power [W]: elastic,
   /// viscous, friction, of moving obstacles.
@@ -198,7 +198,7 @@ class Contacts {
   };
 
   void add_solid(std::int32_t body, double mass);
-  void note_events(const Touch& touch);
+  void note_events(const ActiveContact& touch);
   bool on_surface(std::int32_t body) const { return outer_[static_cast<std::size_t>(body)] != 0; }
   bool may_touch(std::int32_t a, std::int32_t b) const;
   void find_pieces();
@@ -206,26 +206,27 @@ class Contacts {
   void list_obstacles(std::span<const Placed> placed, std::span<const std::uint8_t> here,
                       double time);
   void list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b, bool counted);
-  void take_memories();
+  void take_histories();
   std::span<const Vec3<double>> vertices(std::int32_t body) const;
   std::span<const HalfSpace> planes(std::int32_t body) const;
   /// \param position, motion  the times of its place and of its velocities [s]
   Placed at_time(std::int32_t obstacle, double position, double motion) const;
   PairConstants constants(std::int32_t a, std::int32_t b) const;
   double gap(Pair& pair, const Placed& a, const Placed& b, int tries);
-  Meeting meeting(const Pair& pair, const Placed& a, const Placed& b);
-  void touch(std::int32_t index, const Placed& b, const Meeting& meeting, const PairMemory* memory,
-             std::span<ContactWrench> wrenches);
+  PairOverlap overlap_of(const Pair& pair, const Placed& a, const Placed& b);
+  void touch(std::int32_t index, const Placed& b, const PairOverlap& overlap_of,
+             const PairHistory* memory, std::span<ContactWrench> wrenches);
   const Placed& partner(const Pair& pair) const {
     return pair.b < 0 ? obstacles_at_[static_cast<std::size_t>(-1 - pair.b)]
                       : placed_[static_cast<std::size_t>(pair.slot_b)];
   }
   void find_involved();
-  static double farthest_way(const Placed& from, const Placed& to, double radius);
+  static double farthest_travel(const Placed& from, const Placed& to, double radius);
   static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
-  static void add_power(const Touch& touch, const RelativeMotion& motion,
+  static void add_power(const ActiveContact& touch, const RelativeMotion& motion,
                         std::array<double, 4>& power);
-  static double power_of_obstacle(const Touch& touch, const Placed& a, const Placed& obstacle);
+  static double power_of_obstacle(const ActiveContact& touch, const Placed& a,
+                                  const Placed& obstacle);
 
   Shapes shapes_;
   std::vector<Vec3<double>> vertices_;
@@ -244,12 +245,13 @@ class Contacts {
   Event enclosed_, pressed_through_;
   double thinnest_ = std::numeric_limits<double>::infinity();
   std::vector<double> obstacle_width_;
-  bool fresh_ = false;  ///< some pair is
+  bool some_newly_eligible_ = false;  ///< some pair is
 
-  std::vector<Pair> pairs_, borrowed_;
+  std::vector<Pair> pairs_, taken_on_;
   std::vector<std::int32_t> involved_;
-  std::vector<Remembered> memories_, next_memories_;  ///< of pairs that touch, sorted as the pairs
-  std::vector<Touch> touches_;
+  std::vector<PairWithHistory> histories_,
+      next_histories_;  ///< of pairs that touch, sorted as the pairs
+  std::vector<ActiveContact> active_;
   std::vector<Placed> placed_;           ///< per slot, of the last evaluation
   std::vector<Placed> obstacles_at_;     ///< in the last evaluation
   std::vector<double> obstacle_radius_;  ///< of the farthest vertex from the frame's origin [m]

@@ -112,8 +112,8 @@ std::span<const HalfSpace> Contacts::planes(std::int32_t body) const {
 
 Contacts::Placed Contacts::at_time(std::int32_t obstacle, double position, double motion) const {
   const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - obstacle)];
-  return {o.point + o.motion.way(position), triad(o.motion.turn(position)), o.motion.rate(motion),
-          o.motion.spin(motion)};
+  return {o.point + o.motion.travelled(position), triad(o.motion.turn(position)),
+          o.motion.rate(motion), o.motion.spin(motion)};
 }
 
 void Contacts::release(std::array<std::int32_t, 2> pair) {
@@ -175,17 +175,18 @@ void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> 
   list_obstacles(placed, here, time);
   std::sort(pairs_.begin(), pairs_.end(),
             [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
-  borrowed_.clear();
+  taken_on_.clear();
   find_involved();
-  take_memories();
-  fresh_ = std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.fresh; });
-  touches_.clear();
+  take_histories();
+  some_newly_eligible_ =
+      std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.newly_eligible; });
+  active_.clear();
   changed_ = first_ = false;
 }
 
 void Contacts::find_involved() {
   involved_.clear();
-  for (const std::vector<Pair>* list : {&pairs_, &borrowed_}) {
+  for (const std::vector<Pair>* list : {&pairs_, &taken_on_}) {
     for (const Pair& p : *list) {
       involved_.push_back(p.a);
       if (p.b >= 0) involved_.push_back(p.b);
@@ -197,7 +198,7 @@ void Contacts::find_involved() {
     return static_cast<std::int32_t>(std::lower_bound(involved_.begin(), involved_.end(), body) -
                                      involved_.begin());
   };
-  for (std::vector<Pair>* list : {&pairs_, &borrowed_}) {
+  for (std::vector<Pair>* list : {&pairs_, &taken_on_}) {
     for (Pair& p : *list) {
       p.slot_a = slot(p.a);
       p.slot_b = p.b >= 0 ? slot(p.b) : -1;
@@ -207,19 +208,19 @@ void Contacts::find_involved() {
   placed_before_ = false;
 }
 
-std::vector<BodyPair> Contacts::lend(std::size_t count) {
+std::vector<BodyPair> Contacts::offload(std::size_t count) {
   std::vector<BodyPair> keys;
-  for (std::size_t k = memories_.size() - std::min(count, memories_.size()); k < memories_.size();
-       ++k) {
-    keys.push_back({memories_[k].a, memories_[k].b});
-    pairs_[static_cast<std::size_t>(memories_[k].pair)].lent = true;
+  for (std::size_t k = histories_.size() - std::min(count, histories_.size());
+       k < histories_.size(); ++k) {
+    keys.push_back({histories_[k].a, histories_[k].b});
+    pairs_[static_cast<std::size_t>(histories_[k].pair)].offloaded = true;
   }
   return keys;
 }
 
-void Contacts::borrow(std::span<const BodyPair> pairs) {
-  borrowed_.clear();
-  for (const auto& [a, b] : pairs) borrowed_.push_back({a, b, -1, -1, false, false, false, {}, 0});
+void Contacts::take_on(std::span<const BodyPair> pairs) {
+  taken_on_.clear();
+  for (const auto& [a, b] : pairs) taken_on_.push_back({a, b, -1, -1, false, false, false, {}, 0});
   find_involved();
 }
 
@@ -268,8 +269,8 @@ bool Contacts::obstacle_listed() const {
 /// Lists a pair unless there is a wide gap.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
-  const bool fresh = at_rest_ || (changed_ && !first_);
-  Pair pair{a, b, -1, -1, counted, fresh, false, at_a.x - at_b.x, 0};
+  const bool newly_eligible = at_rest_ || (changed_ && !first_);
+  Pair pair{a, b, -1, -1, counted, newly_eligible, false, at_a.x - at_b.x, 0};
   const double size = length(pair.axis);
   pair.axis = size > 0 ? (1 / size) * pair.axis : Vec3<double>{0, 0, 1};
   if (b < 0 && vertices(b).empty()) pair.axis = planes(b)[0].normal;
@@ -278,26 +279,26 @@ void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Pl
 }
 
 /// Memories of the list before, or of a checkpoint, by pair; both are sorted.
-void Contacts::take_memories() {
-  next_memories_.clear();
+void Contacts::take_histories() {
+  next_histories_.clear();
   std::size_t at = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     Pair& p = pairs_[k];
-    while (at < memories_.size() &&
-           (memories_[at].a < p.a || (memories_[at].a == p.a && memories_[at].b < p.b)))
+    while (at < histories_.size() &&
+           (histories_[at].a < p.a || (histories_[at].a == p.a && histories_[at].b < p.b)))
       ++at;
-    if (at == memories_.size() || memories_[at].a != p.a || memories_[at].b != p.b) continue;
-    p.fresh = false;
-    next_memories_.push_back({p.a, p.b, static_cast<std::int32_t>(k), memories_[at].memory});
+    if (at == histories_.size() || histories_[at].a != p.a || histories_[at].b != p.b) continue;
+    p.newly_eligible = false;
+    next_histories_.push_back({p.a, p.b, static_cast<std::int32_t>(k), histories_[at].memory});
   }
-  std::swap(memories_, next_memories_);
+  std::swap(histories_, next_histories_);
 }
 
 std::vector<double> Contacts::history() const {
   std::vector<double> rows;
-  for (const Remembered& r : memories_) {
+  for (const PairWithHistory& r : histories_) {
     if (r.pair >= 0 && !pairs_[static_cast<std::size_t>(r.pair)].counted) continue;
-    const PairMemory& m = r.memory;
+    const PairHistory& m = r.memory;
     rows.insert(rows.end(), {static_cast<double>(r.a), static_cast<double>(r.b), m.plastic, m.shear,
                              m.tangential.x, m.tangential.y, m.tangential.z});
   }
@@ -306,16 +307,16 @@ std::vector<double> Contacts::history() const {
 
 void Contacts::restore(std::span<const double> rows, bool changed) {
   pairs_.clear();
-  memories_.clear();
+  histories_.clear();
   changed_ = true;
   first_ = !changed;
   at_rest_ = false;
   for (std::size_t k = 0; k + width <= rows.size(); k += width) {
     const auto r = rows.subspan(k, width);
-    memories_.push_back({static_cast<std::int32_t>(r[0]),
-                         static_cast<std::int32_t>(r[1]),
-                         -1,
-                         {r[2], r[3], {r[4], r[5], r[6]}}});
+    histories_.push_back({static_cast<std::int32_t>(r[0]),
+                          static_cast<std::int32_t>(r[1]),
+                          -1,
+                          {r[2], r[3], {r[4], r[5], r[6]}}});
   }
 }
 

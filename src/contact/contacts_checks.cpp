@@ -17,7 +17,7 @@ double Contacts::width_of(std::int32_t body) const {
 /// two faces would have to part.
 std::vector<Contacts::Penetration> Contacts::penetrations() const {
   std::vector<Penetration> found;
-  for (const Touch& touch : touches_) {
+  for (const ActiveContact& touch : active_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(touch.pair)];
     const Vec3<double>& n = touch.contact.normal;
     if (!pair.counted || dot(n, n) == 0) continue;
@@ -39,7 +39,7 @@ std::vector<Contacts::Penetration> Contacts::penetrations() const {
   return found;
 }
 
-void Contacts::note_events(const Touch& touch) {
+void Contacts::note_events(const ActiveContact& touch) {
   const Pair& pair = pairs_[static_cast<std::size_t>(touch.pair)];
   const Vec3<double>& n = touch.contact.normal;
   const bool inside = dot(n, n) == 0;

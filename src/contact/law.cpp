@@ -10,7 +10,7 @@ double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 /// The stored force in the tangent plane of today's normal, as long as it was; falls with the
 /// stiffness.
-Vec3<double> carried(const PairMemory& memory, const Vec3<double>& normal, double shear) {
+Vec3<double> carried(const PairHistory& memory, const Vec3<double>& normal, double shear) {
   const Vec3<double>& f = memory.tangential;
   const double before = length(f);
   if (before == 0) return {};
@@ -41,11 +41,11 @@ double damping_ratio_of(double restitution) {
 
 ContactForce contact_force(const ContactOptions& options, const PairConstants& pair,
                            const Overlap& o, double depth, const RelativeMotion& motion,
-                           const PairMemory& memory, bool fresh, StoredEnergy& stored) {
+                           const PairHistory& memory, bool newly_eligible, StoredEnergy& stored) {
   ContactForce c;
   stored = {};
   c.memory = memory;
-  if (fresh) c.memory.plastic = o.volume;
+  if (newly_eligible) c.memory.plastic = o.volume;
   const double area = length(o.area);
   if (area <= 1e-12 * pair.area) {  // one lies inside the other: there is no way out to prefer
     c.memory.tangential = {};
@@ -81,9 +81,9 @@ ContactForce contact_force(const ContactOptions& options, const PairConstants& p
   return c;
 }
 
-PairMemory slid(const ContactForce& contact, const RelativeMotion& motion,
-                const Vec3<double>& mean_spin, double dt) {
-  PairMemory memory = contact.memory;
+PairHistory slid(const ContactForce& contact, const RelativeMotion& motion,
+                 const Vec3<double>& mean_spin, double dt) {
+  PairHistory memory = contact.memory;
   const Vec3<double>& n = contact.normal;
   if (dot(n, n) == 0 || memory.shear == 0) return memory;
   const double turn = dt * dot(mean_spin, n);

@@ -22,7 +22,7 @@ struct PairConstants {
 };
 
 /// What a pair remembers between steps.
-struct PairMemory {
+struct PairHistory {
   double plastic = 0;         ///< V_p [m^3]
   double shear = 0;           ///< k_t of the last step [N/m]
   Vec3<double> tangential{};  ///< F_t on A, as the springs have it now [N]
@@ -39,7 +39,7 @@ struct ContactForce {
   Vec3<double> normal{};            ///< from B to A; zero if there is no force
   double elastic = 0, viscous = 0;  ///< along the normal [N]
   Vec3<double> couple{};            ///< elastic; zero with law overlap [N m]
-  PairMemory memory;                ///< if this evaluation is committed: its tangential force acts
+  PairHistory memory;               ///< if this evaluation is committed: its tangential force acts
 
   Vec3<double> force() const { return (elastic + viscous) * normal + memory.tangential; }
 };
@@ -49,15 +49,15 @@ struct StoredEnergy {
 };
 
 /// \param o  the overlap in world axes, with V > 0   \param depth  of its centroid below the plane
-/// of a half-space [m]; not used otherwise   \param fresh  the pair may touch since now: what it
-/// overlaps by is plastic   \param[out] stored  what the contact stores
+/// of a half-space [m]; not used otherwise   \param newly_eligible  the pair may touch since now:
+/// what it overlaps by is plastic   \param[out] stored  what the contact stores
 ContactForce contact_force(const ContactOptions& options, const PairConstants& pair,
                            const Overlap& o, double depth, const RelativeMotion& motion,
-                           const PairMemory& memory, bool fresh, StoredEnergy& stored);
+                           const PairHistory& memory, bool newly_eligible, StoredEnergy& stored);
 
 /// What the pair remembers after a step: the springs of friction, moved on. \param contact  as
 /// contact_force left it   \param mean_spin  of the two bodies
-PairMemory slid(const ContactForce& contact, const RelativeMotion& motion,
-                const Vec3<double>& mean_spin, double dt);
+PairHistory slid(const ContactForce& contact, const RelativeMotion& motion,
+                 const Vec3<double>& mean_spin, double dt);
 
 }  // namespace floe

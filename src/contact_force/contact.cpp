@@ -5,10 +5,10 @@
 #include <string>
 
 #include "base/collectives.h"
-#include "contact_force/contact_checks.h"
-#include "contact_force/contact_exchange.h"
-#include "contact_force/contact_sharing.h"
-#include "contact_force/contact_watch.h"
+#include "contact_force/checks.h"
+#include "contact_force/expiry.h"
+#include "contact_force/halo.h"
+#include "contact_force/load_balance.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -19,16 +19,16 @@ std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int3
   return pairs;
 }
 
-class ContactOfModel final : public Contact {
+class DistributedContact final : public Contact {
  public:
-  ContactOfModel(const Part& part, const Lattice& lattice, const ContactOptions& options,
-                 std::vector<Obstacle> obstacles)
+  DistributedContact(const Part& part, const Lattice& lattice, const ContactOptions& options,
+                     std::vector<Obstacle> obstacles)
       : part_(part),
         contacts_(lattice.shapes, lattice.bodies.mass, sorted(lattice.beams.bodies), options,
                   std::move(obstacles)),
-        exchange_(part),
-        sharing_(part.comm),
-        watch_(contacts_, part.global_bodies),
+        halo_(part),
+        balance_(part.comm),
+        expiry_(contacts_, part.global_bodies),
         here_(static_cast<std::size_t>(part.global_bodies), 0),
         peak_(contacts_.obstacles().size()),
         impulse_(contacts_.obstacles().size()),
@@ -41,14 +41,14 @@ class ContactOfModel final : public Contact {
   std::string_view name() const override { return "contact"; }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
-    if (contacts_.changed() || !watch_.started() || watch_.is_due(state, part_, contacts_, dt_))
+    if (contacts_.changed() || !expiry_.started() || expiry_.is_due(state, part_, contacts_, dt_))
       build(state);
-    exchange_.gather(state, bodies_);
+    halo_.gather(state, bodies_);
     std::fill(mine_.begin(), mine_.end(), ContactWrench{});
     contacts_.place(bodies_, state.time);
-    sharing_.evaluate(contacts_, mine_);
+    balance_.evaluate(contacts_, mine_);
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
-    const std::vector<std::int32_t>& local = exchange_.local();
+    const std::vector<std::int32_t>& local = halo_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
       if (local[k] < 0) continue;
       double* w = wrenches.of(static_cast<std::size_t>(local[k]));
@@ -61,7 +61,7 @@ class ContactOfModel final : public Contact {
   double stiffness_bound(std::int32_t body) const override {
     return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
   }
-  Rates own_rates() const override {
+  Rates hidden_stiffness() const override {
     return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
   }
 
@@ -82,15 +82,15 @@ class ContactOfModel final : public Contact {
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
     add(rest, none);
-    watch_ = ContactWatch(contacts_, part_.global_bodies);
+    expiry_ = PairListExpiry(contacts_, part_.global_bodies);
     refuse_enclosed(contacts_, part_.comm);
     overlap_at_start_ = check_overlaps(contacts_, part_.comm);
   }
 
   void commit(const State<Spatial>& state, double dt) override {
-    exchange_.gather(state, bodies_);
+    halo_.gather(state, bodies_);
     contacts_.commit(bodies_, dt);
-    watch_.went(state, dt);
+    expiry_.after_step(state, dt);
     dt_ = dt;
     watch_obstacles(dt);
   }
@@ -125,7 +125,7 @@ class ContactOfModel final : public Contact {
     }
   }
 
-  void remember(Memory& memory) override;
+  void persist(Archive& archive) override;
 
  private:
   static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
@@ -139,15 +139,15 @@ class ContactOfModel final : public Contact {
   }
 
   void build(const State<Spatial>& state) const {
-    contacts_.build(exchange_.poses(state), here_, state.time);
+    contacts_.build(halo_.poses(state), here_, state.time);
     possible_ = possible_ || contacts_.pieces() > 1;
     if (!possible_) possible_ = anywhere(contacts_.obstacle_listed());
     if (!possible_) near_ = anywhere(contacts_.listed() > 0);
-    sharing_.plan(contacts_);
-    exchange_.choose(contacts_.involved());
+    balance_.plan(contacts_);
+    halo_.choose(contacts_.involved());
     bodies_.resize(contacts_.involved().size());
     mine_.resize(bodies_.size());
-    watch_.start(state, part_.owned);
+    expiry_.start(state, part_.owned);
   }
 
   /// Peak and impulse of the forces on obstacles; with several ranks a sum over them per step.
@@ -167,9 +167,9 @@ class ContactOfModel final : public Contact {
 
   const Part& part_;
   mutable Contacts contacts_;
-  mutable ContactExchange exchange_;
-  mutable ContactSharing sharing_;
-  mutable ContactWatch watch_;
+  mutable ContactHalo halo_;
+  mutable ContactLoadBalance balance_;
+  mutable PairListExpiry expiry_;
   mutable std::vector<MovingPose> bodies_;
   mutable std::vector<ContactWrench> mine_;
   std::vector<std::uint8_t> here_;
@@ -187,17 +187,17 @@ class ContactOfModel final : public Contact {
 
 /// The list of pairs is made anew, from the state once contacts are possible: then it does not show
 /// in the results; what a pair remembers goes with it.
-void ContactOfModel::remember(Memory& memory) {
+void DistributedContact::persist(Archive& archive) {
   for (std::size_t k = 0; k < contacts_.sums().size(); ++k) {
     // The last step and whether the start is known are no sums.
     double& value = contacts_.sums()[k];
     const std::string key = "sum_" + std::to_string(k);
-    k == 4 || k == 6 ? memory.common(key, value) : memory.share(key, value);
+    k == 4 || k == 6 ? archive.common(key, value) : archive.share(key, value);
   }
-  memory.common("dt", dt_);
-  memory.common("time", time_);
+  archive.common("dt", dt_);
+  archive.common("time", time_);
   std::vector<double> rows = contacts_.history(), pairs;
-  if (!memory.loading()) {
+  if (!archive.loading()) {
     const std::vector<double> all = all_gathered(rows, part_.comm);
     // In list order, whatever the ranks.
     std::vector<std::array<double, Contacts::width>> in_order(all.size() / Contacts::width);
@@ -210,31 +210,31 @@ void ContactOfModel::remember(Memory& memory) {
       pairs.insert(pairs.end(), {static_cast<double>(a), static_cast<double>(b)});
   }
   bool changed = contacts_.changed();
-  memory.common("changed", changed);
-  memory.common("possible", possible_);
-  ContactWatch watch = watch_;
-  if (!possible_) watch.remember(memory, part_);  // what is listed decides when it becomes so
-  memory.common("pairs", rows);
-  memory.common("released", pairs);
+  archive.common("changed", changed);
+  archive.common("possible", possible_);
+  PairListExpiry watch = expiry_;
+  if (!possible_) watch.persist(archive, part_);  // what is listed decides when it becomes so
+  archive.common("pairs", rows);
+  archive.common("released", pairs);
   for (std::size_t k = 0; k < peak_.size(); ++k) {
     const std::string& obstacle = contacts_.obstacles()[k].name;
     for (auto& [key, vector] :
          {std::pair<std::string, Vec3<double>*>{"peak_", &peak_[k]}, {"impulse_", &impulse_[k]}}) {
-      memory.common(key + obstacle + "_x", vector->x);
-      memory.common(key + obstacle + "_y", vector->y);
-      memory.common(key + obstacle + "_z", vector->z);
+      archive.common(key + obstacle + "_x", vector->x);
+      archive.common(key + obstacle + "_y", vector->y);
+      archive.common(key + obstacle + "_z", vector->z);
     }
   }
-  if (!memory.loading()) return;
+  if (!archive.loading()) return;
   overlap_told_ = true;  // when the run began
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
-  watch_ = ContactWatch(contacts_, part_.global_bodies);
+  expiry_ = PairListExpiry(contacts_, part_.global_bodies);
   if (possible_ || changed) return;
   build(watch.at_build(part_));  // the list that the run had
-  watch_ = watch;
+  expiry_ = watch;
 }
 
 void check_shapes(const Lattice& lattice) {
@@ -255,7 +255,7 @@ std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles) {
   check_shapes(lattice);
-  auto contact = std::make_unique<ContactOfModel>(part, lattice, options, std::move(obstacles));
+  auto contact = std::make_unique<DistributedContact>(part, lattice, options, std::move(obstacles));
   contact->check_start();
   return contact;
 }

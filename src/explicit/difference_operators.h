@@ -41,8 +41,8 @@ class Operators {
     }
     speed_ = std::sqrt(largest_over_ranks(fastest2, part_.comm));
     for (const auto& force : model.forces()) {
-      bound_.stiffness += force->own_rates().stiffness;
-      bound_.damping += force->own_rates().damping;
+      bound_.stiffness += force->hidden_stiffness().stiffness;
+      bound_.damping += force->hidden_stiffness().damping;
     }
   }
 
@@ -139,7 +139,7 @@ class Operators {
   void evaluate(Wrenches<Space>& wrenches) {
     std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
     for (const auto& force : model_.forces()) {
-      if (force->own_rates().stiffness == 0) force->add(moved_, wrenches);
+      if (force->hidden_stiffness().stiffness == 0) force->add(moved_, wrenches);
     }
     ++evaluations_;
   }

@@ -5,7 +5,7 @@
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
 #include "explicit/leapfrog.h"
-#include "explicit/planar_motion.h"
+#include "explicit/planar_leapfrog_stepper.h"
 #include "explicit/stable_step.h"
 #include "fracture/fracture.h"
 
@@ -66,14 +66,14 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     const auto [kinetic, boundary] = motion_.energies(this->state(), this->wrenches(), this->dt());
     return {kinetic, boundary};
   }
-  void remember_own(Memory& memory) override {
-    Base::remember_own(memory);
+  void persist_own(Archive& archive) override {
+    Base::persist_own(archive);
     double work = motion_.boundary_work();
-    memory.share("boundary_work", work);
+    archive.share("boundary_work", work);
     motion_.set_boundary_work(work);
   }
 
-  MotionOf<Space> motion_;
+  LeapfrogStepperOf<Space> motion_;
   Contact* contact_ = nullptr;  ///< if the scene has it
 };
 

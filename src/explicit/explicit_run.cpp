@@ -35,7 +35,7 @@ StableStep ExplicitRun<Space>::look() {
   evaluations_ = stable.evaluations;
   last_look_ = this->done();
   last_stable_ = stable.dt;
-  last_rate_ = fastest_rate();
+  last_rate_ = rate_estimate();
   last_own_ = own_stiffness();
   return stable;
 }
@@ -58,10 +58,10 @@ void ExplicitRun<Space>::choose_step() {
 
 /// Sum of the forces' own fastest rates, of all ranks' bodies; 0 if none has any.
 template <class Space>
-double ExplicitRun<Space>::fastest_rate() {
+double ExplicitRun<Space>::rate_estimate() {
   std::vector<double> rates;
   for (const auto& force : this->model().forces()) {
-    if (const auto rate = force->fastest_rate(this->state())) rates.push_back(*rate);
+    if (const auto rate = force->rate_estimate(this->state())) rates.push_back(*rate);
   }
   if (rates.empty()) return 0;
   largest_over_ranks(rates, this->model().part().comm);
@@ -86,7 +86,7 @@ typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
 template <class Space>
 double ExplicitRun<Space>::own_stiffness() {
   double sum = 0;
-  for (const auto& force : this->model().forces()) sum += force->own_rates().stiffness;
+  for (const auto& force : this->model().forces()) sum += force->hidden_stiffness().stiffness;
   return sum;
 }
 
@@ -105,7 +105,7 @@ bool ExplicitRun<Space>::look_is_due() {
   if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
   if (!this->sampled() && this->done() % now_and_then != 0) return false;
   if (step_limit().dt < needed()) return true;
-  const double rate = fastest_rate();
+  const double rate = rate_estimate();
   return rate > last_rate_ && !(last_stable_ * (last_rate_ / rate) >= needed());
 }
 
@@ -146,18 +146,18 @@ void ExplicitRun<Space>::add_to(RunPlan& plan) const {
 }
 
 template <class Space>
-void ExplicitRun<Space>::remember_own(Memory& memory) {
+void ExplicitRun<Space>::persist_own(Archive& archive) {
   std::string stepper = this->result().stepper;
-  memory.common("stepper", stepper);
+  archive.common("stepper", stepper);
   if (stepper != this->result().stepper)
     throw OtherRun("checkpoint: restart: '" + this->options().checkpoint.restart +
                    "' is of steps by '" + stepper + "', this run's are by '" +
                    this->result().stepper + "'");
-  memory.common("last_look", last_look_);
-  memory.common("look_evaluations", evaluations_);
-  memory.common("look_stable_dt", last_stable_, not_negative_or_infinite);
-  memory.common("look_rate", last_rate_, not_negative);
-  memory.common("look_own_stiffness", last_own_, not_negative);
+  archive.common("last_look", last_look_);
+  archive.common("look_evaluations", evaluations_);
+  archive.common("look_stable_dt", last_stable_, not_negative_or_infinite);
+  archive.common("look_rate", last_rate_, not_negative);
+  archive.common("look_own_stiffness", last_own_, not_negative);
 }
 
 template class ExplicitRun<Spatial>;

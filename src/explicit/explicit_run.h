@@ -10,7 +10,7 @@
 namespace floe {
 
 /// The stable step is found at the beginning and again, as often as that costs 1 % of the steps. It
-/// is found at once where the forces' own fastest rates (Force::fastest_rate), looked at with each
+/// is found at once where the forces' own fastest rates (Force::rate_estimate), looked at with each
 /// sample, have grown so far that it may have fallen below what dt needs. `dt: auto` needs it where
 /// half of what `safety` leaves is used up, and takes shorter steps from there on; a given step
 /// ends the run when it is no longer stable. A run whose stable step does not fall so far goes on
@@ -26,7 +26,7 @@ class ExplicitRun : public DynamicRun<Space> {
   virtual StableStep find_stable_step() = 0;
   /// Takes over that the next step is another than `before`; the state's wrenches are known.
   virtual void step_changed(TS ts, double before) = 0;
-  void remember_own(Memory& memory) override;
+  void persist_own(Archive& archive) override;
   void add_to(RunPlan& plan) const override;
   virtual int evaluations_a_step() const { return 1; }
 
@@ -41,7 +41,7 @@ class ExplicitRun : public DynamicRun<Space> {
  private:
   StableStep look();
   bool look_is_due();
-  double fastest_rate();
+  double rate_estimate();
   typename Force<Space>::StepLimit step_limit();
   double own_stiffness();
   double needed() const;

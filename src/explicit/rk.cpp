@@ -1,4 +1,4 @@
-// Explicit dynamics by PETSc's TSRK. Bodies are vectors here: BodyEquations. After each accepted
+// Explicit dynamics by PETSc's TSRK. Bodies are vectors here: FirstOrderSystem. After each accepted
 // step quaternions are made unit, prescribed components exact and integrals of powers are handed to
 // their owners; that changes the solution, so that TS evaluates the first stage anew even if the
 // method could reuse its last one (TSPostStep compares the vector's state). A restart from a
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "base/format.h"
-#include "explicit/body_equations.h"
 #include "explicit/explicit_run.h"
+#include "explicit/first_order_system.h"
 #include "explicit/rk_stability.h"
 #include "run/dynamic_run.h"
 #include "run/numbers.h"
@@ -72,9 +72,9 @@ class RkRun final : public ExplicitRun<Spatial> {
   Energies energies() const override {
     return {equations_.kinetic(state()), boundary_work_ + equations_.work_of_state(state())};
   }
-  void remember_own(Memory& memory) override {
-    ExplicitRun::remember_own(memory);
-    memory.share("boundary_work", boundary_work_);
+  void persist_own(Archive& archive) override {
+    ExplicitRun::persist_own(archive);
+    archive.share("boundary_work", boundary_work_);
   }
   StableStep find_stable_step() override;
   std::vector<PetscObject> objects() const override { return {object_of(solution_.get())}; }
@@ -104,7 +104,7 @@ class RkRun final : public ExplicitRun<Spatial> {
     return 0;
   }
 
-  BodyEquations equations_;
+  FirstOrderSystem equations_;
   Handle<Vec> solution_;
   Handle<TS> ts_;
   double boundary_work_ = 0;  ///< less what the state tells [J]
@@ -180,13 +180,13 @@ void RkRun::set_tolerances() {
     const Numbers a(atol), r(rtol);
     std::fill((*r).begin(), (*r).end(), relative);
     for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
-      double* at = &(*a)[b * BodyEquations::width];
+      double* at = &(*a)[b * FirstOrderSystem::width];
       const Point3& inertia = part.bodies.inertia[b];
       const double moment = *std::max_element(inertia.begin(), inertia.end());
-      std::fill_n(at + BodyEquations::displacement, 3, absolute * model().length_scale());
-      std::fill_n(at + BodyEquations::rotation, 4, absolute);
-      std::fill_n(at + BodyEquations::velocity, 3, absolute * model().length_scale() / time);
-      std::fill_n(at + BodyEquations::momentum, 3, absolute * moment / time);
+      std::fill_n(at + FirstOrderSystem::displacement, 3, absolute * model().length_scale());
+      std::fill_n(at + FirstOrderSystem::rotation, 4, absolute);
+      std::fill_n(at + FirstOrderSystem::velocity, 3, absolute * model().length_scale() / time);
+      std::fill_n(at + FirstOrderSystem::momentum, 3, absolute * moment / time);
     }
     // Works do not count: without a tolerance they are left out.
     const auto works = static_cast<std::ptrdiff_t>(equations_.bodies_size());

@@ -104,13 +104,13 @@ class DeadLoad final : public Force<Space> {
     return sum;
   }
   void take_work(double work) override { work_ += work; }
-  double settles() const override { return load_.ramp.seconds; }
+  double time_dependent_until() const override { return load_.ramp.seconds; }
 
-  void remember(Memory& checkpoint) override {
-    checkpoint.share("work", work_);
+  void persist(Archive& archive) override {
+    archive.share("work", work_);
     std::vector<double> last{last_force_.x,  last_force_.y,  last_force_.z,
                              last_moment_.x, last_moment_.y, last_moment_.z};
-    checkpoint.common("last", last);
+    archive.common("last", last);
     last.resize(6);
     last_force_ = {last[0], last[1], last[2]};
     last_moment_ = {last[3], last[4], last[5]};
@@ -119,7 +119,7 @@ class DeadLoad final : public Force<Space> {
     rows.reserve(width * places_.size());
     for (const Place& p : places_)
       rows.insert(rows.end(), {p.at.x, p.at.y, p.at.z, p.q.w, p.q.x, p.q.y, p.q.z});
-    checkpoint.rows("places", bodies_, rows, width);
+    archive.rows("places", bodies_, rows, width);
     for (std::size_t k = 0; k < places_.size(); ++k) {
       const double* r = &rows[width * k];
       places_[k] = {{r[0], r[1], r[2]}, {r[3], r[4], r[5], r[6]}};

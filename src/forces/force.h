@@ -12,7 +12,7 @@
 
 #include "floe/lattice/state.h"
 #include "forces/tangent.h"
-#include "lattice/memory.h"
+#include "lattice/archive.h"
 #include "lattice/partition.h"
 
 namespace floe {
@@ -58,7 +58,7 @@ class Force {
   struct Rates {
     double stiffness = 0, damping = 0;
   };
-  virtual Rates own_rates() const { return {}; }
+  virtual Rates hidden_stiffness() const { return {}; }
   /// The longest step for a reason that is no stability of a mode (ways of bodies against their
   /// widths) [s], and that reason, for this rank's bodies. Default: none.
   struct StepLimit {
@@ -74,12 +74,12 @@ class Force {
   virtual bool has_history() const { return false; }
   /// When what the force does by the clock alone has come to its end (a load's ramp) [s]; 0: at
   /// once.
-  virtual double settles() const { return 0; }
+  virtual double time_dependent_until() const { return 0; }
   /// A cheap measure of the fastest rate at which the force alone moves or stops one of this rank's
   /// bodies [1/s], of forces for which that changes in a run (bodies come to the water, beams are
   /// pressed, drag grows with the speed). Where the sum over forces has grown, the stable step is
   /// found anew in time. Alike on all ranks: all give a number, or none does.
-  virtual std::optional<double> fastest_rate(const State<Space>& /*state*/) const { return {}; }
+  virtual std::optional<double> rate_estimate(const State<Space>& /*state*/) const { return {}; }
 
   /// Power on this rank's bodies of what no potential of the force accounts for, in its last
   /// evaluation, which was at `state` [W]; negative where bodies lose energy.
@@ -97,7 +97,7 @@ class Force {
   /// Energies and counts of this rank's share.
   virtual void report(const State<Space>& state, Columns& columns) const = 0;
   /// History to and from a checkpoint; a force without history has nothing to keep.
-  virtual void remember(Memory& /*checkpoint*/) {}
+  virtual void persist(Archive& /*checkpoint*/) {}
 };
 
 }  // namespace floe

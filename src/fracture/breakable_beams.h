@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "base/collectives.h"
-#include "beams/spatial_beams.h"
+#include "beams/spatial_lanes.h"
 #include "floe/base/petsc.h"
-#include "fracture/breakable_blocks.h"
 #include "fracture/fracture.h"
+#include "fracture/lanes.h"
 
 namespace floe {
 
@@ -17,7 +17,7 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
 
 /// Collects what the ranks count of their cracks, and spreads them again. \param cracks  with beams
 /// as global indices. Collective.
-void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks);
+void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks);
 
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, public Fracture {
@@ -141,19 +141,19 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     columns.add("beams_brittle", counts[2]);
   }
 
-  void remember(Memory& checkpoint) override {
-    Base::remember(checkpoint);
-    checkpoint.share("energy_fracture", dissipated_);
-    checkpoint.common("last_dt", dt_);
+  void persist(Archive& archive) override {
+    Base::persist(archive);
+    archive.share("energy_fracture", dissipated_);
+    archive.common("last_dt", dt_);
     std::vector<Crack> mine;
     for (const Crack& c : cracks_) {
       if (!counts_here(c.beam)) continue;
       mine.push_back(c);
       mine.back().beam = part_.global_beam[static_cast<std::size_t>(c.beam)];
     }
-    remember_cracks(checkpoint, part_, mine);
-    if constexpr (damped) remember_dashpots(checkpoint);
-    if (checkpoint.loading()) set_cracks(std::move(mine));
+    persist_cracks(archive, part_, mine);
+    if constexpr (damped) remember_dashpots(archive);
+    if (archive.loading()) set_cracks(std::move(mine));
   }
 
   std::int64_t folded(const State<Spatial>& state) const override {
@@ -399,10 +399,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   }
 
   /// A restart goes on with the forces of the last step's start.
-  void remember_dashpots(Memory& checkpoint) {
+  void remember_dashpots(Archive& archive) {
     std::vector<std::int32_t> beams;
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
-      if (checkpoint.loading() || counts_here(m)) beams.push_back(m);
+      if (archive.loading() || counts_here(m)) beams.push_back(m);
     }
     std::vector<double> rows;
     const auto each = [&](auto visit) {
@@ -412,7 +412,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       }
     };
     each([&](float value) { rows.push_back(static_cast<double>(value)); });
-    checkpoint.beam_rows("viscous", beams, rows, 6);
+    archive.beam_rows("viscous", beams, rows, 6);
     std::size_t k = 0;
     each([&](float& value) { value = static_cast<float>(rows[k++]); });
   }

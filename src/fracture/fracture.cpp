@@ -93,12 +93,12 @@ double overload(const Part& part, const std::vector<BeamSection>& sections,
   return std::sqrt(largest_over_ranks(most, part.comm));
 }
 
-void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& cracks) {
+void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks) {
   constexpr std::size_t width = crack_size;
   std::vector<double> all;
-  if (!memory.loading()) all = all_gathered(packed(cracks), part.comm);
-  memory.common("cracks", all);
-  if (!memory.loading()) return;
+  if (!archive.loading()) all = all_gathered(packed(cracks), part.comm);
+  archive.common("cracks", all);
+  if (!archive.loading()) return;
   cracks.clear();
   for (std::size_t k = 0; k + width <= all.size(); k += width) {
     const double* v = &all[k];

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "floe/fracture/fracture_options.h"
 
 namespace floe {

@@ -13,7 +13,7 @@
 #include "base/format.h"
 #include "implicit/implicit_ts_options.h"
 #include "implicit/liealpha.h"
-#include "implicit/motion_equations.h"
+#include "implicit/second_order_system.h"
 #include "implicit/step_plan.h"
 #include "model/newton.h"
 #include "run/dynamic_run.h"
@@ -26,7 +26,7 @@ namespace {
 template <class Space>
 class ImplicitRun final : public DynamicRun<Space> {
   using Base = DynamicRun<Space>;
-  using Equations = MotionEquations<Space>;
+  using Equations = SecondOrderSystem<Space>;
   using Base::done, Base::dt, Base::give_up, Base::model, Base::options, Base::result, Base::set_dt,
       Base::state, Base::wrenches;
 
@@ -90,7 +90,7 @@ class ImplicitRun final : public DynamicRun<Space> {
   void announce_factorisation() {
     this->announce_work("factorising " + text(unknowns_) + " unknowns", cost_.seconds);
   }
-  void remember_own(Memory& memory) override;
+  void persist_own(Archive& archive) override;
   std::vector<PetscObject> objects() const override;
 
   static ImplicitRun& of(TS ts) {
@@ -228,7 +228,7 @@ bool ImplicitRun<Space>::first() {
   constexpr double rounding = 1e-12;  // of the sum of steps
   check(TSSetMaxTime(ts_, (1 - rounding) * options().end));
   check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));  // land() sees to it
-  const LieAlphaMemory memory = liealpha_memory(ts_);
+  const LieAlphaHistory memory = liealpha_memory(ts_);
   if (done() == 0) {
     if (!fixed_) expect_motion();
     equations_.acceleration(state().time, x_, v_, memory.a);
@@ -247,7 +247,7 @@ bool ImplicitRun<Space>::first() {
 /// the boundaries'. What of it is not in the kinetic energy is the method's own loss.
 template <class Space>
 void ImplicitRun<Space>::keep_books(double h) {
-  const LieAlphaMemory memory = liealpha_memory(ts_);
+  const LieAlphaHistory memory = liealpha_memory(ts_);
   equations_.forces(v_, memory.a, wrenches(), forces_);
   const ReadNumbers x(x_), x_before(x_before_), v(v_), v_before(v_before_);
   const auto work = [&](const std::vector<double>& before, const std::vector<double>& now) {
@@ -391,24 +391,24 @@ std::vector<PetscObject> ImplicitRun<Space>::objects() const {
 }
 
 template <class Space>
-void ImplicitRun<Space>::remember_own(Memory& memory) {
-  plan_.remember(memory);
+void ImplicitRun<Space>::persist_own(Archive& archive) {
+  plan_.persist(archive);
   std::int64_t newton = result().newton_iterations;
-  memory.common("newton_iterations", newton);
-  memory.share("boundary_work", boundary_work_);
-  memory.share("numerical_loss", numerical_loss_);
-  LieAlphaMemory own = liealpha_memory(ts_);
+  archive.common("newton_iterations", newton);
+  archive.share("boundary_work", boundary_work_);
+  archive.share("numerical_loss", numerical_loss_);
+  LieAlphaHistory own = liealpha_memory(ts_);
   std::int64_t delay = own.delay;
-  memory.common("last_step", own.last_step, not_negative);
-  memory.common("delay", delay);
+  archive.common("last_step", own.last_step, not_negative);
+  archive.common("delay", delay);
   const Part& part = model().part();
-  remember(memory, part, "x", x_, Equations::n);
-  remember(memory, part, "v", v_, Equations::n);
-  remember(memory, part, "a", own.a, Equations::n);
-  remember(memory, part, "own_a", own.own, Equations::n);
-  remember(memory, part, "expected", expected_, Equations::n);
-  equations_.remember(memory);
-  if (!memory.loading()) return;
+  persist(archive, part, "x", x_, Equations::n);
+  persist(archive, part, "v", v_, Equations::n);
+  persist(archive, part, "a", own.a, Equations::n);
+  persist(archive, part, "own_a", own.own, Equations::n);
+  persist(archive, part, "expected", expected_, Equations::n);
+  equations_.persist(archive);
+  if (!archive.loading()) return;
   newton_before_ = result().newton_iterations = newton;
   own.delay = static_cast<PetscInt>(delay);
   resume_liealpha(ts_, own);

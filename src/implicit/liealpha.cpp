@@ -300,7 +300,7 @@ void register_liealpha() {
 
 void set_liealpha_problem(TS ts, const LieAlphaProblem* problem) { of(ts).problem = problem; }
 
-LieAlphaMemory liealpha_memory(TS ts) {
+LieAlphaHistory liealpha_memory(TS ts) {
   const LieAlpha& me = of(ts);
   return {me.a0, me.own0, me.last_step, ts->adapt->timestepjustdecreased};
 }
@@ -313,7 +313,7 @@ std::vector<Vec> liealpha_vectors(TS ts) {
   return all;
 }
 
-void resume_liealpha(TS ts, const LieAlphaMemory& memory) {
+void resume_liealpha(TS ts, const LieAlphaHistory& memory) {
   LieAlpha& me = of(ts);
   me.last_step = memory.last_step;
   ts->adapt->timestepjustdecreased = memory.delay;

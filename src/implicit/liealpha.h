@@ -58,19 +58,19 @@ struct LieAlphaProblem {
 void set_liealpha_problem(TS ts, const LieAlphaProblem* problem);
 
 /// What the type takes along over a restart, beside X and V of TS2SetSolution.
-struct LieAlphaMemory {
+struct LieAlphaHistory {
   Vec a, own;            ///< at t_n, the type's own vectors
   double last_step = 0;  ///< the one that led to t_n; 0 at a start
   PetscInt delay = 0;    ///< steps that TSAdapt still waits before it lets the step grow
 };
 /// What it is at present; the TS must be set up. A start if no step has been made.
-LieAlphaMemory liealpha_memory(TS ts);
+LieAlphaHistory liealpha_memory(TS ts);
 /// Newton's iterations so far, where PETSc counts with 32 bits.
 std::int64_t liealpha_iterations(TS ts);
 /// All vectors of the type itself, for audits.
 std::vector<Vec> liealpha_vectors(TS ts);
 /// The vectors of liealpha_memory() have been given their values: the next step goes on from them
 /// instead of starting.
-void resume_liealpha(TS ts, const LieAlphaMemory& memory);
+void resume_liealpha(TS ts, const LieAlphaHistory& memory);
 
 }  // namespace floe

@@ -61,10 +61,10 @@ bool StepPlan::is_hopeless() const {
   return fixed_ && planned_ < smallest_fraction * given_;
 }
 
-void StepPlan::remember(Memory& memory) {
-  memory.common("given_step", given_, positive);
-  memory.common("planned_step", planned_, positive);
-  memory.common("step_before", last_, positive);
+void StepPlan::persist(Archive& archive) {
+  archive.common("given_step", given_, positive);
+  archive.common("planned_step", planned_, positive);
+  archive.common("step_before", last_, positive);
 }
 
 }  // namespace floe

@@ -28,7 +28,7 @@ class StepPlan {
   double given() const { return given_; }
   /// Whether Newton has cut a given step to next to nothing.
   bool is_hopeless() const;
-  void remember(Memory& memory);
+  void persist(Archive& archive);
 
  private:
   static constexpr double rounding = 1e-6;  // of a step

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "floe/forces/boundary.h"
 #include "forces/force.h"
 #include "fracture/fracture.h"

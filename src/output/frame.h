@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "base/hdf5.h"
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "floe/base/rotation.h"
 #include "output/xdmf.h"
 

@@ -47,7 +47,7 @@ struct Output<Space>::Impl {
   std::optional<Fields> fields;       ///< rank 0
   std::optional<History> history;     ///< rank 0
   std::optional<CrackLog> cracks;     ///< if beams may break
-  OutputMemory memory;
+  OutputArchive memory;
   std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
 
   Impl(const OutputOptions& o, const Model<Space>& m)
@@ -81,7 +81,7 @@ struct Output<Space>::Impl {
 template <class Space>
 Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
                       const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
-                      const OutputMemory* restart) {
+                      const OutputArchive* restart) {
   const Timed timed(Event::output);
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
@@ -134,7 +134,7 @@ template <class Space>
 Output<Space>::~Output() = default;
 
 template <class Space>
-const OutputMemory& Output<Space>::memory() const {
+const OutputArchive& Output<Space>::memory() const {
   return impl_->memory;
 }
 template <class Space>
@@ -227,16 +227,16 @@ Sample columns_of(const std::vector<Boundary>& boundaries, const std::vector<Loa
   return sample;
 }
 
-void require_files(const std::string& dir, const OutputMemory& memory, const Sample& columns,
+void require_files(const std::string& dir, const OutputArchive& archive, const Sample& columns,
                    MPI_Comm comm) {
   on_root(comm, [&] {
     const std::string path = dir + "/history.csv";
-    const HistoryStart history = history_start(path, memory.rows);
+    const HistoryStart history = history_start(path, archive.rows);
     if (!history.header.empty() && history.header != header_of(columns))
       throw InputError("checkpoint: restart: '" + path +
                        "' has other columns than this run writes: it is of another run, or of "
                        "another version of floe");
-    Fields::require(dir, memory.frames);
+    Fields::require(dir, archive.frames);
   });
 }
 
@@ -308,23 +308,25 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   const double time = accepted.state.time;
   constexpr double early =
       1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
-  OutputMemory& m = me.memory;
-  m.last = me.sample(accepted);
-  if (accepted.step == 0) m.first = m.last;
-  m.row_pending = !accepted.last && me.options.history > 0 &&
-                  time < m.next_history - early * me.options.history;
-  if (!m.row_pending) {
-    me.write_row(m.last);
+  OutputArchive& archive = me.memory;
+  archive.last = me.sample(accepted);
+  if (accepted.step == 0) archive.first = archive.last;
+  archive.row_pending = !accepted.last && me.options.history > 0 &&
+                        time < archive.next_history - early * me.options.history;
+  if (!archive.row_pending) {
+    me.write_row(archive.last);
     if (me.options.history > 0)
-      m.next_history = me.options.history * (std::floor(time / me.options.history + early) + 1);
+      archive.next_history =
+          me.options.history * (std::floor(time / me.options.history + early) + 1);
   }
-  const bool due = accepted.step == 0 || accepted.last ||
-                   (me.options.fields > 0 && time >= m.next_fields - early * me.options.fields);
+  const bool due =
+      accepted.step == 0 || accepted.last ||
+      (me.options.fields > 0 && time >= archive.next_fields - early * me.options.fields);
   if (due) {
     me.pending.reset();
     me.write_frame(accepted.state);
     if (me.options.fields > 0)
-      m.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
+      archive.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
   } else {
     me.pending = accepted.state;
   }

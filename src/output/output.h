@@ -11,7 +11,7 @@
 
 #include "floe/forces/boundary.h"
 #include "forces/dead_load.h"
-#include "lattice/memory.h"
+#include "lattice/archive.h"
 #include "run/integrator.h"
 
 namespace floe {
@@ -44,7 +44,7 @@ Sample columns_of(const std::vector<Boundary>& boundaries, const std::vector<Loa
                   const std::vector<std::string>& names, bool breakable);
 
 /// What the output of a run takes along over a restart.
-struct OutputMemory {
+struct OutputArchive {
   Sample first, last;
   bool row_pending = false;  ///< `last` is not in history.csv
   std::int64_t rows = 0;     ///< in history.csv, without its first line
@@ -52,13 +52,13 @@ struct OutputMemory {
   double next_history = 0;   ///< when the next row is due [s]
   double next_fields = 0;    ///< when the next frame is due [s]
   std::string run;           ///< what identifies the run whose files they are
-  void remember(Memory& memory);
+  void persist(Archive& archive);
 };
 
 /// Looks whether a folder holds the files that a restart goes on with; changes nothing. Collective.
 /// \param columns  a sample with the columns of this run's rows, whatever their values
 /// \throws InputError
-void require_files(const std::string& dir, const OutputMemory& memory, const Sample& columns,
+void require_files(const std::string& dir, const OutputArchive& archive, const Sample& columns,
                    MPI_Comm comm);
 
 /// Takes every accepted state; writes on rank 0. Files of planar runs are those of spatial ones,
@@ -74,7 +74,7 @@ class Output {
   /// \throws InputError if the folder does not hold the files to go on with
   Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
          const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
-         const OutputMemory* restart = nullptr);
+         const OutputArchive* restart = nullptr);
   ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
@@ -86,7 +86,7 @@ class Output {
   void sync();
 
   /// What a checkpoint must know to cut the files back to this moment.
-  const OutputMemory& memory() const;
+  const OutputArchive& archive() const;
 
   const Sample& first() const;
   const Sample& last() const;

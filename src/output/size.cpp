@@ -2,7 +2,7 @@
 
 namespace floe {
 
-/// The datasets of write_lattice(), Fields and DynamicRun::remember(), and what HDF5 takes for each
+/// The datasets of write_lattice(), Fields and DynamicRun::persist(), and what HDF5 takes for each
 /// of them and XDMF for each frame.
 OutputSize output_size(const Lattice& lattice, bool breakable, std::size_t boundaries,
                        std::size_t loads, std::size_t obstacles) {

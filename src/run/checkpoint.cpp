@@ -194,19 +194,19 @@ void make_newest(const std::string& restart, const std::string& file, MPI_Comm c
 }
 
 /// What every checkpoint says first. \throws OtherRun
-void Checkpoints::head(Memory& memory) {
+void Checkpoints::head(Archive& archive) {
   std::string version = FLOE_VERSION, built = built_for(part_.comm), lattice = options_.lattice,
               obstacles = options_.obstacles, options = options_.options, scene = options_.scene;
   std::int64_t number = layout, ranks = size(part_.comm);
-  memory.enter("");
-  memory.common("layout", number);
-  memory.common("version", version);
-  memory.common("built_for", built);
-  memory.common("ranks", ranks, 1);
-  memory.common("lattice", lattice);
-  memory.common("obstacles", obstacles);
-  memory.common("options", options);
-  memory.common("scene", scene);
+  archive.enter("");
+  archive.common("layout", number);
+  archive.common("version", version);
+  archive.common("built_for", built);
+  archive.common("ranks", ranks, 1);
+  archive.common("lattice", lattice);
+  archive.common("obstacles", obstacles);
+  archive.common("options", options);
+  archive.common("scene", scene);
   if (number != layout) throw OtherRun(named(options_.restart) + "is of another version of floe");
   if (lattice != options_.lattice)
     throw OtherRun(named(options_.restart) + "is of another lattice (" + lattice +
@@ -217,16 +217,16 @@ void Checkpoints::head(Memory& memory) {
                    "has changed");
 }
 
-void Checkpoints::save(const std::function<void(Memory&)>& remember,
+void Checkpoints::save(const std::function<void(Archive&)>& remember,
                        const std::vector<std::string>& columns) {
   const Timed timed(Event::output);
   const double began = MPI_Wtime();
   options_.prepare(columns);
   std::optional<Hdf5File> file;
   on_root(part_.comm, [&] { file.emplace(Hdf5File::create(options_.file, seal_size)); });
-  Memory memory(part_, file ? &*file : nullptr, false);
+  Archive memory(part_, file ? &*file : nullptr, false);
   head(memory);
-  remember(memory);
+  persist(memory);
   options_.others(memory);
   share_outcome(memory.outcome(), part_.comm);
   on_root(part_.comm, [&] {
@@ -241,13 +241,13 @@ void Checkpoints::save(const std::function<void(Memory&)>& remember,
   save_seconds_ = last_save_ - began;
 }
 
-void Checkpoints::load(const std::function<void(Memory&)>& remember) {
+void Checkpoints::load(const std::function<void(Archive&)>& remember) {
   std::optional<Hdf5File> file;
   try {
     on_root(part_.comm, [&] { file.emplace(open_whole(options_.restart)); });
-    Memory memory(part_, file ? &*file : nullptr, true, options_.restart);
+    Archive memory(part_, file ? &*file : nullptr, true, options_.restart);
     head(memory);
-    remember(memory);
+    persist(memory);
     options_.others(memory);
   } catch (const OtherRun&) {
     throw;

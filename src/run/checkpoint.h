@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "floe/contact/obstacle.h"
-#include "lattice/memory.h"
+#include "lattice/archive.h"
 
 namespace floe {
 
@@ -32,7 +32,7 @@ struct CheckpointOptions {
   std::function<void(const std::vector<std::string>& columns)> prepare =
       [](const std::vector<std::string>&) {};
   /// What others than the integrator keep; called for each checkpoint, and once when loading.
-  std::function<void(Memory&)> others = [](Memory&) {};
+  std::function<void(Archive&)> others = [](Archive&) {};
 };
 
 /// A whole checkpoint that is of another run than this one.
@@ -83,15 +83,15 @@ class Checkpoints {
   /// Writes the file whole, seals it, brings it to the disk and renames it; the one before stays
   /// as previous_checkpoint(). At any instant at least one of them is whole.
   /// \param remember  what the run keeps   \param columns  for options.prepare
-  void save(const std::function<void(Memory&)>& remember,
+  void save(const std::function<void(Archive&)>& remember,
             const std::vector<std::string>& columns = {});
   /// Reads the file that options.restart names. \throws InputError if it is damaged, with the
   /// generation before it if that is good, or not a checkpoint of this lattice
-  void load(const std::function<void(Memory&)>& remember);
+  void load(const std::function<void(Archive&)>& remember);
 
  private:
   Wish look(std::int64_t step);
-  void head(Memory& memory);
+  void head(Archive& archive);
 
   const CheckpointOptions& options_;
   const Part& part_;

@@ -110,42 +110,42 @@ void DynamicRun<Space>::replan(TS ts, double wanted) {
 
 /// All that a run goes on from. Collective.
 template <class Space>
-void DynamicRun<Space>::remember(Memory& memory) {
+void DynamicRun<Space>::persist(Archive& archive) {
   largest_ = largest_over_ranks(largest_, model_.part().comm);
-  memory.enter("run");
+  archive.enter("run");
   std::string type = type_;
-  memory.common("type", type);
+  archive.common("type", type);
   if (type != type_)
     throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of ts_type '" +
                    type + "', which keeps its state in another way than this run's '" + type_ +
                    "'");
   const std::string space = std::is_same_v<Space, Planar> ? "planar" : "spatial";
   std::string model = space;
-  memory.common("model", model);
+  archive.common("model", model);
   if (model != space)
     throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
                    " model, this run's is " + space + " (model: planar)");
-  memory.common("step", done_);
-  memory.common("steps", steps_);
-  memory.common("time", state_.time, not_negative);
-  memory.common("dt", dt_, positive);
-  memory.common("time_base", time_base_, not_negative);
-  memory.common("step_base", step_base_);
-  memory.common("stable_dt", result_.stable_dt, not_negative_or_infinite);
-  memory.common("limited_by", result_.limited_by);
-  memory.common("next_sample", next_sample_, not_negative_or_infinite);
-  memory.common("sampled_step", sampled_, -1);
-  memory.common("largest_velocity2", largest_, not_negative);
-  remember_own(memory);
-  memory.enter("ledger");
-  ledger_.remember(memory);
-  memory.enter("bodies");
+  archive.common("step", done_);
+  archive.common("steps", steps_);
+  archive.common("time", state_.time, not_negative);
+  archive.common("dt", dt_, positive);
+  archive.common("time_base", time_base_, not_negative);
+  archive.common("step_base", step_base_);
+  archive.common("stable_dt", result_.stable_dt, not_negative_or_infinite);
+  archive.common("limited_by", result_.limited_by);
+  archive.common("next_sample", next_sample_, not_negative_or_infinite);
+  archive.common("sampled_step", sampled_, -1);
+  archive.common("largest_velocity2", largest_, not_negative);
+  persist_own(archive);
+  archive.enter("ledger");
+  ledger_.persist(archive);
+  archive.enter("bodies");
   const std::vector<std::int32_t> owned = owned_bodies(model_.part());
-  memory.rows("records", owned, std::span(state_.records).first(owned.size() * Space::record),
-              Space::record);
+  archive.rows("records", owned, std::span(state_.records).first(owned.size() * Space::record),
+               Space::record);
   for (std::size_t k = 0; k < model_.forces().size(); ++k) {
-    memory.enter("force_" + std::to_string(k) + "_" + std::string(model_.forces()[k]->name()));
-    model_.forces()[k]->remember(memory);
+    archive.enter("force_" + std::to_string(k) + "_" + std::string(model_.forces()[k]->name()));
+    model_.forces()[k]->persist(archive);
   }
 }
 
@@ -153,7 +153,7 @@ void DynamicRun<Space>::remember(Memory& memory) {
 template <class Space>
 bool DynamicRun<Space>::restart() {
   if (options_.checkpoint.restart.empty()) return false;
-  checkpoints_.load([&](Memory& memory) { remember(memory); });
+  checkpoints_.load([&](Archive& archive) { persist(archive); });
   result_.dt = dt_;
   const double steps = std::ceil((options_.end - time_base_) / dt_ * (1 - 1e-12));
   if (!adaptive_) {
@@ -271,7 +271,7 @@ bool DynamicRun<Space>::look_around() {
 
 template <class Space>
 void DynamicRun<Space>::save() {
-  checkpoints_.save([&](Memory& memory) { remember(memory); }, column_names());
+  checkpoints_.save([&](Archive& archive) { persist(archive); }, column_names());
 }
 
 /// Of what sample() hands out.

@@ -91,7 +91,7 @@ class DynamicRun {
   /// What else it has to report of this rank's bodies at the state.
   virtual Columns own_columns() const { return {}; }
   /// What the integrator itself takes along over a restart, beside records, time and dt.
-  virtual void remember_own(Memory& memory) = 0;
+  virtual void persist_own(Archive& archive) = 0;
   /// Its PETSc objects, for audits.
   virtual std::vector<PetscObject> objects() const { return {}; }
   /// Compares the run's objects and its times over ranks, in audits. Collective then.
@@ -169,7 +169,7 @@ class DynamicRun {
   bool within_limits();
   void take_remarks();
   std::string where() const;
-  void remember(Memory& memory);
+  void persist(Archive& archive);
 
   Model<Space>& model_;
   DynamicOptions options_;  // the command line's -ts_* included

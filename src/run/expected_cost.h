@@ -28,7 +28,7 @@ double lattice_bytes(double bodies, int ranks);
 /// Whether a lattice has no more beams per body than a sheet.
 inline bool is_like_a_sheet(double bodies, double beams) { return beams <= 3.5 * bodies; }
 
-/// Memory that the system would give to new work, summed over the machines of the ranks: what is
+/// Archive that the system would give to new work, summed over the machines of the ranks: what is
 /// free, within the limit of the group of processes (cgroup) that it runs in; infinite if it is not
 /// known. Collective. [B]
 double free_memory(MPI_Comm comm);

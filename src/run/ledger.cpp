@@ -42,23 +42,23 @@ void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, dou
 
 double Ledger::relative_error() const { return std::abs(error_) / std::max(largest_, floor_); }
 
-void Ledger::remember(Memory& memory) {
-  memory.common("started", started_);
+void Ledger::persist(Archive& archive) {
+  archive.common("started", started_);
   for (const auto& [name, value] :
        std::initializer_list<std::pair<const char*, double*>>{{"offset", &offset_},
                                                               {"kinetic", &kinetic_},
                                                               {"boundary", &boundary_},
                                                               {"error", &error_},
                                                               {"largest", &largest_}})
-    memory.common(name, *value, value == &largest_ ? not_negative : finite);
+    archive.common(name, *value, value == &largest_ ? not_negative : finite);
   std::string names;
   std::vector<double> values;
   for (const auto& [name, value] : first_) {
     names += name + " ";
     values.push_back(value);
   }
-  memory.common("first_names", names);
-  memory.common("first_values", values);
+  archive.common("first_names", names);
+  archive.common("first_values", values);
   std::istringstream words(names);
   std::size_t k = 0;
   for (std::string name; words >> name && k < values.size();) first_[name] = values[k++];

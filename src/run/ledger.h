@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/memory.h"
+#include "lattice/archive.h"
 
 namespace floe {
 
@@ -25,7 +25,7 @@ class Ledger {
   double relative_error() const;
   /// Energies below this are rounding and are not judged [J].
   void set_floor(double floor) { floor_ = floor; }
-  void remember(Memory& memory);
+  void persist(Archive& archive);
   std::vector<std::pair<std::string, double>> columns() const;
 
  private:

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "lattice/memory.h"
+#include "lattice/archive.h"
 
 namespace floe {
 
@@ -65,15 +65,15 @@ inline std::vector<std::int32_t> owned_bodies(const Part& part) {
 
 /// A vector of `width` numbers per body, to and from a checkpoint; saving does not touch it.
 /// Collective.
-inline void remember(Memory& memory, const Part& part, const std::string& name, Vec vector,
-                     int width) {
+inline void persist(Archive& archive, const Part& part, const std::string& name, Vec vector,
+                    int width) {
   std::vector<double> rows;
   {
     const ReadNumbers numbers(vector);
     rows.assign((*numbers).begin(), (*numbers).end());
   }
-  memory.rows(name, owned_bodies(part), rows, width);
-  if (memory.loading()) std::copy(rows.begin(), rows.end(), (*Numbers(vector)).begin());
+  archive.rows(name, owned_bodies(part), rows, width);
+  if (archive.loading()) std::copy(rows.begin(), rows.end(), (*Numbers(vector)).begin());
 }
 
 }  // namespace floe

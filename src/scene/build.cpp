@@ -136,7 +136,7 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
                     const std::string& lattice_id, const OnPlan& on_plan,
                     const ObserverOf<Space>& observer,
                     const std::function<void(const std::vector<std::string>&)>& prepare,
-                    const std::function<void(Memory&)>& others) {
+                    const std::function<void(Archive&)>& others) {
   if (scene.integrator == Integrator::quasistatic)
     return run_quasistatic(model, {scene.time.end, scene.time.dt, scene.limit.steps, on_plan},
                            observer, rest);
@@ -284,11 +284,11 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
 template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane*, const std::string&,
                              const OnPlan&, const Observer<Spatial>&,
                              const std::function<void(const std::vector<std::string>&)>&,
-                             const std::function<void(Memory&)>&);
+                             const std::function<void(Archive&)>&);
 template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane*, const std::string&,
                              const OnPlan&, const Observer<Planar>&,
                              const std::function<void(const std::vector<std::string>&)>&,
-                             const std::function<void(Memory&)>&);
+                             const std::function<void(Archive&)>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);
 template void add_contact(const Scene&, const Lattice&, Model<Spatial>&);

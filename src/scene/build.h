@@ -53,13 +53,13 @@ std::string text_of(const StrengthCalibration& c);
 void set_initial(const Scene& scene, Lattice& lattice);
 
 /// What a scene does not need, decided once.
-struct Skips {
+struct ModelChoice {
   bool planar = false;      ///< nothing loads, moves or prescribes anything out of the plane
   std::string needs_space;  ///< why it is not planar; empty if it is, or need not be
   std::string text;         ///< one line: "planar, linear, undamped, no water, no contact"
 };
 /// \throws InputError if the scene says `planar: true` and cannot be
-Skips skips_of(const Scene& scene, const Lattice& lattice);
+ModelChoice choose_model(const Scene& scene, const Lattice& lattice);
 
 /// Where an explicit run writes its checkpoints.
 std::string checkpoint_file(const Scene& scene);
@@ -75,7 +75,7 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
                     const std::string& lattice_id, const OnPlan& on_plan,
                     const ObserverOf<Space>& observer,
                     const std::function<void(const std::vector<std::string>&)>& prepare,
-                    const std::function<void(Memory&)>& others);
+                    const std::function<void(Archive&)>& others);
 
 /// Lines that say what a run is going to do and to take. \param memory  of all ranks, at present
 /// [bytes]   \throws InputError if it needs more than the scene's limits allow
@@ -120,7 +120,7 @@ struct Summary {
   std::string json, text;
 };
 template <class Space>
-Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& model,
+Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Space>& model,
                   const MeshReport& mesh, const RunResult& result, const Sample& first,
                   const Sample& last, double wall_seconds);
 

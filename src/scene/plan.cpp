@@ -110,7 +110,7 @@ std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize&
 void check_size(const Scene& scene, double free, int ranks) {
   const auto bodies = static_cast<double>(number_of_cells(scene.sheet));
   double needed = lattice_bytes(bodies, ranks);
-  if (scene.integrator != Integrator::leapfrog) {
+  if (scene.integrator != Integrator::explicit_) {
     const bool flat = scene.integrator == Integrator::quasistatic && !scene.forces.gravity &&
                       !scene.forces.fracture && scene.planar != Planarity::never;
     const double unknowns = bodies * (flat ? Planar::unknowns : Spatial::unknowns);

@@ -32,7 +32,7 @@ void check_integrator_of_forces(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::implicit)
     refuse("integrator: implicit", "Newton's trials", "integrator: explicit or quasistatic",
            "integrator: explicit");
-  if (scene.integrator == Integrator::leapfrog && options.petsc("ts_type") == "rk")
+  if (scene.integrator == Integrator::explicit_ && options.petsc("ts_type") == "rk")
     refuse("ts_type: rk", "the stages of a step", "leapfrog (without -ts_type)",
            "leapfrog (without -ts_type)");
 }

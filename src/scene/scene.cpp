@@ -130,7 +130,7 @@ void check_floats(const Scene& scene) {
 void leave_out_solvers(Options& options, const Scene& scene) {
   const bool chosen = options.on_command_line("integrator");
   if (scene.integrator == Integrator::quasistatic) options.leave_out("ts_", chosen);
-  if (scene.integrator != Integrator::leapfrog) return;
+  if (scene.integrator != Integrator::explicit_) return;
   for (const auto* family : {"snes_", "ksp_", "pc_", "mat_"}) options.leave_out(family, chosen);
 }
 

@@ -192,7 +192,7 @@ void check_reports(Scene& scene) {
 }
 
 template <class Space>
-Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& model,
+Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Space>& model,
                   const MeshReport& mesh, const RunResult& result, const Sample& first,
                   const Sample& last, double wall) {
   Json json;
@@ -203,10 +203,10 @@ Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& mo
   json["bodies"] = model.part().global_bodies;
   json["beams"] = model.part().global_beams;
   json["ranks"] = size();
-  const bool stepped = scene.integrator == Integrator::leapfrog;
+  const bool stepped = scene.integrator == Integrator::explicit_;
   constexpr std::array names{"quasistatic", "explicit", "implicit"};
   json["integrator"] = names[static_cast<std::size_t>(scene.integrator)];
-  json["model"] = skips.text;
+  json["model"] = choice.text;
   json["time"] = last.time;
   json["steps"] = result.steps;
   json["dt"] = result.dt;
@@ -273,9 +273,11 @@ Summary summarise(const Scene& scene, const Skips& skips, const Model<Space>& mo
   return {json.dump(2) + "\n", text};
 }
 
-template Summary summarise(const Scene&, const Skips&, const Model<Spatial>&, const MeshReport&,
-                           const RunResult&, const Sample&, const Sample&, double);
-template Summary summarise(const Scene&, const Skips&, const Model<Planar>&, const MeshReport&,
-                           const RunResult&, const Sample&, const Sample&, double);
+template Summary summarise(const Scene&, const ModelChoice&, const Model<Spatial>&,
+                           const MeshReport&, const RunResult&, const Sample&, const Sample&,
+                           double);
+template Summary summarise(const Scene&, const ModelChoice&, const Model<Planar>&,
+                           const MeshReport&, const RunResult&, const Sample&, const Sample&,
+                           double);
 
 }  // namespace floe

@@ -3,7 +3,7 @@
 ///
 /// Unknowns x (blocks of n per body, PETSc's rows): displacement u [m] and the running sum of
 /// rotation increments times the model's length scale; whenever a tangent is formed increments are
-/// spins, so that it is exact (RotationUnknowns). The residual is minus the wrenches (moments
+/// spins, so that it is exact (StaticRotations). The residual is minus the wrenches (moments
 /// divided by the length scale), zero where unknowns are prescribed.
 ///
 /// Where all forces are linear in the unknowns the tangent is one and the same: it is assembled and
@@ -19,7 +19,7 @@
 
 #include "floe/base/petsc.h"
 #include "statics/quasistatic.h"
-#include "statics/rotation_unknowns.h"
+#include "statics/static_rotations.h"
 
 namespace floe {
 
@@ -74,7 +74,7 @@ class Equilibrium {
  private:
   struct Saved {
     State<Space> state;
-    RotationUnknowns<Space> rotations;
+    StaticRotations<Space> rotations;
     std::vector<PetscScalar> x;
   };
 
@@ -123,7 +123,7 @@ class Equilibrium {
   const Part& part_;
   State<Space> state_;
   Wrenches<Space> wrenches_, share_;
-  RotationUnknowns<Space> rotations_;
+  StaticRotations<Space> rotations_;
   /// Owned bodies: square of the rotation so far [rad^2]. A full turn counts as one, although its
   /// quaternion is that of rest: what it took to get there has left rounding.
   std::vector<double> turned2_;

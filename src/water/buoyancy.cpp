@@ -87,7 +87,7 @@ class Buoyancy final : public Force<Spatial> {
   }
 
   /// Of heave, about: bodies that the surface cuts have a stiffness, others none.
-  std::optional<double> fastest_rate(const State<Spatial>& state) const override {
+  std::optional<double> rate_estimate(const State<Spatial>& state) const override {
     double fastest2 = 0;
     for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
       const BlockMotion m = block_motion<false>(immersion_, state, block);

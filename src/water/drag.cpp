@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "lattice/memory.h"
+#include "lattice/archive.h"
 #include "water/immersion.h"
 
 namespace floe {
@@ -173,7 +173,7 @@ class Drag final : public Force<Space> {
   void take_work(double work) override { lost_ -= work; }
 
   /// Of the derivative of the force to the velocity, along the flow.
-  std::optional<double> fastest_rate(const State<Space>& state) const override {
+  std::optional<double> rate_estimate(const State<Space>& state) const override {
     using std::sqrt;
     const Vec3<Lanes> current{current_.x, current_.y, current_.z};
     double fastest = 0;
@@ -187,9 +187,9 @@ class Drag final : public Force<Space> {
     return fastest;
   }
 
-  void remember(Memory& checkpoint) override {
-    checkpoint.share("energy_drag", lost_);
-    checkpoint.common("last_dt", last_dt_);
+  void persist(Archive& archive) override {
+    archive.share("energy_drag", lost_);
+    archive.common("last_dt", last_dt_);
   }
 
   void report(const State<Space>&, Columns& columns) const override {

@@ -18,7 +18,7 @@ struct Heap {
   Lattice lattice;
   Scene scene;
   Heap() {
-    scene.integrator = Integrator::leapfrog;
+    scene.integrator = Integrator::explicit_;
     scene.forces.contact = scene.forces.gravity = true;
     scene.contact.young = 1e7;
     scene.contact.friction = 0.3;
@@ -93,18 +93,18 @@ TEST(ContactOnRanks, RestartGoesOnToTheLastBit) {
   {
     std::optional<Hdf5File> out;
     if (rank(PETSC_COMM_WORLD) == 0) out.emplace(Hdf5File::create(file));
-    Memory memory(part, out ? &*out : nullptr, false);
+    Archive memory(part, out ? &*out : nullptr, false);
     memory.enter("contact");
-    contact(through).remember(memory);
+    contact(through).persist(memory);
     if (out) out->close();
   }
   MPI_Barrier(PETSC_COMM_WORLD);
   {
     std::optional<Hdf5File> in;
     if (rank(PETSC_COMM_WORLD) == 0) in.emplace(Hdf5File::open(file));
-    Memory memory(part, in ? &*in : nullptr, true);
+    Archive memory(part, in ? &*in : nullptr, true);
     memory.enter("contact");
-    contact(resumed).remember(memory);
+    contact(resumed).persist(memory);
   }
   resumed.state() = through.state();
   for (auto* d : {&through, &resumed}) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "contact_force/contact_sharing.h"
+#include "contact_force/load_balance.h"
 #include "support/blocks.h"
 
 namespace floe {
@@ -60,15 +60,15 @@ struct Blocks {
   }
 };
 
-TEST(ContactSharing, ChangesNoForceAndNoHistory) {
+TEST(ContactLoadBalance, ChangesNoForceAndNoHistory) {
   const Blocks blocks;
   const MPI_Comm comm = PETSC_COMM_WORLD;
   const bool here = rank(comm) == 0;
   const std::vector<std::uint8_t> all(blocks.moving.size(), 1),
       mine(blocks.moving.size(), here ? 1 : 0);
   Contacts alone = blocks.contacts(), shared = blocks.contacts();
-  ContactSharing with_none(PETSC_COMM_SELF), with_all(comm);
-  const auto step = [&](Contacts& contacts, ContactSharing& sharing,
+  ContactLoadBalance with_none(PETSC_COMM_SELF), with_all(comm);
+  const auto step = [&](Contacts& contacts, ContactLoadBalance& sharing,
                         const std::vector<std::uint8_t>& wanted) {
     contacts.build(blocks.poses(), wanted, 0);
     sharing.plan(contacts);
@@ -85,7 +85,7 @@ TEST(ContactSharing, ChangesNoForceAndNoHistory) {
       EXPECT_GT(shared.involved().size(), 0U) << "nothing was shared";
     }
     if (!here) continue;
-    ASSERT_GT(alone.remembering(), 400U);
+    ASSERT_GT(alone.with_history(), 400U);
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t s = 0; s < a.size(); ++s) {
       ASSERT_EQ(a[s].force.x, b[s].force.x) << s;

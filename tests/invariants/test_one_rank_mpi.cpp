@@ -254,7 +254,7 @@ TEST(OnOneRank, AnObstacle) {
     const Point3& at =
         lattice.bodies.position[static_cast<std::size_t>(lattice.sets.at(set_of(r))[2])];
     Scene scene = scene_of(false);
-    scene.integrator = Integrator::leapfrog;
+    scene.integrator = Integrator::explicit_;
     scene.forces.contact = true;
     scene.contact.young = 1e8;
     Obstacle hammer = box({at[0], at[1], at[2] + 0.36}, {0.2, 0.2, 0.06}, {10, 20, 30});
@@ -277,7 +277,7 @@ TEST(OnOneRank, Breaks) {
     for (const By by : {By::statics, By::leapfrog}) {
       const bool dynamic = by == By::leapfrog;
       Scene scene = scene_of(true);
-      scene.integrator = dynamic ? Integrator::leapfrog : Integrator::quasistatic;
+      scene.integrator = dynamic ? Integrator::explicit_ : Integrator::quasistatic;
       scene.forces.fracture = true;
       scene.fracture.dynamic = dynamic;
       scene.forces.contact = dynamic;

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "explicit/planar_motion.h"
+#include "explicit/planar_leapfrog_stepper.h"
 #include "floe/base/petsc.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "beams/beam_blocks.h"
+#include "beams/lanes.h"
 #include "support/random.h"
 
 namespace floe {

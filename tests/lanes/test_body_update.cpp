@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "explicit/body_update.h"
+#include "explicit/rigid_body_step.h"
 #include "support/random.h"
 
 namespace floe {

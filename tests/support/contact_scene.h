@@ -11,7 +11,7 @@ namespace floe::test {
 
 inline Scene contact_scene(double young, double friction, double restitution, bool gravity = true) {
   Scene scene;
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.forces.contact = true;
   scene.forces.gravity = gravity;
   scene.contact.young = young;
@@ -27,7 +27,7 @@ inline Obstacle& append_obstacle(Scene& scene, const std::string& name, Obstacle
   return scene.obstacles.emplace_back(std::move(obstacle));
 }
 
-/// Sets a fresh model's step to a part of the stable one, and says how long it is.
+/// Sets a newly_eligible model's step to a part of the stable one, and says how long it is.
 inline double start(Dynamics& d, double part = 0.5) {
   const double dt = part * stable_step(d.model(), d.state()).dt;
   d.evaluate();

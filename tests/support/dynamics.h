@@ -10,7 +10,7 @@
 #include <string>
 
 #include "explicit/explicit.h"
-#include "explicit/planar_motion.h"
+#include "explicit/planar_leapfrog_stepper.h"
 #include "scene/build.h"
 #include "support/frames.h"
 
@@ -58,7 +58,7 @@ class DynamicsIn {
   Model<Space>& model() { return model_; }
   State<Space>& state() { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
-  const MotionOf<Space>& motion() const { return motion_; }
+  const LeapfrogStepperOf<Space>& motion() const { return motion_; }
   void evaluate() {
     model_.part().ghosts.update(state_.records, Space::record);
     model_.evaluate(state_, wrenches_);
@@ -74,7 +74,7 @@ class DynamicsIn {
   }
 
  private:
-  /// Forces first: water that bodies take along adds to what Motion moves.
+  /// Forces first: water that bodies take along adds to what LeapfrogStepper moves.
   static const Model<Space>& with_forces(const Scene& scene, const Lattice& lattice,
                                          Model<Space>& model) {
     add_forces(scene, place_loads(scene, lattice), model);
@@ -83,7 +83,7 @@ class DynamicsIn {
   }
 
   Model<Space> model_;
-  MotionOf<Space> motion_;
+  LeapfrogStepperOf<Space> motion_;
   State<Space> state_;
   Wrenches<Space> wrenches_;
   double dt_ = 0;

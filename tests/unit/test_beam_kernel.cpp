@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "beams/beam_kernel.h"
-#include "beams/beam_spatial.h"
+#include "beams/kernel.h"
+#include "beams/spatial.h"
 #include "support/random.h"
 #include "support/states.h"
 

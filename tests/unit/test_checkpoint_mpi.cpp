@@ -58,16 +58,16 @@ struct Remembered {
   double share = 0;
   std::vector<double> rows;
 
-  void remember(Memory& memory, const std::vector<std::int32_t>& bodies) {
-    memory.enter("a");
-    memory.common("number", number);
-    memory.common("count", count);
-    memory.common("yes", yes);
-    memory.common("words", words);
-    memory.enter("b");
-    memory.common("list", list);
-    memory.share("share", share);
-    memory.rows("rows", bodies, rows, 3);
+  void persist(Archive& archive, const std::vector<std::int32_t>& bodies) {
+    archive.enter("a");
+    archive.common("number", number);
+    archive.common("count", count);
+    archive.common("yes", yes);
+    archive.common("words", words);
+    archive.enter("b");
+    archive.common("list", list);
+    archive.share("share", share);
+    archive.rows("rows", bodies, rows, 3);
   }
 };
 
@@ -91,12 +91,12 @@ class Checkpoint : public testing::Test {
 TEST_F(Checkpoint, GivesBackWhatItWasGiven) {
   const Kept kept;
   Remembered before = some();
-  Checkpoints(kept.options, part).save([&](Memory& m) { before.remember(m, owned); });
+  Checkpoints(kept.options, part).save([&](Archive& archive) { before.persist(archive, owned); });
   Remembered after;
   after.rows.resize(3 * owned.size());
-  Checkpoints(kept.options, part).load([&](Memory& m) {
-    EXPECT_TRUE(m.loading());
-    after.remember(m, owned);
+  Checkpoints(kept.options, part).load([&](Archive& archive) {
+    EXPECT_TRUE(archive.loading());
+    after.persist(archive, owned);
   });
   const Remembered as_it_was = some();
   EXPECT_EQ(after.number, as_it_was.number);
@@ -112,7 +112,7 @@ TEST_F(Checkpoint, GivesBackWhatItWasGiven) {
 TEST_F(Checkpoint, RowsAndSharesComeToOneRankFromMany) {
   const Kept kept;
   Remembered before = some();
-  Checkpoints(kept.options, part).save([&](Memory& m) { before.remember(m, owned); });
+  Checkpoints(kept.options, part).save([&](Archive& archive) { before.persist(archive, owned); });
   // Every rank alone reads the file, as a run on one rank would.
   const Part whole = partition(sheet(6, 5, 1), PETSC_COMM_SELF);
   std::vector<std::int32_t> all(static_cast<std::size_t>(whole.owned));
@@ -120,7 +120,7 @@ TEST_F(Checkpoint, RowsAndSharesComeToOneRankFromMany) {
   Remembered after;
   after.rows.resize(3 * all.size());
   MPI_Barrier(PETSC_COMM_WORLD);
-  Checkpoints(kept.options, whole).load([&](Memory& m) { after.remember(m, all); });
+  Checkpoints(kept.options, whole).load([&](Archive& archive) { after.persist(archive, all); });
   EXPECT_NEAR(after.share, 0.1 * size() * (size() + 1) / 2, 1e-15);
   for (std::size_t b = 0; b < all.size(); ++b) {
     const double g = whole.global[b];
@@ -132,28 +132,28 @@ TEST_F(Checkpoint, RowsAndSharesComeToOneRankFromMany) {
 TEST_F(Checkpoint, RefusesWhatIsNotThereAndWhatIsOfAnotherLattice) {
   const Kept kept;
   Remembered r = some();
-  Checkpoints(kept.options, part).save([&](Memory& m) { r.remember(m, owned); });
-  EXPECT_THROW(Checkpoints(kept.options, part).load([](Memory& m) {
+  Checkpoints(kept.options, part).save([&](Archive& archive) { r.persist(archive, owned); });
+  EXPECT_THROW(Checkpoints(kept.options, part).load([](Archive& archive) {
     double missing = 0;
-    m.enter("a");
-    m.common("missing", missing);
+    archive.enter("a");
+    archive.common("missing", missing);
   }),
                InputError);
-  EXPECT_THROW(Checkpoints(kept.options, part).load([](Memory& m) {
+  EXPECT_THROW(Checkpoints(kept.options, part).load([](Archive& archive) {
     double one = 0;
-    m.enter("b");
-    m.common("list", one);
+    archive.enter("b");
+    archive.common("list", one);
   }),
                InputError);
   CheckpointOptions other = kept.options;
   other.obstacles = "others";
-  EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), OtherRun);
+  EXPECT_THROW(Checkpoints(other, part).load([](Archive&) {}), OtherRun);
   other.obstacles = kept.options.obstacles;
   other.lattice = "of another";
-  EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
+  EXPECT_THROW(Checkpoints(other, part).load([](Archive&) {}), InputError);
   other = kept.options;
   other.restart += ".nowhere";
-  EXPECT_THROW(Checkpoints(other, part).load([](Memory&) {}), InputError);
+  EXPECT_THROW(Checkpoints(other, part).load([](Archive&) {}), InputError);
 }
 
 TEST_F(Checkpoint, KeepsTheGenerationBefore) {
@@ -163,14 +163,14 @@ TEST_F(Checkpoint, KeepsTheGenerationBefore) {
   for (const double number : {1.0, 2.0, 3.0}) {
     Remembered r = some();
     r.number = number;
-    checkpoints.save([&](Memory& m) { r.remember(m, owned); });
+    checkpoints.save([&](Archive& archive) { r.persist(archive, owned); });
   }
   const auto number_in = [&](const std::string& file) {
     CheckpointOptions options = kept.options;
     options.restart = file;
     Remembered r;
     r.rows.resize(3 * owned.size());
-    Checkpoints(options, part).load([&](Memory& m) { r.remember(m, owned); });
+    Checkpoints(options, part).load([&](Archive& archive) { r.persist(archive, owned); });
     return r.number;
   };
   EXPECT_EQ(number_in(kept.options.file), 3);
@@ -195,33 +195,33 @@ TEST_F(Checkpoint, RefusesNumbersThatCannotBe) {
                                     {0.0, positive},
                                     {nan, not_negative_or_infinite}}) {
     const auto visit = [&, bounds = must](double number) {
-      return [&, bounds, number](Memory& m) mutable { m.common("a", number, bounds); };
+      return [&, bounds, number](Archive& archive) mutable { archive.common("a", number, bounds); };
     };
     refused(visit(value), visit(1));
   }
   for (const std::int64_t count : {-1, -2}) {
     const auto visit = [&](std::int64_t least) {
-      return [&, least](Memory& m) {
+      return [&, least](Archive& archive) {
         std::int64_t number = count;
-        m.common("a", number, least);
+        archive.common("a", number, least);
       };
     };
     refused(visit(-2), visit(0));
   }
-  const auto halves = [](Memory& m) {
+  const auto halves = [](Archive& archive) {
     double number = 0.5;
-    m.common("a", number);
+    archive.common("a", number);
   };
-  refused(halves, [](Memory& m) {
+  refused(halves, [](Archive& archive) {
     std::int64_t number = 0;
-    m.common("a", number);
+    archive.common("a", number);
   });
-  refused(halves, [](Memory& m) {
+  refused(halves, [](Archive& archive) {
     bool yes = false;
-    m.common("a", yes);
+    archive.common("a", yes);
   });
   std::vector<double> rows(3 * owned.size(), nan);
-  const auto visit = [&](Memory& m) { m.rows("a", owned, rows, 3); };
+  const auto visit = [&](Archive& archive) { archive.rows("a", owned, rows, 3); };
   refused(visit, visit);
 }
 
@@ -243,10 +243,10 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
     return model;
   };
   const auto remember = [](Model<Spatial>& model) {
-    return [&model](Memory& m) {
+    return [&model](Archive& archive) {
       for (std::size_t k = 0; k < model.forces().size(); ++k) {
-        m.enter("force_" + std::to_string(k));
-        model.forces()[k]->remember(m);
+        archive.enter("force_" + std::to_string(k));
+        model.forces()[k]->persist(archive);
       }
     };
   };
@@ -266,8 +266,8 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
     for (const auto& force : which.forces()) force->commit(state, 0.1);
   };
   for (int step = 1; step <= 3; ++step) move(*model, step);
-  Checkpoints(kept.options, model->part()).save(remember(*model));
-  Checkpoints(kept.options, other->part()).load(remember(*other));
+  Checkpoints(kept.options, model->part()).save(persist(*model));
+  Checkpoints(kept.options, other->part()).load(persist(*other));
   // From here on both are the same, to the last bit.
   other->evaluate(state, wrenches);
   EXPECT_EQ(model->report(state), other->report(state));

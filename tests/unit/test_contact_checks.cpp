@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "contact_force/contact_checks.h"
+#include "contact_force/checks.h"
 #include "support/contact_scene.h"
 
 namespace {

@@ -29,12 +29,12 @@ Overlap overlap_of(double volume, const Vec3<double>& area, const Vec3<double>& 
 struct Law {
   ContactOptions options{.law = ContactLaw::overlap, .young = 1, .friction = 0.5};
   PairConstants pair{.stiffness = 1e6, .area = 4, .mass = 10, .friction = 0.5};
-  PairMemory memory;
+  PairHistory memory;
   RelativeMotion motion;
-  bool fresh = false;
+  bool newly_eligible = false;
   StoredEnergy stored;
   ContactForce operator()(const Overlap& o) {
-    return contact_force(options, pair, o, 0, motion, memory, fresh, stored);
+    return contact_force(options, pair, o, 0, motion, memory, newly_eligible, stored);
   }
 };
 
@@ -79,7 +79,7 @@ TEST(ContactLaw, ViscousTermResistsApproachAndNeverPulls) {
 
 TEST(ContactLaw, BornContactHasItsOverlapAsPlastic) {
   Law law;
-  law.fresh = true;
+  law.newly_eligible = true;
   const ContactForce c = law(overlap_of(0.01, {0, 0, 2}));
   expect_vector(c.force(), {0, 0, 0});
   EXPECT_EQ(c.memory.plastic, 0.01);

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
 #include "water/drag.h"

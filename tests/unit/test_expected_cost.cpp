@@ -58,7 +58,7 @@ TEST(ExpectedCost, GrowsFasterThanTheSheetAndLessOnMoreRanks) {
 }
 
 TEST(ExpectedCost, OfASheetIsComparedWithWhatIsFree) {
-  const Scene explicit_run = large_sheet(Integrator::leapfrog),
+  const Scene explicit_run = large_sheet(Integrator::explicit_),
               static_run = large_sheet(Integrator::quasistatic);
   EXPECT_EQ(said(explicit_run, 1e9), "");
   EXPECT_EQ(said(static_run, 1e9), "");
@@ -74,7 +74,7 @@ TEST(ExpectedCost, OfASheetIsComparedWithWhatIsFree) {
 }
 
 TEST(ExpectedCost, OfASheetIsComparedWithTheScenesLimit) {
-  Scene scene = large_sheet(Integrator::leapfrog);
+  Scene scene = large_sheet(Integrator::explicit_);
   scene.limit.memory = 0.05;
   EXPECT_NE(said(scene, 1e12).find("at most 50 MB are taken (limit: memory)"), std::string::npos);
   scene.limit.memory = 10;  // whatever is free

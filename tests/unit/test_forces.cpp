@@ -2,7 +2,7 @@
 // wrenches; ramps.
 #include <gtest/gtest.h>
 
-#include "beams/beam.h"
+#include "beams/beam_force.h"
 #include "floe/base/petsc.h"
 #include "forces/dead_load.h"
 #include "forces/gravity.h"

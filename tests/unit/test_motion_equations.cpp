@@ -1,5 +1,5 @@
 // The equations of motion: tangent against finite differences, start, prescribed unknowns, sizes.
-#include "implicit/motion_equations.h"
+#include "implicit/second_order_system.h"
 
 #include <gtest/gtest.h>
 
@@ -45,14 +45,14 @@ struct Setting {
   Scene scene = everything();
   Model<Spatial> model{lattice, PETSC_COMM_SELF, without_overlap()};
   State<Spatial> state{lattice.bodies.position.size()};
-  std::unique_ptr<MotionEquations<Spatial>> equations;
+  std::unique_ptr<SecondOrderSystem<Spatial>> equations;
   Handle<Vec> x, v, a, f;
   double time = 0.3;
 
   explicit Setting(Kinematics kinematics = Kinematics::corotational) {
     scene.beam.kinematics = kinematics;
     add_forces(scene, place_loads(scene, lattice), model);
-    equations = std::make_unique<MotionEquations<Spatial>>(model, state);
+    equations = std::make_unique<SecondOrderSystem<Spatial>>(model, state);
     for (auto* vector : {&x, &v, &a, &f}) *vector = equations->make_vector();
     // A first state far away, then a step from there. Linear kinematics is for small turns.
     const double large = kinematics == Kinematics::linear ? 1e-5 : 1;
@@ -117,7 +117,7 @@ struct Setting {
   }
 };
 
-TEST(MotionEquations, ExactTangentIsTheDerivative) {
+TEST(SecondOrderSystem, ExactTangentIsTheDerivative) {
   const test::PetscOption lu("-pc_type", "lu");
   for (const Kinematics kinematics : {Kinematics::corotational, Kinematics::linear}) {
     Setting s(kinematics);
@@ -132,7 +132,7 @@ TEST(MotionEquations, ExactTangentIsTheDerivative) {
   }
 }
 
-TEST(MotionEquations, SymmetricTangentIsNearTheExactOneForSmallTurns) {
+TEST(SecondOrderSystem, SymmetricTangentIsNearTheExactOneForSmallTurns) {
   const auto matrix = [](const char* pc) {
     const test::PetscOption option("-pc_type", pc);
     Setting s;
@@ -140,7 +140,7 @@ TEST(MotionEquations, SymmetricTangentIsNearTheExactOneForSmallTurns) {
     // Back to the reference, nearly; slow; as a large step has it.
     s.fill(s.x, 4, 1e-5);
     const Vector small = Setting::numbers(s.x);
-    s.equations = std::make_unique<MotionEquations<Spatial>>(s.model, s.state);
+    s.equations = std::make_unique<SecondOrderSystem<Spatial>>(s.model, s.state);
     Setting::put(s.x, small);
     s.fill(s.v, 5, 1e-3);
     s.fill(s.a, 6, 1e-3);
@@ -152,7 +152,7 @@ TEST(MotionEquations, SymmetricTangentIsNearTheExactOneForSmallTurns) {
   EXPECT_GT((symmetric - exact).norm(), 1e-9 * exact.norm());
 }
 
-TEST(MotionEquations, StartAccelerationLeavesNoResidual) {
+TEST(SecondOrderSystem, StartAccelerationLeavesNoResidual) {
   Setting s;
   s.equations->acceleration(s.time, s.x, s.v, s.a);
   const Vector v = Setting::numbers(s.v), a = Setting::numbers(s.a);
@@ -168,7 +168,7 @@ TEST(MotionEquations, StartAccelerationLeavesNoResidual) {
   }
 }
 
-TEST(MotionEquations, PrescribedUnknownsFollowTheirBoundaries) {
+TEST(SecondOrderSystem, PrescribedUnknownsFollowTheirBoundaries) {
   Setting s;
   const Handle<Vec> own = s.equations->make_vector();
   s.equations->prescribe(0.2, {s.x, s.v, s.a, own});
@@ -190,7 +190,7 @@ TEST(MotionEquations, PrescribedUnknownsFollowTheirBoundaries) {
 }
 
 /// A free body's inertia forces are the rates of its momenta.
-TEST(MotionEquations, InertiaForcesAreTheRatesOfMomenta) {
+TEST(SecondOrderSystem, InertiaForcesAreTheRatesOfMomenta) {
   for (const bool held : {false, true}) {
     Lattice lattice;
     lattice.bodies.position = {{0.3, 0.1, -0.2}};
@@ -204,7 +204,7 @@ TEST(MotionEquations, InertiaForcesAreTheRatesOfMomenta) {
     Model<Spatial> model(lattice, PETSC_COMM_SELF,
                          held ? std::vector{none} : std::vector<Boundary>{});
     State<Spatial> state(1);
-    MotionEquations<Spatial> equations(model, state);
+    SecondOrderSystem<Spatial> equations(model, state);
     const Handle<Vec> x = equations.make_vector(), v = equations.make_vector(),
                       a = equations.make_vector();
     const double l = model.length_scale();
@@ -222,7 +222,7 @@ TEST(MotionEquations, InertiaForcesAreTheRatesOfMomenta) {
     const Eigen::Vector3d slope = (momentum(h) - momentum(-h)) / (2 * h);
     (void)momentum(0);
     Setting::put(a, acceleration);
-    MotionEquations<Spatial>::Forces forces;
+    SecondOrderSystem<Spatial>::Forces forces;
     equations.forces(v, a, Wrenches<Spatial>(1), forces);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(forces.inertia[static_cast<std::size_t>(k)], 2 * acceleration[k], 1e-14);

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "beams/beam_planar.h"
-#include "beams/beam_spatial.h"
+#include "beams/planar.h"
+#include "beams/spatial.h"
 #include "support/planar.h"
 #include "support/states.h"
 

@@ -48,7 +48,7 @@ class Leapfrog {
   int fail_at = -1;  ///< this call asks for the end
 
  private:
-  static PetscErrorCode remember(TS, PetscInt, PetscReal time, Vec solution, void* self) noexcept {
+  static PetscErrorCode persist(TS, PetscInt, PetscReal time, Vec solution, void* self) noexcept {
     auto& me = *static_cast<Leapfrog*>(self);
     PetscReal norm = 0;
     check(VecNorm(solution, NORM_2, &norm));

@@ -98,7 +98,7 @@ TEST(ChangingStep, WithoutItTheRunBlowsUp) {
 
 TEST(ChangingStep, IsFoundAsABlockComesToTheWater) {
   Scene scene;
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.forces.gravity = scene.forces.buoyancy = true;
   scene.time.end = 30;
   scene.limit.energy_error = 1e3;
@@ -118,7 +118,7 @@ TEST(ChangingStep, IsFoundAsQuadraticDragGrowsWithTheSpeed) {
   // Pushed under water: m v' = F - k v^2, k = rho_w C_d A/2, to the speed sqrt(F/k); there small
   // changes decay at 2 k v/m, and leapfrog takes steps up to 2/(that).
   Scene scene;
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.forces.drag = true;
   scene.drag.coefficient = 1.2;
   Lattice block = box({2, 2, 0.5}, 920, -5, {1, 0, 0});

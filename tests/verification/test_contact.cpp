@@ -236,7 +236,7 @@ TEST(Contact, LedgerOfImpactsWithLosses) {
 TEST(Contact, CrushingIsRemembered) {
   ContactOptions options{.law = ContactLaw::overlap, .young = 1e7, .plastic_limit = 1e5};
   const PairConstants pair{1e7, 1, 920, 0, true};
-  PairMemory memory;
+  PairHistory memory;
   const auto at = [&](double depth) {
     Overlap o;
     o.volume = depth;  // 1 m^2 sunk by `depth`

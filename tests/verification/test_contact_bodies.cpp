@@ -22,7 +22,7 @@ constexpr double g = 9.81, ice = 920, water = 1010, young = 1e7;
 
 Scene contact_scene(bool afloat) {
   Scene scene;
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.forces.contact = true;
   scene.forces.gravity = scene.forces.buoyancy = scene.forces.drag = afloat;
   scene.drag.linear = afloat ? 2000 : 0;

@@ -30,7 +30,7 @@ Lattice block(double height, const Point3& velocity, const Point3& spin = {}) {
 
 Scene afloat() {
   Scene scene;
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.forces.gravity = scene.forces.buoyancy = true;
   return scene;
 }

@@ -47,7 +47,7 @@ Lattice strip(double h) {
 /// The far end moves in x at 0.02 m/s; the near one meets the slope with its lower edge.
 Scene push(const Case& c) {
   Scene scene;
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.forces.beam = scene.forces.fracture = scene.forces.gravity = true;
   scene.forces.buoyancy = scene.forces.drag = scene.forces.contact = true;
   scene.beam.damping_ratio = 0.05;

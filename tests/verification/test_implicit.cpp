@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "implicit/motion_equations.h"
+#include "implicit/second_order_system.h"
 #include "run/numbers.h"
 #include "support/explicit_run.h"
 #include "support/flying_bar.h"
@@ -96,7 +96,7 @@ TEST(Implicit, EqualsAlpha2AtRadiusOneOnALinearLattice) {
   add_forces(scene, {}, model);
   State<Spatial> state(lattice.bodies.position.size());
   const PetscOption lu("-pc_type", "lu");
-  MotionEquations<Spatial> equations(model, state);
+  SecondOrderSystem<Spatial> equations(model, state);
   Handle<Vec> x = equations.make_vector(), v = equations.make_vector();
   equations.begin(x, v);
   Handle<TS> ts;
@@ -106,7 +106,7 @@ TEST(Implicit, EqualsAlpha2AtRadiusOneOnALinearLattice) {
   check(TSSetI2Function(
       ts, nullptr,
       [](TS, PetscReal t, Vec at, Vec rate, Vec a, Vec f, void* self) noexcept {
-        static_cast<MotionEquations<Spatial>*>(self)->residual(t, at, rate, a, f);
+        static_cast<SecondOrderSystem<Spatial>*>(self)->residual(t, at, rate, a, f);
         return PetscErrorCode{0};
       },
       &equations));
@@ -114,7 +114,7 @@ TEST(Implicit, EqualsAlpha2AtRadiusOneOnALinearLattice) {
       ts, equations.matrix(), equations.matrix(),
       [](TS, PetscReal t, Vec at, Vec rate, Vec a, PetscReal by_v, PetscReal by_a, Mat, Mat,
          void* self) noexcept {
-        static_cast<MotionEquations<Spatial>*>(self)->assemble(t, at, rate, a, by_v, by_a);
+        static_cast<SecondOrderSystem<Spatial>*>(self)->assemble(t, at, rate, a, by_v, by_a);
         return PetscErrorCode{0};
       },
       &equations));

@@ -223,10 +223,10 @@ TEST(LieAlpha, GoesOnAsIfItHadNotStopped) {
     Stepper half(first, ts_liealpha, start_x, start_v);
     check(TSSetTimeStep(half.ts(), 0.05));
     half.run(20, 1);
-    const LieAlphaMemory memory = liealpha_memory(half.ts());
+    const LieAlphaHistory memory = liealpha_memory(half.ts());
     Stepper rest(second, ts_liealpha, half.x(), half.v());
     check(TSSetUp(rest.ts()));
-    const LieAlphaMemory mine = liealpha_memory(rest.ts());
+    const LieAlphaHistory mine = liealpha_memory(rest.ts());
     check(VecCopy(memory.a, mine.a));
     check(VecCopy(memory.own, mine.own));
     double now = 0;

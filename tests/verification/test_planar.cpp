@@ -197,7 +197,7 @@ double size_of(Kinematics kinematics) { return kinematics == Kinematics::linear 
 Scene moving(Kinematics kinematics, double damping) {
   const double size = size_of(kinematics);
   Scene scene = tension_scene(12, 0.5, 1, 5);
-  scene.integrator = Integrator::leapfrog;
+  scene.integrator = Integrator::explicit_;
   scene.beam.kinematics = kinematics;
   scene.beam.damping_ratio = damping;
   scene.forces.drag = true;

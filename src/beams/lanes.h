@@ -1,0 +1,175 @@
+/// \file
+/// Constants of beams in blocks, one beam per lane, and the wrenches of a block: the loop that
+/// every step of every long run spends its time in. Gather and scatter are register transposes;
+/// bodies get their beams' shares in the order of the beams, so sums do not depend on lanes, ranks
+/// or runs.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/simd.h"
+#include "beams/kernel.h"
+#include "floe/lattice/state.h"
+
+namespace floe {
+
+/// Numbers of a frame, in the order of its members.
+template <template <class> class Frame>
+inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
+
+/// What beams are at rest, number by number, lane by lane: frame, l0, six stiffnesses.
+template <template <class> class Frame>
+struct alignas(64) BeamBlock {
+  static constexpr std::size_t first = frame_size<Frame>;
+  std::array<std::array<double, lanes>, first + 7> values;
+  std::array<std::int32_t, lanes> i, j;  ///< local bodies
+
+  void set(std::size_t lane, const BeamConstants<double>& c) {
+    std::size_t k = 0;
+    const auto put = [&](double value) { values[k++][lane] = value; };
+    const auto& [e1, e2, e3] = c.rest;
+    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+      for (const double value : {e1.x, e1.y}) put(value);
+    } else {
+      for (const double value : {e1.x, e1.y, e1.z, e2.x, e2.y, e2.z, e3.x, e3.y, e3.z}) put(value);
+    }
+    for (const double value : {c.l0, c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz}) put(value);
+  }
+  template <class C, template <class> class Any>
+  static BeamConstants<C, Any> with_frame(Any<C> frame, auto at) {
+    return {frame,         at(first),     at(first + 1), at(first + 2),
+            at(first + 3), at(first + 4), at(first + 5), at(first + 6)};
+  }
+  BeamConstants<double> get(std::size_t lane) const {
+    const auto at = [&](std::size_t k) { return values[k][lane]; };
+    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+      return with_frame(AnyFrame<double>{{at(0), at(1), 0}, {-at(1), at(0), 0}, {0, 0, 1}}, at);
+    } else {
+      return with_frame(
+          AnyFrame<double>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}},
+          at);
+    }
+  }
+  BeamConstants<Lanes, Frame> get() const {
+    const auto at = [&](std::size_t k) { return load(values[k].data()); };
+    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+      return with_frame(FlatFrame<Lanes>{at(0), at(1)}, at);
+    } else {
+      return with_frame(
+          AnyFrame<Lanes>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}}, at);
+    }
+  }
+};
+
+/// Dashpots of a block: on the six strains, and 1 where this rank counts the beam's energy.
+struct alignas(64) DashpotBlock {
+  std::array<std::array<double, lanes>, 6> values;
+  std::array<double, lanes> counts;
+  BeamDashpots get(std::size_t lane) const {
+    BeamDashpots c{};
+    for (std::size_t k = 0; k < 6; ++k) c[k] = values[k][lane];
+    return c;
+  }
+  void set(std::size_t lane, const BeamStiffness& c, bool counts_here) {
+    const std::array<double, 6> all{c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz};
+    for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
+    counts[lane] = counts_here ? 1.0 : 0.0;
+  }
+};
+
+/// A block's bodies, one per lane.
+struct LaneBodies {
+  Vec3<Lanes> u, v, w;
+  Quat<Lanes> q;
+};
+
+template <bool with_velocity>
+LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& bodies) {
+  const auto four = [&](std::size_t offset) {
+    return gather_four([&](std::size_t lane) {
+      return records + static_cast<std::size_t>(bodies[lane]) * Spatial::record + offset;
+    });
+  };
+  const auto [ux, uy, uz, qw] = four(0);
+  const auto [qx, qy, qz, vx] = four(4);
+  LaneBodies b{{ux, uy, uz}, {}, {}, {qw, qx, qy, qz}};
+  if constexpr (with_velocity) {
+    const auto [vy, vz, wx, wy] = four(8);
+    const auto last = four(12);
+    b.v = {vx, vy, vz};
+    b.w = {wx, wy, last[0]};
+  }
+  return b;
+}
+
+/// Adds a block's shares to its bodies' wrenches, in the order of the lanes. Of a wrench's eight
+/// doubles the last two are padding and stay as they are.
+inline void scatter(const std::array<std::int32_t, lanes>& i,
+                    const std::array<std::int32_t, lanes>& j, const BeamGradient<Lanes>& g,
+                    double* wrenches) {
+  const Pairs force(g.force.x, g.force.y), force_i(g.force.z, -g.moment_i.x),
+      force_j(g.force.z, g.moment_j.x), moment_i(g.moment_i.y, g.moment_i.z),
+      moment_j(g.moment_j.y, g.moment_j.z);
+  const auto add = [&]<std::size_t lane>() {
+    double* wi = wrenches + static_cast<std::size_t>(i[lane]) * Spatial::wrench;
+    add_row(wi, row_of<lane>(force, force_i));
+    subtract_pair(wi + 4, pair_of<lane>(moment_i));
+    double* wj = wrenches + static_cast<std::size_t>(j[lane]) * Spatial::wrench;
+    subtract_row(wj, row_of<lane>(force, force_j));
+    subtract_pair(wj + 4, pair_of<lane>(moment_j));
+  };
+  [&]<std::size_t... lane>(std::index_sequence<lane...>) { (add.template operator()<lane>(), ...); }
+  (std::make_index_sequence<lanes>{});
+}
+
+/// Of stresses on strains at their rates.
+inline Lanes power(const BeamStress<Lanes>& stress, const BeamStress<Lanes>& rate) {
+  return stress.n * rate.n + stress.qy * rate.qy + stress.qz * rate.qz + dot(stress.c, rate.c);
+}
+
+/// Beams that carry whatever comes.
+struct Unbreakable {};
+
+/// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
+/// \param strength  has a say on the elastic forces: where strength.gives_way(forces), the block is
+/// left to strength.add(); with dashpots it is told of what they do
+template <Kinematics kinematics, bool damped, template <class> class Frame,
+          class Strength = Unbreakable>
+[[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block,
+                                              const DashpotBlock* dashpots, const double* records,
+                                              double* wrenches,
+                                              const Strength& strength = Strength{}) {
+  using Kernel = BeamKernel<kinematics>;
+  const BeamConstants<Lanes, Frame> beam = block.get();
+  const LaneBodies i = gather<damped>(records, block.i), j = gather<damped>(records, block.j);
+  const BeamStrains<Lanes> s = Kernel::strains(beam, j.u - i.u, i.q, j.q);
+  BeamStress<Lanes> stress = elastic_stress(beam, s);
+  if constexpr (!std::is_same_v<Strength, Unbreakable>) {
+    if (strength.gives_way(stress)) [[unlikely]]
+      return strength.add();
+  }
+  Lanes lost(0.0);
+  if constexpr (damped) {
+    const BeamStress<Lanes> rate = Kernel::rates(beam, s, j.v - i.v, i.w, j.w);
+    const auto dashpot = [&](std::size_t k) { return load(dashpots->values[k].data()); };
+    const BeamStress<Lanes> viscous{
+        dashpot(0) * rate.n,
+        dashpot(1) * rate.qy,
+        dashpot(2) * rate.qz,
+        {dashpot(3) * rate.c.x, dashpot(4) * rate.c.y, dashpot(5) * rate.c.z}};
+    const Lanes counts = load(dashpots->counts.data());
+    lost = counts * power(viscous, rate);
+    if constexpr (!std::is_same_v<Strength, Unbreakable>) strength.persist(viscous, rate, counts);
+    stress = {stress.n + viscous.n, stress.qy + viscous.qy, stress.qz + viscous.qz,
+              stress.c + viscous.c};
+  }
+  const BeamGradient<Lanes> g = Kernel::gradient(beam, s, stress);
+  scatter(block.i, block.j, g, wrenches);
+  return lost;
+}
+
+}  // namespace floe

@@ -1,0 +1,36 @@
+/// \file
+/// The spatial beams of a part in blocks of lanes, as a force.
+#pragma once
+
+#include "base/collectives.h"
+#include "beams/lanes.h"
+#include "beams/lattice_beams.h"
+#include "beams/spatial.h"
+
+namespace floe {
+
+/// A spatial beam in lanes.
+template <Kinematics kinematics, template <class> class Frame>
+struct SpatialLanes : SpatialBeam<kinematics> {
+  using Block = BeamBlock<Frame>;
+  using DashpotBlock = floe::DashpotBlock;
+  template <bool damped>
+  [[gnu::always_inline]] static Lanes add(const Block& block, const DashpotBlock* dashpots,
+                                          const double* records, double* wrenches) {
+    return add_block<kinematics, damped>(block, dashpots, records, wrenches);
+  }
+};
+
+template <Kinematics kinematics, bool damped, template <class> class Frame>
+using SpatialBeams = LatticeBeams<SpatialLanes<kinematics, Frame>, damped>;
+
+/// Whether all of a part's beams are flat. Collective: forces must not depend on how bodies are
+/// shared.
+inline bool all_flat(const Part& part) {
+  bool flat = true;
+  for (std::int32_t m = 0; m < part.beams.size() && flat; ++m)
+    flat = is_flat(part.bodies, part.beams, m);
+  return on_all_ranks(flat, part.comm);
+}
+
+}  // namespace floe

@@ -1,0 +1,126 @@
+#include "contact_force/expiry.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/collectives.h"
+
+namespace floe {
+namespace {
+
+double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
+
+std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
+  largest_over_ranks(mine, comm);
+  return mine;
+}
+
+}  // namespace
+
+PairListExpiry::PairListExpiry(const Contacts& contacts, std::int32_t bodies) {
+  for (std::int32_t b = 0; b < bodies; ++b) radius_ = std::max(radius_, contacts.radius(b));
+}
+
+void PairListExpiry::start(const State<Spatial>& state, std::int32_t owned) {
+  at_build_.assign(state.records.begin(),
+                   state.records.begin() + static_cast<std::ptrdiff_t>(owned) * Spatial::record);
+  time_ = state.time;
+  travelled_ = 0;
+  asks_in_ = 0;
+  started_ = true;
+}
+
+void PairListExpiry::went(const State<Spatial>& state, double dt) {
+  // Spins change within a step as a body tumbles; that half as much again is far more.
+  constexpr double tumbling = 1.5;
+  speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
+  travelled_ += dt * speed_;
+}
+
+bool PairListExpiry::is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts,
+                            double dt) {
+  if (--asks_in_ > 0) return false;
+  const auto [theirs, their_speed] = of_obstacles(contacts, state.time);
+  std::array<double, 2> all =
+      largest({std::max(travelled_, theirs), std::max(speed_, their_speed)}, part.comm);
+  if (!std::isfinite(all[0])) return false;  // the run has blown up: places are no numbers
+  const double slack = contacts.slack();
+  if (all[0] > slack) {
+    travelled_ = travels(state, part, contacts);
+    all[0] = largest({std::max(travelled_, theirs), 0}, part.comm)[0];
+    constexpr double enough = 0.8;  // of the slack: what is left is not worth another look
+    if (all[0] > enough * slack) return true;
+  }
+  if (size(part.comm) > 1) {        // a look costs a message
+    constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
+    const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : slack;
+    asks_in_ = static_cast<std::int64_t>(std::clamp((slack - all[0]) / per_step, 0.0, 1000.0));
+  }
+  return false;
+}
+
+/// The farthest way of an obstacle's vertex since the list was made, and their largest speed.
+std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, double time) const {
+  std::array<double, 2> most{};
+  for (std::size_t k = 0; k < contacts.obstacles().size(); ++k) {
+    const ObstacleMotion& m = contacts.obstacles()[k].motion;
+    if (m.at_rest()) continue;
+    const double radius = contacts.obstacle_radius(k);
+    const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
+    most[0] = std::max(most[0], length(m.travelled(time) - m.travelled(time_)) +
+                                    2 * radius * length({turn.x, turn.y, turn.z}));
+    most[1] = std::max(most[1], m.largest_speed(radius));
+  }
+  return most;
+}
+
+/// The farthest way of a vertex of an owned body since the list was made.
+double PairListExpiry::travels(const State<Spatial>& state, const Part& part,
+                               const Contacts& contacts) const {
+  double farthest = 0;
+  for (std::int32_t b = 0; b < part.owned; ++b) {
+    const auto k = static_cast<std::size_t>(b);
+    const double* was = &at_build_[k * Spatial::record];
+    const double* is = state.record(k);
+    const Vec3<double> way{is[0] - was[0], is[1] - was[1], is[2] - was[2]};
+    const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
+                                      Quat<double>{was[3], -was[4], -was[5], -was[6]});
+    farthest = std::max(farthest, length(way) + 2 * contacts.radius(part.global[k]) *
+                                                    length({turn.x, turn.y, turn.z}));
+  }
+  return farthest;
+}
+
+void PairListExpiry::persist(Archive& archive, const Part& part) {
+  std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
+  std::iota(owned.begin(), owned.end(), 0);
+  at_build_.resize(owned.size() * Spatial::record);
+  archive.rows("at_build", owned, at_build_, Spatial::record);
+  archive.common("build_time", time_);
+  archive.common("asks_in", asks_in_, -(std::int64_t{1} << 53));  // it goes on counting
+  std::vector<double> all = all_gathered(std::vector{travelled_, speed_}, part.comm);
+  const std::size_t numbers = all.size();
+  archive.common("ways_of_ranks", all);
+  started_ = true;
+  if (!archive.loading()) return;
+  // On another number of ranks decisions may differ: each takes the largest.
+  const auto me = static_cast<std::size_t>(rank(part.comm));
+  for (const std::size_t k : {0UL, 1UL}) {
+    double& mine = k == 0 ? travelled_ : speed_;
+    mine = 0;
+    for (std::size_t r = 0; 2 * r + k < all.size(); ++r) {
+      if (all.size() != numbers || r == me) mine = std::max(mine, all[2 * r + k]);
+    }
+  }
+}
+
+State<Spatial> PairListExpiry::at_build(const Part& part) const {
+  State<Spatial> state(static_cast<std::size_t>(part.local));
+  std::copy(at_build_.begin(), at_build_.end(), state.records.begin());
+  state.time = time_;
+  return state;
+}
+
+}  // namespace floe

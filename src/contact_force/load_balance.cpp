@@ -1,0 +1,118 @@
+#include "contact_force/load_balance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/collectives.h"
+
+namespace floe {
+namespace {
+
+/// Part of a contact's time that its overlap takes: the rest stays with the pair
+/// (bench/contact_bench).
+constexpr double part_of_overlap = 0.7;
+/// Fewer pairs are not worth a message.
+constexpr double fewest = 64;
+constexpr int numbers = sizeof(Contacts::PairOverlap) / sizeof(double);
+static_assert(sizeof(Contacts::PairOverlap) == numbers * sizeof(double));
+
+}  // namespace
+
+std::vector<std::vector<std::int64_t>> shared_pairs(std::span<const std::int64_t> pairs) {
+  const std::size_t n = pairs.size();
+  std::vector<std::vector<std::int64_t>> shares(n, std::vector<std::int64_t>(n, 0));
+  double mean = 0;
+  for (const std::int64_t p : pairs) mean += static_cast<double>(p) / static_cast<double>(n);
+  // What a rank should work out: what is missing to the mean beside what stays with its pairs.
+  std::vector<double> spare(n);
+  for (std::size_t r = 0; r < n; ++r) {
+    const auto own = static_cast<double>(pairs[r]);
+    const double wanted = (mean - (1 - part_of_overlap) * own) / part_of_overlap;
+    spare[r] = std::max(wanted, 0.0) - own;
+  }
+  for (std::size_t giver = 0, taker = 0; giver < n && taker < n;) {
+    const double count = std::floor(std::min(-spare[giver], spare[taker]));
+    if (-spare[giver] < fewest) {
+      ++giver;
+    } else if (spare[taker] < fewest) {
+      ++taker;
+    } else {
+      shares[giver][taker] = static_cast<std::int64_t>(count);
+      spare[giver] += count;
+      spare[taker] -= count;
+    }
+  }
+  return shares;
+}
+
+ContactLoadBalance::ContactLoadBalance(MPI_Comm comm) : comm_(comm) {}
+
+void ContactLoadBalance::plan(Contacts& contacts) {
+  if (size(comm_) == 1) return;
+  const auto me = static_cast<std::size_t>(rank(comm_));
+  const auto shares = shared_pairs(
+      all_gathered(std::vector{static_cast<std::int64_t>(contacts.remembering())}, comm_));
+  std::int64_t mine = 0;
+  shared_ = false;
+  for (std::size_t r = 0; r < shares.size(); ++r) {
+    for (const std::int64_t count : shares[r]) {
+      shared_ = shared_ || count > 0;
+      if (r == me) mine += count;
+    }
+  }
+  if (!shared_) return;
+
+  std::vector<std::int32_t> lent;
+  for (const auto& pair : contacts.lend(static_cast<std::size_t>(mine)))
+    lent.insert(lent.end(), pair.begin(), pair.end());
+  lent_ = static_cast<std::size_t>(mine);
+  // All ranks know all lent pairs, giver by giver; each giver's go to its takers in turn.
+  const std::vector<std::int32_t> all = all_gathered(lent, comm_);
+  std::vector<std::array<std::int32_t, 2>> borrowed;
+  std::vector<std::int32_t> takers, places;
+  std::vector<std::int32_t> taken(shares.size(), 0);
+  std::size_t at = 0;
+  for (std::size_t giver = 0; giver < shares.size(); ++giver) {
+    for (std::size_t taker = 0; taker < shares.size(); ++taker) {
+      for (std::int64_t k = 0; k < shares[giver][taker]; ++k, ++at) {
+        if (taker == me) borrowed.push_back({all[2 * at], all[2 * at + 1]});
+        if (giver == me) {
+          takers.push_back(static_cast<std::int32_t>(taker));
+          places.push_back(taken[taker]);
+        }
+        ++taken[taker];
+      }
+    }
+  }
+  borrowed_ = borrowed.size();
+  contacts.borrow(borrowed);
+  buffer_.assign(borrowed_ + lent_, {});
+  ghosts_ = Ghosts(comm_, static_cast<std::int32_t>(borrowed_), takers, places);
+}
+
+std::span<Contacts::PairOverlap> ContactLoadBalance::meetings(std::size_t first,
+                                                              std::size_t count) {
+  return std::span(buffer_).subspan(first, count);
+}
+
+void ContactLoadBalance::evaluate(Contacts& contacts, std::span<ContactWrench> wrenches) {
+  if (!shared_) {
+    contacts.evaluate(wrenches);
+    return;
+  }
+  contacts.meet_borrowed(meetings(0, borrowed_));
+  const std::span<double> records(buffer_.empty() ? nullptr : &buffer_[0].overlap.volume,
+                                  numbers * buffer_.size());
+  ghosts_.begin(records, numbers);
+  bool arrived = false;
+  const auto arrive = [&] {
+    if (!arrived) ghosts_.end(records, numbers);
+    arrived = true;
+    return std::span<const Contacts::PairOverlap>(meetings(borrowed_, lent_));
+  };
+  contacts.evaluate(wrenches, arrive);
+  (void)arrive();
+}
+
+}  // namespace floe

@@ -1,0 +1,329 @@
+#include "explicit/leapfrog_stepper.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace floe {
+namespace {
+
+BodyMotion<double> read(const double* r) {
+  return {{r[0], r[1], r[2]},
+          {r[3], r[4], r[5], r[6]},
+          {r[7], r[8], r[9]},
+          {r[10], r[11], r[12]},
+          {r[13], r[14], r[15]}};
+}
+
+void write(const BodyMotion<double>& m, double* r) {
+  const std::array<double, 16> all{m.u.x, m.u.y,        m.u.z,        m.q.w,       m.q.x, m.q.y,
+                                   m.q.z, m.v.x,        m.v.y,        m.v.z,       m.w.x, m.w.y,
+                                   m.w.z, m.momentum.x, m.momentum.y, m.momentum.z};
+  std::copy(all.begin(), all.end(), r);
+}
+
+/// Tensor of inertia in the world, or its inverse, from principal values.
+Eigen::Matrix3d in_world(const Triad<double>& axes, const Vec3<double>& principal) {
+  Eigen::Matrix3d r;
+  r << axes.e1.x, axes.e2.x, axes.e3.x, axes.e1.y, axes.e2.y, axes.e3.y, axes.e1.z, axes.e2.z,
+      axes.e3.z;
+  return r * Eigen::Vector3d(principal.x, principal.y, principal.z).asDiagonal() * r.transpose();
+}
+
+/// Force and moment on the components that nothing prescribes.
+std::array<Vec3<double>, 2> on_free(const double* w, std::uint8_t prescribed) {
+  std::array<double, 6> f{};
+  for (std::size_t k = 0; k < 6; ++k) f[k] = (prescribed >> k & 1U) != 0 ? 0.0 : w[k];
+  return {Vec3<double>{f[0], f[1], f[2]}, Vec3<double>{f[3], f[4], f[5]}};
+}
+
+Vec3<double> inverse_of(const Vec3<double>& v) { return {1.0 / v.x, 1.0 / v.y, 1.0 / v.z}; }
+
+}  // namespace
+
+BodyConstants<Lanes> LeapfrogStepper::Block::get() const {
+  const auto at = [&](std::size_t k) { return load(values[k].data()); };
+  return {at(0), {at(1), at(2), at(3)}, {at(4), at(5), at(6), at(7)}};
+}
+
+BodyConstants<double> LeapfrogStepper::constants(std::int32_t body) const {
+  const auto b = static_cast<std::size_t>(body);
+  const auto at = [&](std::size_t k) { return blocks_[b / lanes].values[k][b % lanes]; };
+  return {at(0), {at(1), at(2), at(3)}, {at(4), at(5), at(6), at(7)}};
+}
+
+LeapfrogStepper::LeapfrogStepper(const Model<Spatial>& model) : model_(model), part_(model.part()) {
+  const auto owned = static_cast<std::size_t>(part_.owned);
+  blocks_.resize((owned + lanes - 1) / lanes, Block{});
+  for (std::size_t slot = 0; slot < blocks_.size() * lanes; ++slot) {
+    const std::size_t b = std::min(slot, owned - 1);  // lanes without a body compute the last one
+    const Point3& inertia = part_.bodies.inertia[b];
+    const auto [w, x, y, z] = part_.bodies.orientation[b];
+    const std::array<double, 8> all{
+        1 / model.inertial_mass()[b], 1 / inertia[0], 1 / inertia[1], 1 / inertia[2], w, x, y, z};
+    for (std::size_t k = 0; k < all.size(); ++k)
+      blocks_[slot / lanes].values[k][slot % lanes] = all[k];
+    if (slot >= owned || model.prescribed()[b] == 0) continue;
+    if (rows_.empty()) rows_.assign(static_cast<std::size_t>(part_.local), -1);
+    rows_[b] = static_cast<std::int32_t>(held_.size());
+    held_.push_back(static_cast<std::int32_t>(b));
+  }
+  saved_.resize(held_.size() * Spatial::record);
+  now_.resize(held_.size() * Spatial::unknowns);
+  next_ = now_;
+}
+
+void LeapfrogStepper::start(State<Spatial>& state, const std::vector<Point3>& velocity,
+                            const std::vector<Point3>& spin) const {
+  for (std::int32_t body = 0; body < part_.owned; ++body) {
+    const auto b = static_cast<std::size_t>(body);
+    BodyMotion<double> m = read(state.record(b));
+    if (!velocity.empty()) m.v = {velocity[b][0], velocity[b][1], velocity[b][2]};
+    if (!spin.empty()) m.w = {spin[b][0], spin[b][1], spin[b][2]};
+    const BodyConstants<double> c = constants(body);
+    const Triad<double> axes = triad(product(m.q, c.axes));
+    const Vec3<double> w = axes.to_local(m.w), inertia = inverse_of(c.inverse_inertia);
+    m.momentum = axes.to_world({inertia.x * w.x, inertia.y * w.y, inertia.z * w.z});
+    write(m, state.record(b));
+  }
+}
+
+void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+                              double dt) const {
+  for (std::int32_t body = 0; body < part_.owned; ++body) {
+    const auto b = static_cast<std::size_t>(body);
+    BodyMotion<double> m = read(state.record(b));
+    const BodyConstants<double> c = constants(body);
+    const auto [force, moment] = on_free(wrenches.of(b), model_.prescribed()[b]);
+    m.v = m.v - (0.5 * dt * c.inverse_mass) * force;
+    m.momentum = m.momentum - (0.5 * dt) * moment;
+    const Triad<double> axes = triad(product(m.q, c.axes));
+    const Vec3<double> l = axes.to_local(m.momentum);
+    m.w = axes.to_world(
+        {c.inverse_inertia.x * l.x, c.inverse_inertia.y * l.y, c.inverse_inertia.z * l.z});
+    write(m, state.record(b));
+  }
+}
+
+/// \param count  bodies of the block: lanes beyond the last body repeat it, and are not written
+template <class Count>
+[[gnu::always_inline]] inline LeapfrogStepper::Squares LeapfrogStepper::step_block(
+    std::size_t block, Count count, State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+    double dt) const {
+  const auto body_of = [&](std::size_t lane) {
+    return block * lanes + (count == lanes ? lane : std::min(lane, count - 1));
+  };
+  const auto four = [&](std::size_t offset) {
+    return gather_four([&](std::size_t lane) { return state.record(body_of(lane)) + offset; });
+  };
+  const auto wrench = [&](std::size_t offset) {
+    return gather_four([&](std::size_t lane) { return wrenches.of(body_of(lane)) + offset; });
+  };
+  const auto a = four(0), b = four(4), c = four(8), d = four(12), f = wrench(0), g = wrench(4);
+  BodyMotion<Lanes> m{{a[0], a[1], a[2]},
+                      {a[3], b[0], b[1], b[2]},
+                      {b[3], c[0], c[1]},
+                      {c[2], c[3], d[0]},
+                      {d[1], d[2], d[3]}};
+  leap<Lanes>(blocks_[block].get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
+
+  std::array<Row, lanes> rows;
+  const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
+    scatter_four(values, rows);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      store_row(state.record(block * lanes + lane) + offset, rows[lane]);
+  };
+  put(0, {m.u.x, m.u.y, m.u.z, m.q.w});
+  put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
+  put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
+  put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
+  return {dot(m.v, m.v), dot(m.w, m.w)};
+}
+
+[[gnu::flatten]] std::array<double, 2> LeapfrogStepper::step_blocks(
+    State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const {
+  const auto owned = static_cast<std::size_t>(part_.owned);
+  const std::size_t whole = owned / lanes, left = owned % lanes;
+  // A maximum would lose what is not a number, a sum keeps it.
+  Squares largest;
+  Lanes sum(0.0);
+  const auto take = [&](const Squares& squares) {
+    largest.speed = max(largest.speed, squares.speed);
+    largest.spin = max(largest.spin, squares.spin);
+    sum += squares.speed;
+  };
+  for (std::size_t block = 0; block < whole; ++block)
+    take(step_block(block, std::integral_constant<std::size_t, lanes>{}, state, wrenches, dt));
+  if (left > 0) take(step_block(whole, left, state, wrenches, dt));
+  return {
+      std::isfinite(reduce(sum)) ? hmax(largest.speed) : std::numeric_limits<double>::quiet_NaN(),
+      hmax(largest.spin)};
+}
+
+double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    const double* record = state.record(static_cast<std::size_t>(held_[k]));
+    std::copy_n(record, Spatial::record,
+                saved_.begin() + static_cast<std::ptrdiff_t>(k * Spatial::record));
+  }
+  auto [speed2, spin2] = step_blocks(state, wrenches, dt);
+  if (!held_.empty()) {
+    model_.prescribe(state.time, now_, rows_);
+    model_.prescribe(state.time + dt, next_, rows_);
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      const auto first = k * Spatial::unknowns;
+      step_held(held_[k], &saved_[k * Spatial::record], state, wrenches,
+                std::span(now_).subspan(first, Spatial::unknowns),
+                std::span(next_).subspan(first, Spatial::unknowns), dt);
+      const auto b = static_cast<std::size_t>(held_[k]);
+      const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
+      speed2 = std::max(speed2, dot(v, v));  // what is not a number stays
+      spin2 = std::max(spin2, dot(w, w));
+    }
+  }
+  state.time += dt;
+  state.fastest = std::sqrt(speed2);
+  state.fastest_spin = std::sqrt(spin2);
+  return speed2;
+}
+
+/// A body of which some components are prescribed, stepped as if it were free: those get the
+/// velocity that takes them where they must be, by an impulse of the boundary; the others are free.
+/// The boundary's work is that impulse times the mean velocity.
+void LeapfrogStepper::step_held(std::int32_t body, const double* before, State<Spatial>& state,
+                                const Wrenches<Spatial>& wrenches, std::span<const double> now,
+                                std::span<const double> next, double dt) {
+  const auto b = static_cast<std::size_t>(body);
+  const std::uint8_t bits = model_.prescribed()[b];
+  double* after = state.record(b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if ((bits >> k & 1U) == 0) continue;
+    const std::size_t u = Spatial::displacement + k, v = Spatial::velocity + k;
+    const double given = (next[k] - now[k]) / dt;
+    const double mass = 1.0 / blocks_[b / lanes].values[0][b % lanes];
+    boundary_work_ += mass * (given - after[v]) * 0.5 * (given + before[v]);
+    after[v] = given;
+    after[u] = before[u] + dt * given;
+  }
+  if (bits >> 3 != 0) turn_held(body, before, after, wrenches.of(b), now, next, dt);
+}
+
+/// The rotation of a body that is held about some axes.
+void LeapfrogStepper::turn_held(std::int32_t body, const double* before, double* after,
+                                const double* f, std::span<const double> now,
+                                std::span<const double> next, double dt) {
+  const std::uint8_t bits = model_.prescribed()[static_cast<std::size_t>(body)];
+  const auto fixed = [&](std::size_t k) { return (bits >> k & 1U) != 0; };
+  const BodyConstants<double> c = constants(body);
+  BodyMotion<double> m = read(before);
+  m.momentum = m.momentum + dt * Vec3<double>{f[3], f[4], f[5]};
+  const Eigen::Matrix3d inverse = in_world(triad(product(m.q, c.axes)), c.inverse_inertia);
+  const Eigen::Vector3d spin = inverse * Eigen::Vector3d(m.momentum.x, m.momentum.y, m.momentum.z);
+  const Eigen::Vector3d old_spin(m.w.x, m.w.y, m.w.z);
+  // Impulses about the axes that are held; 0 about the others.
+  Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d miss = Eigen::Vector3d::Zero(), mean = miss;
+  for (Eigen::Index r = 0; r < 3; ++r) {
+    const auto k = static_cast<std::size_t>(3 + r);
+    if (!fixed(k)) continue;
+    const double given = (next[k] - now[k]) / dt;
+    miss[r] = given - spin[r];
+    mean[r] = 0.5 * (given + old_spin[r]);
+    for (Eigen::Index s = 0; s < 3; ++s)
+      compliance(r, s) = fixed(static_cast<std::size_t>(3 + s)) ? inverse(r, s) : 0.0;
+  }
+  const Eigen::Vector3d impulse = compliance.partialPivLu().solve(miss);
+  boundary_work_ += impulse.dot(mean);
+  m.momentum = m.momentum + Vec3<double>{impulse[0], impulse[1], impulse[2]};
+  if (bits >> 3 == 7) {  // the rotation is given whole: no gyroscopic motion beside it
+    m.w = {(next[3] - now[3]) / dt, (next[4] - now[4]) / dt, (next[5] - now[5]) / dt};
+    m.q = normalised(product(exp_rotation(dt * m.w), m.q));
+    const Triad<double> axes = triad(product(m.q, c.axes));
+    const Vec3<double> w = axes.to_local(m.w), inertia = inverse_of(c.inverse_inertia);
+    m.momentum = axes.to_world({inertia.x * w.x, inertia.y * w.y, inertia.z * w.z});
+  } else {
+    drift_rotation(c, m, dt);
+  }
+  const Vec3<double> u{after[0], after[1], after[2]},
+      v{after[Spatial::velocity], after[Spatial::velocity + 1], after[Spatial::velocity + 2]};
+  m.u = u, m.v = v;
+  write(m, after);
+}
+
+/// Velocity and angular momentum half a step on: by the forces where a body is free, as given where
+/// it is not.
+std::pair<Vec3<double>, Vec3<double>> LeapfrogStepper::half_step_on(
+    std::int32_t body, const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+    double dt) const {
+  const auto b = static_cast<std::size_t>(body);
+  const std::uint8_t bits = model_.prescribed()[b];
+  const BodyConstants<double> c = constants(body);
+  const BodyMotion<double> m = read(state.record(b));
+  const auto [force, moment] = on_free(wrenches.of(b), bits);
+  const Vec3<double> v = m.v + (dt * c.inverse_mass) * force;
+  const Vec3<double> momentum = m.momentum + dt * moment;
+  if (bits == 0) return {v, momentum};
+  const auto given = [&](std::size_t k) {
+    const std::size_t at = static_cast<std::size_t>(rows_[b]) * Spatial::unknowns + k;
+    return (next_[at] - now_[at]) / dt;
+  };
+  const auto fixed = [&](std::size_t k) { return (bits >> k & 1U) != 0; };
+  const Vec3<double> held{fixed(0) ? given(0) : v.x, fixed(1) ? given(1) : v.y,
+                          fixed(2) ? given(2) : v.z};
+  if (!fixed(3) || !fixed(4) || !fixed(5)) return {held, momentum};
+  const Triad<double> axes = triad(product(m.q, c.axes));
+  const Vec3<double> w = axes.to_local({given(3), given(4), given(5)});
+  const Vec3<double> inertia = inverse_of(c.inverse_inertia);
+  return {held, axes.to_world({inertia.x * w.x, inertia.y * w.y, inertia.z * w.z})};
+}
+
+LeapfrogStepper::Energies LeapfrogStepper::energies(const State<Spatial>& state,
+                                                    const Wrenches<Spatial>& wrenches,
+                                                    double dt) const {
+  if (!held_.empty()) {
+    model_.prescribe(state.time, now_, rows_);
+    model_.prescribe(state.time + dt, next_, rows_);
+  }
+  Energies sum{0, boundary_work_};
+  for (std::int32_t body = 0; body < part_.owned; ++body) {
+    const auto b = static_cast<std::size_t>(body);
+    const BodyConstants<double> c = constants(body);
+    const BodyMotion<double> m = read(state.record(b));
+    const auto [v, momentum] = half_step_on(body, state, wrenches, dt);
+    const Triad<double> axes = triad(product(m.q, c.axes));
+    const Vec3<double> before = axes.to_local(m.momentum), after = axes.to_local(momentum);
+    sum.kinetic +=
+        0.5 * (dot(m.v, v) / c.inverse_mass + c.inverse_inertia.x * before.x * after.x +
+               c.inverse_inertia.y * before.y * after.y + c.inverse_inertia.z * before.z * after.z);
+    if (model_.prescribed()[b] == 0) continue;
+    // Half the impulse that the boundary gives at t_n belongs to the step before.
+    const double* w = wrenches.of(b);
+    const Vec3<double> impulse =
+        (1.0 / c.inverse_mass) * (v - m.v) - dt * Vec3<double>{w[0], w[1], w[2]};
+    const Vec3<double> turn = momentum - m.momentum - dt * Vec3<double>{w[3], w[4], w[5]};
+    sum.boundary += 0.5 * (dot(m.v, impulse) + dot(m.w, turn));
+  }
+  return sum;
+}
+
+std::array<double, 6> LeapfrogStepper::momentum(const State<Spatial>& state,
+                                                const Wrenches<Spatial>& wrenches,
+                                                double dt) const {
+  std::array<double, 6> total{};
+  for (std::int32_t body = 0; body < part_.owned; ++body) {
+    const auto b = static_cast<std::size_t>(body);
+    const BodyConstants<double> c = constants(body);
+    const BodyMotion<double> m = read(state.record(b));
+    const double* f = wrenches.of(b);
+    const Vec3<double> p =
+        (1.0 / c.inverse_mass) * m.v + (0.5 * dt) * Vec3<double>{f[0], f[1], f[2]};
+    const Point3& x = part_.bodies.position[b];
+    const Vec3<double> at{x[0] + m.u.x, x[1] + m.u.y, x[2] + m.u.z};
+    const Vec3<double> l = m.momentum + (0.5 * dt) * Vec3<double>{f[3], f[4], f[5]} + cross(at, p);
+    const std::array<double, 6> mine{p.x, p.y, p.z, l.x, l.y, l.z};
+    for (std::size_t k = 0; k < 6; ++k) total[k] += mine[k];
+  }
+  return total;
+}
+
+}  // namespace floe

@@ -1,0 +1,80 @@
+/// \file
+/// Bodies in motion: mass, momentum, and the explicit update of all of a rank's bodies.
+#pragma once
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "base/simd.h"
+#include "explicit/rigid_body_step.h"
+#include "model/model.h"
+
+namespace floe {
+
+/// Leapfrog of a rank's owned bodies. Positions are at t_n, velocities and momenta at t_n - dt/2.
+class LeapfrogStepper {
+ public:
+  explicit LeapfrogStepper(const Model<Spatial>& model);
+
+  /// Sets velocities and angular momenta of the state from initial ones in the world, both at t_0.
+  void start(State<Spatial>& state, const std::vector<Point3>& velocity,
+             const std::vector<Point3>& spin) const;
+  /// Takes velocities back from t_0 to t_0 - dt/2.
+  void stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const;
+
+  /// From t_n to t_n + dt with the wrenches at t_n. Returns the square of the largest speed of a
+  /// body [m^2/s^2] (not finite if a body's is not), and leaves that speed and the largest spin in
+  /// the state.
+  double step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt);
+
+  /// This rank's kinetic energy and the boundaries' work on its bodies so far, at t_n [J].
+  struct Energies {
+    double kinetic, boundary;
+  };
+  /// As leapfrog has them: kinetic energy 1/2 v_(n-1/2).M v_(n+1/2), and work by the mean of the
+  /// forces at a step's two ends. With the potential energy at t_n their balance is exact for a
+  /// linear system at any stable step, where 1/2 v_n.M v_n swings by up to (omega dt)^2/4.
+  Energies energies(const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+                    double dt) const;
+  /// Linear momentum and angular momentum about the origin at t_n, this rank's share.
+  std::array<double, 6> momentum(const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+                                 double dt) const;
+  /// Work that boundaries have done on the bodies so far, this rank's share [J].
+  double boundary_work() const { return boundary_work_; }
+  void set_boundary_work(double work) { boundary_work_ = work; }
+
+ private:
+  std::pair<Vec3<double>, Vec3<double>> half_step_on(std::int32_t body, const State<Spatial>& state,
+                                                     const Wrenches<Spatial>& wrenches,
+                                                     double dt) const;
+  struct alignas(64) Block {
+    std::array<std::array<double, lanes>, 8> values;  ///< 1/m, 1/I, axes
+    BodyConstants<Lanes> get() const;
+  };
+  struct Squares {
+    Lanes speed{0.0}, spin{0.0};
+  };
+  template <class Count>
+  Squares step_block(std::size_t block, Count count, State<Spatial>& state,
+                     const Wrenches<Spatial>& wrenches, double dt) const;
+  std::array<double, 2> step_blocks(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+                                    double dt) const;
+  void step_held(std::int32_t body, const double* before, State<Spatial>& state,
+                 const Wrenches<Spatial>& wrenches, std::span<const double> now,
+                 std::span<const double> next, double dt);
+  void turn_held(std::int32_t body, const double* before, double* after, const double* wrench,
+                 std::span<const double> now, std::span<const double> next, double dt);
+  BodyConstants<double> constants(std::int32_t body) const;
+
+  const Model<Spatial>& model_;
+  const Part& part_;
+  std::vector<Block> blocks_;
+  std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
+  std::vector<std::int32_t> rows_;          ///< per local body: its place in held_, or -1
+  std::vector<double> saved_;               ///< their records before a step
+  mutable std::vector<double> now_, next_;  ///< prescribed values of held_ (work space)
+  double boundary_work_ = 0;
+};
+
+}  // namespace floe
