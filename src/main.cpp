@@ -158,7 +158,7 @@ int run(const floe::Scene& scene, Start& start) {
     if (archive.loading()) {
       restart.emplace().persist(archive);
     } else {
-      OutputArchive files = output->memory();
+      OutputArchive files = output->archive();
       files.run = folder->run();
       files.persist(archive);
     }

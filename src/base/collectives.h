@@ -72,18 +72,18 @@ inline bool on_any_rank(bool mine, MPI_Comm comm) {
 inline bool on_all_ranks(bool mine, MPI_Comm comm) { return !on_any_rank(!mine, comm); }
 
 /// A rank's number, and a whole number that belongs to it: the rank, or the index of a body.
-struct Extreme {
+struct RankedValue {
   double value = 0;
   int index = 0;
 };
 /// The one with the largest (least) value of all ranks; of equal ones that of the least index.
-inline Extreme largest_of_ranks(const Extreme& mine, MPI_Comm comm) {
-  Extreme all;
+inline RankedValue largest_of_ranks(const RankedValue& mine, MPI_Comm comm) {
+  RankedValue all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
   return all;
 }
-inline Extreme least_of_ranks(const Extreme& mine, MPI_Comm comm) {
-  Extreme all;
+inline RankedValue least_of_ranks(const RankedValue& mine, MPI_Comm comm) {
+  RankedValue all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
   return all;
 }

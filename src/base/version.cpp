@@ -4,6 +4,7 @@
 #include <petsc.h>
 #include <yaml.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string_view>

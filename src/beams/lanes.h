@@ -163,7 +163,7 @@ template <Kinematics kinematics, bool damped, template <class> class Frame,
         {dashpot(3) * rate.c.x, dashpot(4) * rate.c.y, dashpot(5) * rate.c.z}};
     const Lanes counts = load(dashpots->counts.data());
     lost = counts * power(viscous, rate);
-    if constexpr (!std::is_same_v<Strength, Unbreakable>) strength.persist(viscous, rate, counts);
+    if constexpr (!std::is_same_v<Strength, Unbreakable>) strength.store(viscous, rate, counts);
     stress = {stress.n + viscous.n, stress.qy + viscous.qy, stress.qz + viscous.qz,
               stress.c + viscous.c};
   }

@@ -112,8 +112,8 @@ std::span<const HalfSpace> Contacts::planes(std::int32_t body) const {
 
 Contacts::Placed Contacts::at_time(std::int32_t obstacle, double position, double motion) const {
   const Obstacle& o = obstacles_[static_cast<std::size_t>(-1 - obstacle)];
-  return {o.point + o.motion.travelled(position), triad(o.motion.turn(position)),
-          o.motion.rate(motion), o.motion.spin(motion)};
+  return {o.point + o.motion.way(position), triad(o.motion.turn(position)), o.motion.rate(motion),
+          o.motion.spin(motion)};
 }
 
 void Contacts::release(std::array<std::int32_t, 2> pair) {

@@ -1,5 +1,7 @@
 #include "floe/contact/obstacle.h"
 
+#include "geometry/overlap.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -32,7 +32,7 @@ void PairListExpiry::start(const State<Spatial>& state, std::int32_t owned) {
   started_ = true;
 }
 
-void PairListExpiry::went(const State<Spatial>& state, double dt) {
+void PairListExpiry::after_step(const State<Spatial>& state, double dt) {
   // Spins change within a step as a body tumbles; that half as much again is far more.
   constexpr double tumbling = 1.5;
   speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
@@ -69,7 +69,7 @@ std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, dou
     if (m.at_rest()) continue;
     const double radius = contacts.obstacle_radius(k);
     const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
-    most[0] = std::max(most[0], length(m.travelled(time) - m.travelled(time_)) +
+    most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
                                     2 * radius * length({turn.x, turn.y, turn.z}));
     most[1] = std::max(most[1], m.largest_speed(radius));
   }

@@ -24,7 +24,7 @@ class PairListExpiry {
   void start(const State<Spatial>& state, std::int32_t owned);
   bool started() const { return started_; }
   /// A step was made. \param dt  [s]
-  void went(const State<Spatial>& state, double dt);
+  void after_step(const State<Spatial>& state, double dt);
   /// The same on every rank. Collective.
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt);
 

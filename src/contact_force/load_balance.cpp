@@ -52,7 +52,7 @@ void ContactLoadBalance::plan(Contacts& contacts) {
   if (size(comm_) == 1) return;
   const auto me = static_cast<std::size_t>(rank(comm_));
   const auto shares = shared_pairs(
-      all_gathered(std::vector{static_cast<std::int64_t>(contacts.remembering())}, comm_));
+      all_gathered(std::vector{static_cast<std::int64_t>(contacts.with_history())}, comm_));
   std::int64_t mine = 0;
   shared_ = false;
   for (std::size_t r = 0; r < shares.size(); ++r) {
@@ -63,20 +63,20 @@ void ContactLoadBalance::plan(Contacts& contacts) {
   }
   if (!shared_) return;
 
-  std::vector<std::int32_t> lent;
-  for (const auto& pair : contacts.lend(static_cast<std::size_t>(mine)))
-    lent.insert(lent.end(), pair.begin(), pair.end());
-  lent_ = static_cast<std::size_t>(mine);
-  // All ranks know all lent pairs, giver by giver; each giver's go to its takers in turn.
-  const std::vector<std::int32_t> all = all_gathered(lent, comm_);
-  std::vector<std::array<std::int32_t, 2>> borrowed;
+  std::vector<std::int32_t> offloaded;
+  for (const auto& pair : contacts.offload(static_cast<std::size_t>(mine)))
+    offloaded.insert(offloaded.end(), pair.begin(), pair.end());
+  offloaded_ = static_cast<std::size_t>(mine);
+  // All ranks know all offloaded pairs, giver by giver; each giver's go to its takers in turn.
+  const std::vector<std::int32_t> all = all_gathered(offloaded, comm_);
+  std::vector<std::array<std::int32_t, 2>> taken_on;
   std::vector<std::int32_t> takers, places;
   std::vector<std::int32_t> taken(shares.size(), 0);
   std::size_t at = 0;
   for (std::size_t giver = 0; giver < shares.size(); ++giver) {
     for (std::size_t taker = 0; taker < shares.size(); ++taker) {
       for (std::int64_t k = 0; k < shares[giver][taker]; ++k, ++at) {
-        if (taker == me) borrowed.push_back({all[2 * at], all[2 * at + 1]});
+        if (taker == me) taken_on.push_back({all[2 * at], all[2 * at + 1]});
         if (giver == me) {
           takers.push_back(static_cast<std::int32_t>(taker));
           places.push_back(taken[taker]);
@@ -85,13 +85,13 @@ void ContactLoadBalance::plan(Contacts& contacts) {
       }
     }
   }
-  borrowed_ = borrowed.size();
-  contacts.borrow(borrowed);
-  buffer_.assign(borrowed_ + lent_, {});
-  ghosts_ = Ghosts(comm_, static_cast<std::int32_t>(borrowed_), takers, places);
+  taken_on_ = taken_on.size();
+  contacts.take_on(taken_on);
+  buffer_.assign(taken_on_ + offloaded_, {});
+  ghosts_ = Ghosts(comm_, static_cast<std::int32_t>(taken_on_), takers, places);
 }
 
-std::span<Contacts::PairOverlap> ContactLoadBalance::meetings(std::size_t first,
+std::span<Contacts::PairOverlap> ContactLoadBalance::overlaps(std::size_t first,
                                                               std::size_t count) {
   return std::span(buffer_).subspan(first, count);
 }
@@ -101,7 +101,7 @@ void ContactLoadBalance::evaluate(Contacts& contacts, std::span<ContactWrench> w
     contacts.evaluate(wrenches);
     return;
   }
-  contacts.meet_borrowed(meetings(0, borrowed_));
+  contacts.overlaps_taken_on(overlaps(0, taken_on_));
   const std::span<double> records(buffer_.empty() ? nullptr : &buffer_[0].overlap.volume,
                                   numbers * buffer_.size());
   ghosts_.begin(records, numbers);
@@ -109,7 +109,7 @@ void ContactLoadBalance::evaluate(Contacts& contacts, std::span<ContactWrench> w
   const auto arrive = [&] {
     if (!arrived) ghosts_.end(records, numbers);
     arrived = true;
-    return std::span<const Contacts::PairOverlap>(meetings(borrowed_, lent_));
+    return std::span<const Contacts::PairOverlap>(overlaps(taken_on_, offloaded_));
   };
   contacts.evaluate(wrenches, arrive);
   (void)arrive();

@@ -17,7 +17,7 @@ namespace floe {
 std::vector<std::vector<std::int64_t>> shared_pairs(std::span<const std::int64_t> pairs);
 
 /// Forces do not depend on who works out an overlap: pairs stay where their bodies are, with their
-/// history and in their order, and only meetings travel.
+/// history and in their order, and only overlaps travel.
 class ContactLoadBalance {
  public:
   explicit ContactLoadBalance(MPI_Comm comm);
@@ -28,12 +28,12 @@ class ContactLoadBalance {
   void evaluate(Contacts& contacts, std::span<ContactWrench> wrenches);
 
  private:
-  std::span<Contacts::PairOverlap> meetings(std::size_t first, std::size_t count);
+  std::span<Contacts::PairOverlap> overlaps(std::size_t first, std::size_t count);
 
   MPI_Comm comm_;
   bool shared_ = false;  ///< on any rank
-  std::size_t borrowed_ = 0, lent_ = 0;
-  std::vector<Contacts::PairOverlap> buffer_;  ///< of borrowed pairs, then of lent ones
+  std::size_t taken_on_ = 0, offloaded_ = 0;
+  std::vector<Contacts::PairOverlap> buffer_;  ///< of taken_on pairs, then of offloaded ones
   Ghosts ghosts_;
 };
 

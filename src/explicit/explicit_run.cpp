@@ -76,7 +76,7 @@ typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
     if (auto limit = force->step_limit(this->state()); limit.dt < least.dt) least = limit;
   }
   const MPI_Comm comm = this->model().part().comm;
-  const Extreme of_all = least_of_ranks({least.dt, rank(comm)}, comm);
+  const RankedValue of_all = least_of_ranks({least.dt, rank(comm)}, comm);
   least.dt = of_all.value;
   broadcast(least.reason, comm, of_all.index);
   return least;

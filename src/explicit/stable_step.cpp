@@ -95,7 +95,7 @@ template <class Space>
 std::string describe(const Operators<Space>& a, const Model<Space>& model, const Vector& z) {
   constexpr int n = Space::unknowns;
   const MPI_Comm comm = model.part().comm;
-  Extreme mine{-1, rank(comm)};
+  RankedValue mine{-1, rank(comm)};
   Eigen::Index at = 0;
   for (Eigen::Index b = 0; b < a.size() / n; ++b) {
     const double share = z.segment<n>(b * n).squaredNorm();
@@ -104,7 +104,7 @@ std::string describe(const Operators<Space>& a, const Model<Space>& model, const
       at = b;
     }
   }
-  const Extreme best = largest_of_ranks(mine, comm);
+  const RankedValue best = largest_of_ranks(mine, comm);
   std::array<double, 5> facts{};
   if (best.index == mine.index) {
     const auto b = static_cast<std::size_t>(at);

@@ -206,7 +206,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   Advance advance(const State<Spatial>& state) override {
     constexpr double rounding = 1e-6;  // of s: growth below it is none
     growing_.clear();
-    Extreme worst{0, -1};  // of the beams that break
+    RankedValue worst{0, -1};  // of the beams that break
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = criterion_of(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {

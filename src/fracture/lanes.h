@@ -57,8 +57,8 @@ struct BreakableBlock {
   ViscousBlock* now = nullptr;
   Lanes* lost_before = nullptr;  ///< power of those at the present rates, summed up
 
-  void persist(const BeamStress<Lanes>& viscous, const BeamStress<Lanes>& rate,
-               const Lanes& counts) const {
+  void store(const BeamStress<Lanes>& viscous, const BeamStress<Lanes>& rate,
+             const Lanes& counts) const {
     *lost_before += counts * power(before->get(), rate);
     now->set(viscous);
   }

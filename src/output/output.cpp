@@ -134,7 +134,7 @@ template <class Space>
 Output<Space>::~Output() = default;
 
 template <class Space>
-const OutputArchive& Output<Space>::memory() const {
+const OutputArchive& Output<Space>::archive() const {
   return impl_->memory;
 }
 template <class Space>

@@ -229,14 +229,14 @@ std::string RunFolder::problem(const FolderWish& wish, MPI_Comm comm) {
             check_unfinished(wish);
           }).why;
   }
-  share(why, comm);
+  broadcast(why, comm);
   return why;
 }
 
 void RunFolder::begin(const std::string& run) {
   on_root(comm_, [&] { begin_here(run); });
   begun_ = true;
-  share(run_, comm_);
+  broadcast(run_, comm_);
 }
 
 void RunFolder::begin_here(const std::string& run) {

@@ -217,7 +217,7 @@ void Checkpoints::head(Archive& archive) {
                    "has changed");
 }
 
-void Checkpoints::save(const std::function<void(Archive&)>& remember,
+void Checkpoints::save(const std::function<void(Archive&)>& persist,
                        const std::vector<std::string>& columns) {
   const Timed timed(Event::output);
   const double began = MPI_Wtime();
@@ -241,7 +241,7 @@ void Checkpoints::save(const std::function<void(Archive&)>& remember,
   save_seconds_ = last_save_ - began;
 }
 
-void Checkpoints::load(const std::function<void(Archive&)>& remember) {
+void Checkpoints::load(const std::function<void(Archive&)>& persist) {
   std::optional<Hdf5File> file;
   try {
     on_root(part_.comm, [&] { file.emplace(open_whole(options_.restart)); });

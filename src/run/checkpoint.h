@@ -82,12 +82,12 @@ class Checkpoints {
 
   /// Writes the file whole, seals it, brings it to the disk and renames it; the one before stays
   /// as previous_checkpoint(). At any instant at least one of them is whole.
-  /// \param remember  what the run keeps   \param columns  for options.prepare
-  void save(const std::function<void(Archive&)>& remember,
+  /// \param persist  what the run keeps   \param columns  for options.prepare
+  void save(const std::function<void(Archive&)>& persist,
             const std::vector<std::string>& columns = {});
   /// Reads the file that options.restart names. \throws InputError if it is damaged, with the
   /// generation before it if that is good, or not a checkpoint of this lattice
-  void load(const std::function<void(Archive&)>& remember);
+  void load(const std::function<void(Archive&)>& persist);
 
  private:
   Wish look(std::int64_t step);

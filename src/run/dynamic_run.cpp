@@ -386,7 +386,7 @@ bool DynamicRun<Space>::sample(bool last) {
 template <class Space>
 std::string DynamicRun<Space>::where() const {
   const Part& part = model_.part();
-  Extreme mine{-1, rank(part.comm)};
+  RankedValue mine{-1, rank(part.comm)};
   std::size_t at = 0;
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
     const double* v = state_.record(b) + Space::velocity;
@@ -398,7 +398,7 @@ std::string DynamicRun<Space>::where() const {
       at = b;
     }
   }
-  const Extreme best = largest_of_ranks(mine, part.comm);
+  const RankedValue best = largest_of_ranks(mine, part.comm);
   std::array<double, 4> facts{};
   if (best.index == mine.index) {
     const Point3& x = part.bodies.position[at];

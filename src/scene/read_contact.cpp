@@ -1,6 +1,7 @@
 // Contacts and obstacles.
 #include <cmath>
 
+#include "contact/law.h"
 #include "floe/base/petsc.h"
 #include "reading.h"
 

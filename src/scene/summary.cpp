@@ -38,7 +38,7 @@ std::string line(const char* format, auto... values) {
 /// Mean x at rest of a boundary's bodies [m]. Collective.
 template <class Space>
 double mean_x(const Model<Space>& model, const Boundary& boundary) {
-  std::array<double, 2> mine{}, all{};  // sum and number
+  std::array<double, 2> mine{};  // sum and number
   for (const PlacedBoundary& placed : model.boundaries()) {
     if (placed.boundary.name != boundary.name) continue;
     for (const std::int32_t body : placed.bodies) {

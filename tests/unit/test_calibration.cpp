@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "beams/beam_force.h"
 #include "floe/beams/calibration.h"
 #include "support/lattices.h"
 
