@@ -2,8 +2,8 @@
 /// What a run of a sheet will take, before it is known.
 ///
 /// Formulas fitted to runs of sheets of 3,000 to 30,000 bodies on the machine of docs/bench: meant
-/// to be good to a factor of 3 (docs/design.md) for lattices whose beams lie as a sheet's; blocks
-/// of layers take longer.
+/// to be good to a factor of 3 (docs/decisions, "Planned time of static and implicit runs") for
+/// lattices whose beams lie as a sheet's; blocks of layers take longer.
 #pragma once
 
 #include "floe/base/petsc.h"
