@@ -59,12 +59,12 @@ RelativeMotion Contacts::relative(const Placed& a, const Placed& b, const Vec3<d
 
 /// Of the elastic, viscous and friction terms.
 void Contacts::add_power(const ActiveContact& touch, const RelativeMotion& motion,
-                         std::array<double, 4>& power) {
+                         ContactPower& power) {
   const ContactForce& c = touch.contact;
   const double parting = dot(c.normal, motion.velocity);
-  power[0] += c.elastic * parting + dot(c.couple, motion.spin);
-  power[1] += c.viscous * parting;
-  power[2] += dot(c.memory.tangential, motion.velocity);
+  power.elastic += c.elastic * parting + dot(c.couple, motion.spin);
+  power.viscous += c.viscous * parting;
+  power.friction += dot(c.memory.tangential, motion.velocity);
 }
 
 /// What a moving obstacle gives [W].
@@ -118,7 +118,7 @@ void Contacts::touch(std::int32_t index, const Placed& b, const PairOverlap& met
     totals_.stored.normal += stored.normal;
     totals_.stored.tangential += stored.tangential;
     add_power(active_.back(), motion, totals_.power);
-    if (pair.b < 0) totals_.power[3] += power_of_obstacle(active_.back(), a, b);
+    if (pair.b < 0) totals_.power.obstacles += power_of_obstacle(active_.back(), a, b);
   }
   const Vec3<double> force = contact.force();
   ContactWrench& on_a = wrenches[static_cast<std::size_t>(pair.slot_a)];
@@ -140,7 +140,7 @@ void Contacts::place(std::span<const MovingPose> bodies, double time) {
     move(placed_[s],
          {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin},
          radius(involved_[s]));
-  const double half_a_step_ago = time - 0.5 * sums_[4];  // as the bodies' velocities
+  const double half_a_step_ago = time - 0.5 * books_.last_dt;  // as the bodies' velocities
   for (std::size_t k = 0; k < obstacles_.size(); ++k)
     move(obstacles_at_[k], at_time(-1 - static_cast<std::int32_t>(k), time, half_a_step_ago),
          obstacle_radius_[k]);
@@ -209,17 +209,12 @@ std::vector<std::array<std::int32_t, 2>> Contacts::enclosed() const {
 }
 
 void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
-  const double last_dt = sums_[4];
-  if (sums_[6] == 0) {
-    sums_[5] = energies().stored;
-    sums_[6] = 1;
-  }
   histories_.clear();
   for (std::size_t k = 0; k < obstacles_at_.size(); ++k) {
     obstacles_at_[k].velocity = obstacles_[k].motion.rate(time_ + 0.5 * dt);
     obstacles_at_[k].spin = obstacles_[k].motion.spin(time_ + 0.5 * dt);
   }
-  std::array<double, 4> power{};
+  ContactPower power;
   for (const ActiveContact& t : active_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
     const auto moving = [&](std::int32_t slot) {  // where it was, as it moves now
@@ -234,32 +229,21 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
       add_power(t, motion, power);
       note_events(t);
     }
-    if (pair.b < 0) power[3] += power_of_obstacle(t, a, b);
+    if (pair.b < 0) power.obstacles += power_of_obstacle(t, a, b);
     histories_.push_back(
         {pair.a, pair.b, t.pair, slid(t.contact, motion, 0.5 * (a.spin + b.spin), dt)});
   }
-  for (std::size_t k = 0; k < power.size(); ++k)
-    sums_[k] += 0.5 * (last_dt * totals_.power[k] + dt * power[k]);
+  books_.take(totals_.power, power, totals_.stored, dt);
   if (some_newly_eligible_) {
     for (Pair& pair : pairs_) pair.newly_eligible = false;
   }
   some_newly_eligible_ = at_rest_ = false;
   active_.clear();
   totals_ = {};
-  sums_[4] = dt;
 }
 
 ContactEnergies Contacts::energies() const {
-  std::array<double, 4> work{sums_[0], sums_[1], sums_[2], sums_[3]};
-  for (std::size_t k = 0; k < work.size(); ++k) work[k] += 0.5 * sums_[4] * totals_.power[k];
-  const StoredEnergy& stored = totals_.stored;
-  ContactEnergies e;
-  e.stored = stored.normal + stored.tangential;
-  e.viscous = -work[1];
-  e.friction = -work[2] - stored.tangential;
-  e.crushing = sums_[6] == 0 ? 0.0 : sums_[5] - work[0] - stored.normal;
-  e.external = work[3];
-  return e;
+  return books_.energies(totals_.power, totals_.stored);
 }
 
 }  // namespace floe

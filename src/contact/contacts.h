@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/energies.h"
 #include "contact/law.h"
 #include "floe/contact/obstacle.h"
 
@@ -31,16 +32,6 @@ struct MovingPose {
 /// About the body's centroid.
 struct ContactWrench {
   Vec3<double> force{}, moment{};
-};
-
-/// What contacts have taken so far and store now [J]; of pairs whose A is counted here.
-struct ContactEnergies {
-  double stored = 0;    ///< in normal and tangential springs
-  double viscous = 0;   ///< lost to the viscous term
-  double friction = 0;  ///< lost to sliding
-  double crushing = 0;  ///< work of the elastic term that is not stored: what stays crushed, and
-                        ///< what law `overlap` does not give back between polyhedra
-  double external = 0;  ///< done on bodies by moving obstacles
 };
 
 class Contacts {
@@ -151,8 +142,8 @@ class Contacts {
   /// Rows of all pairs, sorted; the next build takes them over. \param changed  whether
   /// pairs had become eligible since the last build.
   void restore(std::span<const double> rows, bool changed);
-  /// Sums that go on over a restart.
-  std::array<double, 7>& sums() { return sums_; }
+  /// Work and energies that go on over a restart.
+  ContactBooks& books() { return books_; }
   std::vector<std::array<std::int32_t, 2>> released() const { return released_; }
 
  private:
@@ -194,7 +185,7 @@ class Contacts {
   /// viscous, friction, of moving obstacles.
   struct Totals {
     StoredEnergy stored;
-    std::array<double, 4> power{};
+    ContactPower power;
   };
 
   void add_solid(std::int32_t body, double mass);
@@ -224,7 +215,7 @@ class Contacts {
   static double farthest_travel(const Placed& from, const Placed& to, double radius);
   static RelativeMotion relative(const Placed& a, const Placed& b, const Vec3<double>& centre);
   static void add_power(const ActiveContact& touch, const RelativeMotion& motion,
-                        std::array<double, 4>& power);
+                        ContactPower& power);
   static double power_of_obstacle(const ActiveContact& touch, const Placed& a,
                                   const Placed& obstacle);
 
@@ -263,8 +254,7 @@ class Contacts {
   std::int64_t touching_ = 0;
   Totals totals_;  ///< of the last evaluation
 
-  std::array<double, 7> sums_{};  ///< work of elastic, viscous, friction, obstacles [J]; last dt;
-                                  ///< energy stored at the start; whether that is known
+  ContactBooks books_;
 };
 
 }  // namespace floe

@@ -188,12 +188,14 @@ class DistributedContact final : public Contact {
 /// The list of pairs is made anew, from the state once contacts are possible: then it does not show
 /// in the results; what a pair remembers goes with it.
 void DistributedContact::persist(Archive& archive) {
-  for (std::size_t k = 0; k < contacts_.sums().size(); ++k) {
-    // The last step and whether the start is known are no sums.
-    double& value = contacts_.sums()[k];
-    const std::string key = "sum_" + std::to_string(k);
-    k == 4 || k == 6 ? archive.common(key, value) : archive.share(key, value);
-  }
+  ContactBooks& books = contacts_.books();
+  archive.share("work_elastic", books.work.elastic);
+  archive.share("work_viscous", books.work.viscous);
+  archive.share("work_friction", books.work.friction);
+  archive.share("work_obstacles", books.work.obstacles);
+  archive.share("stored_at_start", books.stored_at_start);
+  archive.common("last_dt", books.last_dt, not_negative);
+  archive.common("start_is_known", books.start_is_known);
   archive.common("dt", dt_);
   archive.common("time", time_);
   std::vector<double> rows = contacts_.history(), pairs;

@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "base/audit.h"
+#include "contact/law.h"
+#include "explicit/explicit.h"
 #include "floe/base/petsc.h"
+#include "implicit/implicit.h"
 #include "scene/build.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"

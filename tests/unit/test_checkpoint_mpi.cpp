@@ -242,7 +242,7 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
     add_forces(scene, place_loads(scene, lattice), *model);
     return model;
   };
-  const auto remember = [](Model<Spatial>& model) {
+  const auto persist_forces = [](Model<Spatial>& model) {
     return [&model](Archive& archive) {
       for (std::size_t k = 0; k < model.forces().size(); ++k) {
         archive.enter("force_" + std::to_string(k));
@@ -266,8 +266,8 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
     for (const auto& force : which.forces()) force->commit(state, 0.1);
   };
   for (int step = 1; step <= 3; ++step) move(*model, step);
-  Checkpoints(kept.options, model->part()).save(persist(*model));
-  Checkpoints(kept.options, other->part()).load(persist(*other));
+  Checkpoints(kept.options, model->part()).save(persist_forces(*model));
+  Checkpoints(kept.options, other->part()).load(persist_forces(*other));
   // From here on both are the same, to the last bit.
   other->evaluate(state, wrenches);
   EXPECT_EQ(model->report(state), other->report(state));

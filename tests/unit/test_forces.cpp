@@ -4,6 +4,7 @@
 
 #include "beams/beam_force.h"
 #include "floe/base/petsc.h"
+#include "floe/forces/boundary.h"
 #include "forces/dead_load.h"
 #include "forces/gravity.h"
 #include "support/force_checks.h"

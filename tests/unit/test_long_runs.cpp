@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "explicit/explicit.h"
 #include "explicit/leapfrog.h"
 #include "implicit/liealpha.h"
 #include "run/dynamic_run.h"

@@ -29,7 +29,7 @@ class Leapfrog {
     check(TSSetMaxTime(ts_, 1e30));
     check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));
     check(TSSetErrorIfStepFails(ts_, PETSC_FALSE));
-    check(TSMonitorSet(ts_, remember, this, nullptr));
+    check(TSMonitorSet(ts_, record, this, nullptr));
     set_leapfrog_step(ts_, &step_);
   }
   Leapfrog(const Leapfrog&) = delete;
@@ -48,7 +48,7 @@ class Leapfrog {
   int fail_at = -1;  ///< this call asks for the end
 
  private:
-  static PetscErrorCode persist(TS, PetscInt, PetscReal time, Vec solution, void* self) noexcept {
+  static PetscErrorCode record(TS, PetscInt, PetscReal time, Vec solution, void* self) noexcept {
     auto& me = *static_cast<Leapfrog*>(self);
     PetscReal norm = 0;
     check(VecNorm(solution, NORM_2, &norm));

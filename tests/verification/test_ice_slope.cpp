@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "contact/law.h"
 #include "explicit/explicit.h"
 #include "fracture/fracture.h"
 #include "scene/build.h"
