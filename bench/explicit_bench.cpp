@@ -54,7 +54,7 @@ class Case {
   void step() {
     model.evaluate(state, wrenches);
     benchmark::DoNotOptimize(motion.step(state, wrenches, dt));
-    for (const auto& force : model.forces()) force->commit(state, dt);
+    for (const auto& force : model.forces()) commit(*force, state, dt);
   }
 
   static constexpr double dt = 1e-5;

@@ -16,7 +16,13 @@ namespace floe {
 /// Loops over the beams of a part; space, kinematics, frames and damping are chosen outside them.
 /// \tparam Beam  SpatialLanes or PlanarLanes: one beam on records of its space, and in lanes
 template <class Beam, bool damped>
-class LatticeBeams : public BeamForce<typename Beam::Space> {
+class LatticeBeams : public BeamForce<typename Beam::Space>,
+                     public HasTangent<typename Beam::Space>,
+                     public Damps<typename Beam::Space>,
+                     public DoesWork<typename Beam::Space>,
+                     public LimitsStep<typename Beam::Space>,
+                     public Commits<typename Beam::Space>,
+                     public Persists {
  public:
   using Pointwise = Beam;
   using Space = typename Beam::Space;
@@ -37,10 +43,15 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
   }
 
   std::string_view name() const override { return "beam"; }
+  Roles<Space> roles() override {
+    Roles<Space> roles{.tangent = this, .step = this, .commits = this, .persists = this};
+    if constexpr (damped) roles.damping = this, roles.work = this;
+    return roles;
+  }
 
   /// flatten: everything of the kernel in one body, or lanes travel through memory between its
   /// functions.
-  [[gnu::flatten]] void add(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+  [[gnu::flatten]] void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
     const double* records = state.records.data();
     double* values = wrenches.values.data();
     Lanes lost(0.0);
@@ -77,7 +88,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
     }
   }
 
-  bool add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+  void add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const override {
     if constexpr (damped) {
       for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
         const auto [force, moment_i, moment_j] =
@@ -86,7 +97,6 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
         floe::add(wrenches, static_cast<std::size_t>(j), -1.0 * force, -1.0 * moment_j);
       });
     }
-    return damped;
   }
 
   double stiffness_bound(std::int32_t body) const override {
@@ -212,9 +222,9 @@ class LatticeBeams : public BeamForce<typename Beam::Space> {
   std::vector<Block> blocks_;
   std::vector<DashpotBlock> dashpots_;
   std::vector<double> stiffness_;
-  mutable double power_lost_ = 0;  ///< in the last evaluation [W]; a by-product, no history
-  double lost_ = 0;                ///< [J]
-  double step_ = 0;                ///< the last one [s]
+  double power_lost_ = 0;  ///< in the last evaluation [W]
+  double lost_ = 0;        ///< [J]
+  double step_ = 0;        ///< the last one [s]
 };
 
 }  // namespace floe

@@ -68,8 +68,8 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
          " (pairs with more than " + text(slight) + ": " + std::to_string(pairs) + ")";
 }
 
-Force<Spatial>::StepLimit travel_limit(const Contacts& contacts, const Part& part,
-                                       const State<Spatial>& state) {
+LimitsStep<Spatial>::Limit travel_limit(const Contacts& contacts, const Part& part,
+                                        const State<Spatial>& state) {
   constexpr double share = 0.1;
   const auto length = [](const double* v) {
     return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -103,8 +103,8 @@ Force<Spatial>::StepLimit travel_limit(const Contacts& contacts, const Part& par
               text(contacts.thinnest()) + " m, in a step"};
 }
 
-std::vector<Force<Spatial>::Remark> ContactRemarks::take(const Contacts& contacts) {
-  std::vector<Force<Spatial>::Remark> remarks;
+std::vector<Remark> ContactRemarks::take(const Contacts& contacts) {
+  std::vector<Remark> remarks;
   const auto tell = [&](const Contacts::Event& event, bool& told, const std::string& what,
                         const std::string& why) {
     if (told || !event.happened) return;

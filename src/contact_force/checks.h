@@ -24,13 +24,13 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm);
 
 /// The step in which the fastest body of this rank and another as fast, or the fastest obstacle,
 /// come nearer by a tenth of the least width of all: longer steps might jump over a contact.
-Force<Spatial>::StepLimit travel_limit(const Contacts& contacts, const Part& part,
-                                       const State<Spatial>& state);
+LimitsStep<Spatial>::Limit travel_limit(const Contacts& contacts, const Part& part,
+                                        const State<Spatial>& state);
 
 /// Tells each kind of event once.
 class ContactRemarks {
  public:
-  std::vector<Force<Spatial>::Remark> take(const Contacts& contacts);
+  std::vector<Remark> take(const Contacts& contacts);
 
  private:
   bool told_enclosed_ = false, told_pressed_through_ = false;

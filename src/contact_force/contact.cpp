@@ -19,7 +19,11 @@ std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int3
   return pairs;
 }
 
-class DistributedContact final : public Contact {
+class DistributedContact final : public Contact,
+                                 public LimitsStep<Spatial>,
+                                 public Commits<Spatial>,
+                                 public Persists,
+                                 public Remarks {
  public:
   DistributedContact(const Part& part, const Lattice& lattice, const ContactOptions& options,
                      std::vector<Obstacle> obstacles)
@@ -39,8 +43,12 @@ class DistributedContact final : public Contact {
   }
 
   std::string_view name() const override { return "contact"; }
+  Roles<Spatial> roles() override {
+    return {.step = this, .commits = this, .persists = this, .remarks = this};
+  }
+  bool has_history() const override { return true; }
 
-  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     if (contacts_.changed() || !expiry_.started() || expiry_.is_due(state, part_, contacts_, dt_))
       build(state);
     halo_.gather(state, bodies_);
@@ -57,7 +65,6 @@ class DistributedContact final : public Contact {
       w[3] += c.moment.x, w[4] += c.moment.y, w[5] += c.moment.z;
     }
   }
-  bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
   double stiffness_bound(std::int32_t body) const override {
     return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
   }
@@ -66,7 +73,7 @@ class DistributedContact final : public Contact {
   }
 
   const std::string& overlap_at_start() const override { return overlap_at_start_; }
-  StepLimit step_limit(const State<Spatial>& state) const override {
+  Limit step_limit(const State<Spatial>& state) const override {
     return travel_limit(contacts_, part_, state);
   }
   std::vector<Remark> take_remarks() override {
@@ -138,7 +145,7 @@ class DistributedContact final : public Contact {
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
 
-  void build(const State<Spatial>& state) const {
+  void build(const State<Spatial>& state) {
     contacts_.build(halo_.poses(state), here_, state.time);
     possible_ = possible_ || contacts_.pieces() > 1;
     if (!possible_) possible_ = anywhere(contacts_.obstacle_listed());
@@ -166,19 +173,19 @@ class DistributedContact final : public Contact {
   }
 
   const Part& part_;
-  mutable Contacts contacts_;
-  mutable ContactHalo halo_;
-  mutable ContactLoadBalance balance_;
-  mutable PairListExpiry expiry_;
-  mutable std::vector<MovingPose> bodies_;
-  mutable std::vector<ContactWrench> mine_;
+  Contacts contacts_;
+  ContactHalo halo_;
+  ContactLoadBalance balance_;
+  PairListExpiry expiry_;
+  std::vector<MovingPose> bodies_;
+  std::vector<ContactWrench> mine_;
   std::vector<std::uint8_t> here_;
   std::vector<Vec3<double>> peak_, impulse_, forces_;
   Contacts::Rates rates_;
   /// Whether the stable step must bear contacts: with more than one piece or a lone body (no beam
   /// keeps its step short), and once an obstacle has come near or bodies of the one piece have met.
-  mutable bool possible_;
-  mutable bool near_ = false;  ///< pairs are listed, on some rank
+  bool possible_;
+  bool near_ = false;  ///< pairs are listed, on some rank
   double dt_ = 0, time_ = 0;
   std::string overlap_at_start_;
   bool overlap_told_ = false;

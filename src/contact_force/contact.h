@@ -15,7 +15,6 @@ namespace floe {
 
 class Contact : public Force<Spatial> {
  public:
-  bool has_history() const final { return true; }
   /// Beams are broken: their bodies (global indices) may touch from the next evaluation on, without
   /// an energy. Collective; each rank may name pairs of its own.
   virtual void release(std::span<const std::array<std::int32_t, 2>> pairs) = 0;

@@ -41,8 +41,10 @@ class Operators {
     }
     speed_ = std::sqrt(largest_over_ranks(fastest2, part_.comm));
     for (const auto& force : model.forces()) {
-      bound_.stiffness += force->hidden_stiffness().stiffness;
-      bound_.damping += force->hidden_stiffness().damping;
+      const auto* role = force->roles().step;
+      if (role == nullptr) continue;
+      bound_.stiffness += role->hidden_stiffness().stiffness;
+      bound_.damping += role->hidden_stiffness().damping;
     }
   }
 
@@ -139,7 +141,8 @@ class Operators {
   void evaluate(Wrenches<Space>& wrenches) {
     std::fill(wrenches.values.begin(), wrenches.values.end(), 0.0);
     for (const auto& force : model_.forces()) {
-      if (force->hidden_stiffness().stiffness == 0) force->add(moved_, wrenches);
+      const auto* role = force->roles().step;
+      if (role == nullptr || role->hidden_stiffness().stiffness == 0) force->add(moved_, wrenches);
     }
     ++evaluations_;
   }

@@ -41,7 +41,9 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     if (!this->sample_if_due()) return false;
     if (!this->keep_step_stable(ts)) return false;
     const double speed2 = motion_.step(this->state(), this->wrenches(), this->dt());
-    for (const auto& force : this->model().forces()) force->commit(this->state(), this->dt());
+    for (const auto& force : this->model().forces()) {
+      if (auto* role = force->roles().commits) role->commit(this->state(), this->dt());
+    }
     release_broken();
     return this->moved(this->next_time(), speed2) && this->look_around();
   }

@@ -61,7 +61,9 @@ template <class Space>
 double ExplicitRun<Space>::rate_estimate() {
   std::vector<double> rates;
   for (const auto& force : this->model().forces()) {
-    if (const auto rate = force->rate_estimate(this->state())) rates.push_back(*rate);
+    const auto* role = force->roles().step;
+    if (role == nullptr) continue;
+    if (const auto rate = role->rate_estimate(this->state())) rates.push_back(*rate);
   }
   if (rates.empty()) return 0;
   largest_over_ranks(rates, this->model().part().comm);
@@ -70,10 +72,12 @@ double ExplicitRun<Space>::rate_estimate() {
 
 /// The shortest of the steps that forces limit for other reasons than stability. Collective.
 template <class Space>
-typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
-  typename Force<Space>::StepLimit least;
+typename LimitsStep<Space>::Limit ExplicitRun<Space>::step_limit() {
+  typename LimitsStep<Space>::Limit least;
   for (const auto& force : this->model().forces()) {
-    if (auto limit = force->step_limit(this->state()); limit.dt < least.dt) least = limit;
+    const auto* role = force->roles().step;
+    if (role == nullptr) continue;
+    if (auto limit = role->step_limit(this->state()); limit.dt < least.dt) least = limit;
   }
   const MPI_Comm comm = this->model().part().comm;
   const RankedValue of_all = least_of_ranks({least.dt, rank(comm)}, comm);
@@ -86,7 +90,9 @@ typename Force<Space>::StepLimit ExplicitRun<Space>::step_limit() {
 template <class Space>
 double ExplicitRun<Space>::own_stiffness() {
   double sum = 0;
-  for (const auto& force : this->model().forces()) sum += force->hidden_stiffness().stiffness;
+  for (const auto& force : this->model().forces()) {
+    if (const auto* role = force->roles().step) sum += role->hidden_stiffness().stiffness;
+  }
   return sum;
 }
 

@@ -42,7 +42,7 @@ class ExplicitRun : public DynamicRun<Space> {
   StableStep look();
   bool look_is_due();
   double rate_estimate();
-  typename Force<Space>::StepLimit step_limit();
+  typename LimitsStep<Space>::Limit step_limit();
   double own_stiffness();
   double needed() const;
 

@@ -177,7 +177,10 @@ void FirstOrderSystem::rates(const State<Spatial>& state, const Wrenches<Spatial
     }
   }
   double* work = &rates[bodies_size()];
-  for (const auto& force : model_.forces()) *work++ = force->power(state);
+  for (const auto& force : model_.forces()) {
+    const auto* role = force->roles().work;
+    *work++ = role != nullptr ? role->power(state) : 0.0;
+  }
   *work = boundary;
 }
 

@@ -229,7 +229,10 @@ bool RkRun::stepped() {
     const Numbers numbers(solution_);
     equations_.to_records(*numbers, now, state());
     const double* work = &(*numbers)[equations_.bodies_size()];
-    for (const auto& force : model().forces()) force->take_work(*work++);
+    for (const auto& force : model().forces()) {
+      if (auto* role = force->roles().work) role->take_work(*work);
+      ++work;
+    }
     boundary_work_ += *work;
     equations_.from_records(state(), *numbers);
   }
@@ -244,7 +247,7 @@ bool RkRun::stepped() {
 RunResult run_rk(Model<Spatial>& model, const ExplicitOptions& options,
                  const Observer<Spatial>& observer) {
   for (const auto& force : model.forces()) {
-    if (force->has_history())
+    if (const auto* role = force->roles().commits; role != nullptr && role->has_history())
       throw InputError("ts_type: 'rk' cannot step force '" + std::string(force->name()) +
                        "': it remembers what happened, and stages of a step have not happened "
                        "(integrator: explicit steps it with leapfrog)");

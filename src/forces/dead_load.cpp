@@ -18,7 +18,12 @@ constexpr int turns_about(int unknown) {
 /// skew part. With linear kinematics a = r in the wrench, which is constant then, and r + theta x r
 /// in the potential.
 template <class Space>
-class DeadLoad final : public Force<Space> {
+class DeadLoad final : public Force<Space>,
+                       public HasTangent<Space>,
+                       public DoesWork<Space>,
+                       public Commits<Space>,
+                       public Persists,
+                       public DependsOnTime {
  public:
   DeadLoad(const Part& part, PlacedLoad placed, Kinematics kinematics)
       : load_(std::move(placed.load)), part_(part), linear_(kinematics == Kinematics::linear) {
@@ -34,8 +39,11 @@ class DeadLoad final : public Force<Space> {
   }
 
   std::string_view name() const override { return "load"; }
+  Roles<Space> roles() override {
+    return {.tangent = this, .work = this, .commits = this, .persists = this, .time = this};
+  }
 
-  void add(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+  void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
     const Vec3<double> f = force(state.time), m = moment(state.time);
     for (const std::int32_t body : bodies_) {
       const auto b = static_cast<std::size_t>(body);
@@ -76,8 +84,6 @@ class DeadLoad final : public Force<Space> {
     }
     return true;
   }
-
-  double stiffness_bound(std::int32_t) const override { return 0; }
 
   /// Work over the step by the trapezoidal rule; moments on the rotation of the step.
   void commit(const State<Space>& state, double) override {

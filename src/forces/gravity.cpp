@@ -8,13 +8,11 @@ class Gravity final : public Force<Spatial> {
   Gravity(const Part& part, double acceleration) : part_(part), g_(acceleration) {}
 
   std::string_view name() const override { return "gravity"; }
-  void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) const override {
+  void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) override {
     for (std::int32_t b = 0; b < part_.owned; ++b)
       wrenches.of(static_cast<std::size_t>(b))[2] -=
           part_.bodies.mass[static_cast<std::size_t>(b)] * g_;
   }
-  bool add_tangent(const State<Spatial>&, Tangent<Spatial>&) const override { return false; }
-  double stiffness_bound(std::int32_t) const override { return 0; }
   /// Potential m g u_z, from the state at rest.
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;

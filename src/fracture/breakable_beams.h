@@ -43,8 +43,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
 
   /// Every beam goes through the same instructions, whatever its neighbours in a block: a block
   /// that gives way is added again as what damage leaves of it.
-  [[gnu::flatten]] void add(const State<Spatial>& state,
-                            Wrenches<Spatial>& wrenches) const override {
+  [[gnu::flatten]] void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     growing_.clear();
     const double* records = state.records.data();
     double* values = wrenches.values.data();
@@ -478,13 +477,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       kept_;  ///< in the order of their initiation; statics: at the last commit
   std::vector<std::int32_t> newly_broken_;  ///< since the last commit, local
   std::vector<std::array<std::int32_t, 2>> released_;
-  std::vector<ViscousBlock> viscous_;              ///< at the start of the last step
-  mutable std::vector<ViscousBlock> viscous_now_;  ///< a by-product of the last evaluation
-  mutable double power_before_ = 0;  ///< of viscous_ at the rates of the last evaluation [W]
+  std::vector<ViscousBlock> viscous_;      ///< at the start of the last step
+  std::vector<ViscousBlock> viscous_now_;  ///< a by-product of the last evaluation
+  double power_before_ = 0;                ///< of viscous_ at the rates of the last evaluation [W]
   const StrengthBlock unbreakable_{};
-  mutable BeamBlock<Frame> soft_block_;  ///< work space of soften()
-  mutable DashpotBlock soft_dashpots_;
-  mutable std::vector<Growth> growing_;      ///< a by-product of the last evaluation, no history
+  BeamBlock<Frame> soft_block_;  ///< work space of soften()
+  DashpotBlock soft_dashpots_;
+  std::vector<Growth> growing_;              ///< a by-product of the last evaluation, no history
   double dissipated_ = 0, kept_energy_ = 0;  ///< by the beams that this rank counts [J]
   double dt_ = 0;                            ///< the last step [s]
 };

@@ -271,11 +271,11 @@ void ImplicitRun<Space>::keep_books(double h) {
     numerical_loss_ += share;
   }
   for (std::size_t k = 0; k < forces_.losses.size(); ++k) {
-    Force<Space>& force = *model().forces()[k];
+    const Roles<Space> roles = model().forces()[k]->roles();
     if (forces_.losses[k].empty()) {
-      force.commit(state(), h);
+      if (roles.commits != nullptr) roles.commits->commit(state(), h);
     } else {
-      force.take_work(work(forces_before_.losses[k], forces_.losses[k]));
+      roles.work->take_work(work(forces_before_.losses[k], forces_.losses[k]));
     }
   }
   std::swap(forces_, forces_before_);
@@ -419,7 +419,7 @@ void ImplicitRun<Space>::persist_own(Archive& archive) {
 RunResult run_implicit(Model<Spatial>& model, const DynamicOptions& options,
                        const Observer<Spatial>& observer) {
   for (const auto& force : model.forces()) {
-    if (force->has_history())
+    if (const auto* role = force->roles().commits; role != nullptr && role->has_history())
       throw InputError("integrator: implicit cannot step force '" + std::string(force->name()) +
                        "': it remembers what happened, and Newton's trials have not happened "
                        "(integrator: explicit steps it)");

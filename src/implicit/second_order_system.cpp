@@ -28,7 +28,9 @@ SecondOrderSystem<Space>::SecondOrderSystem(Model<Space>& model, State<Space>& s
       accelerations_(values_) {
   for (std::int32_t b = 0; b < part_.owned; ++b) {
     double sum = 0;
-    for (const auto& force : model.forces()) sum += force->stiffness_bound(b);
+    for (const auto& force : model.forces()) {
+      if (const auto* role = force->roles().step) sum += role->stiffness_bound(b);
+    }
     stiffness_.push_back(sum);
   }
   for (std::size_t k = 0; k < owned_ * unknowns; ++k) {
@@ -231,9 +233,13 @@ void SecondOrderSystem<Space>::assemble(double time, Vec x, Vec v, Vec a, double
   const bool turning = model_.kinematics() != Kinematics::linear;
   if (turning) set_frames(*places, by_velocity);
   tangent_.weigh(1, frames_);
-  for (const auto& force : model_.forces()) (void)force->add_tangent(state_, tangent_);
+  for (const auto& force : model_.forces()) {
+    if (const auto* role = force->roles().tangent) (void)role->add_tangent(state_, tangent_);
+  }
   tangent_.weigh(by_velocity, velocity_frames_);
-  for (const auto& force : model_.forces()) force->add_damping(state_, tangent_);
+  for (const auto& force : model_.forces()) {
+    if (const auto* role = force->roles().damping) role->add_damping(state_, tangent_);
+  }
   tangent_.weigh(1, {});
   add_inertia(*places, *rates, *accelerations, by_velocity, by_acceleration);
   tangent_.end();
@@ -269,8 +275,11 @@ void SecondOrderSystem<Space>::forces(Vec v, Vec a, const Wrenches<Space>& wrenc
   }
   all.losses.resize(model_.forces().size());
   for (std::size_t k = 0; k < all.losses.size(); ++k) {
+    const auto* role = model_.forces()[k]->roles().damping;
+    if (role == nullptr) continue;
     std::fill(share_.values.begin(), share_.values.end(), 0.0);
-    if (model_.forces()[k]->add_losses(state_, share_)) put_in_frame(share_, all.losses[k]);
+    role->add_losses(state_, share_);
+    put_in_frame(share_, all.losses[k]);
   }
 }
 

@@ -154,7 +154,9 @@ template <class Space>
 std::vector<double> Model<Space>::ramp_ends() const {
   std::vector<double> ends;
   for (const PlacedBoundary& placed : boundaries_) ends.push_back(placed.boundary.ramp.seconds);
-  for (const auto& force : forces_) ends.push_back(force->time_dependent_until());
+  for (const auto& force : forces_) {
+    if (const auto* role = force->roles().time) ends.push_back(role->time_dependent_until());
+  }
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   if (!ends.empty() && ends.front() == 0) ends.erase(ends.begin());

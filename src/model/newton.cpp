@@ -27,7 +27,9 @@ template <class Space>
 double typical_stiffness(const Model<Space>& model) {
   double most = 0;
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
-    for (const auto& force : model.forces()) most = std::max(most, force->stiffness_bound(b));
+    for (const auto& force : model.forces()) {
+      if (const auto* role = force->roles().step) most = std::max(most, role->stiffness_bound(b));
+    }
   }
   most = largest_over_ranks(most, model.part().comm);
   return most > 0 ? most : 1.0;

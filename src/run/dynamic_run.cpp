@@ -27,7 +27,10 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
   double energy = 0;
   const double strain = 1e-12 * model.length_scale();
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
-    for (const auto& force : model.forces()) energy += force->stiffness_bound(b) * strain * strain;
+    for (const auto& force : model.forces()) {
+      if (const auto* role = force->roles().step)
+        energy += role->stiffness_bound(b) * strain * strain;
+    }
   }
   energy = sum_over_ranks(energy, model.part().comm);
   ledger_.set_floor(std::max(energy, std::numeric_limits<double>::min()));
@@ -145,7 +148,7 @@ void DynamicRun<Space>::persist(Archive& archive) {
                Space::record);
   for (std::size_t k = 0; k < model_.forces().size(); ++k) {
     archive.enter("force_" + std::to_string(k) + "_" + std::string(model_.forces()[k]->name()));
-    model_.forces()[k]->persist(archive);
+    if (auto* role = model_.forces()[k]->roles().persists) role->persist(archive);
   }
 }
 
@@ -301,11 +304,12 @@ bool DynamicRun<Space>::finish() {
 /// What forces have to say since the last look, in order of time, goes to the user. Collective.
 template <class Space>
 void DynamicRun<Space>::take_remarks() {
-  using Remark = typename Force<Space>::Remark;
   std::vector<double> times;
   std::vector<char> texts;  // each ended by a zero
   for (const auto& force : model_.forces()) {
-    for (const Remark& remark : force->take_remarks()) {
+    auto* role = force->roles().remarks;
+    if (role == nullptr) continue;
+    for (const Remark& remark : role->take_remarks()) {
       times.push_back(remark.time);
       texts.insert(texts.end(), remark.text.c_str(), remark.text.c_str() + remark.text.size() + 1);
     }

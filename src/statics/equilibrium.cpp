@@ -47,7 +47,9 @@ Equilibrium<Space>::Equilibrium(Model<Space>& model)
                tangent_options()) {
   for (std::int32_t b = 0; b < part_.owned; ++b) {
     double sum = 0;
-    for (const auto& force : model.forces()) sum += force->stiffness_bound(b);
+    for (const auto& force : model.forces()) {
+      if (const auto* role = force->roles().step) sum += role->stiffness_bound(b);
+    }
     stiffness_.push_back(sum);
   }
   extent_ = extent(part_);
@@ -149,7 +151,8 @@ void Equilibrium<Space>::assemble(std::span<const double> increments) {
   tangent_.begin(increments);
   constant_ = model_.kinematics() == Kinematics::linear && model_.fracture() == nullptr;
   for (const auto& force : model_.forces()) {
-    const bool has_tangent = force->add_tangent(state_, tangent_);
+    const auto* role = force->roles().tangent;
+    const bool has_tangent = role != nullptr && role->add_tangent(state_, tangent_);
     if (force.get() != model_.beams() && has_tangent) constant_ = false;
   }
   tangent_.end();
@@ -380,7 +383,9 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
   }
   fill_residual(f_);
   audit("a load step");
-  for (const auto& force : model_.forces()) force->commit(state_, time - before.state.time);
+  for (const auto& force : model_.forces()) {
+    if (auto* role = force->roles().commits) role->commit(state_, time - before.state.time);
+  }
   return true;
 }
 
@@ -465,7 +470,9 @@ void Equilibrium<Space>::assemble_out_of_plane(const OutOfPlane& rest) {
                              tangent_.matrix(), z_rx_ry);
     const State<Spatial> all = in_space(state_, false);
     tangent.begin();
-    for (const auto& force : rest.forces) (void)force->add_tangent(all, tangent);
+    for (const auto& force : rest.forces) {
+      if (const auto* role = force->roles().tangent) (void)role->add_tangent(all, tangent);
+    }
     tangent.end();
     ++assemblies_;
     on_factorisation_();

@@ -19,7 +19,9 @@ const Part& with_shapes(const Part& part) {
 /// moments of both are in Submerged): force rho g V, moment rho g (m_y, -m_x, 0), m = int_V r dV,
 /// and by Reynolds' theorem
 ///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA   for a spin t.
-class Buoyancy final : public Force<Spatial> {
+class Buoyancy final : public Force<Spatial>,
+                       public HasTangent<Spatial>,
+                       public LimitsStep<Spatial> {
  public:
   Buoyancy(const Part& part, double weight_density)
       : part_(part),
@@ -28,9 +30,9 @@ class Buoyancy final : public Force<Spatial> {
         weight_(weight_density) {}
 
   std::string_view name() const override { return "buoyancy"; }
+  Roles<Spatial> roles() override { return {.tangent = this, .step = this}; }
 
-  [[gnu::flatten]] void add(const State<Spatial>& state,
-                            Wrenches<Spatial>& wrenches) const override {
+  [[gnu::flatten]] void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     const Lanes zero(0.0);
     for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
       const BlockMotion m = block_motion<false>(immersion_, state, block);

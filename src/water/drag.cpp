@@ -100,7 +100,13 @@ class WettedBodies<Planar> {
 /// body loses, to rounding. The first half is a by-product of evaluation; a report at t_n counts
 /// it, commit adds the second half.
 template <class Space>
-class Drag final : public Force<Space> {
+class Drag final : public Force<Space>,
+                   public HasTangent<Space>,
+                   public Damps<Space>,
+                   public DoesWork<Space>,
+                   public LimitsStep<Space>,
+                   public Commits<Space>,
+                   public Persists {
  public:
   Drag(const Part& part, const DragOptions& options)
       : part_(part),
@@ -112,9 +118,18 @@ class Drag final : public Force<Space> {
         forces_(static_cast<std::size_t>(part.owned)) {}
 
   std::string_view name() const override { return "drag"; }
+  Roles<Space> roles() override {
+    return {.tangent = this,
+            .damping = this,
+            .work = this,
+            .step = this,
+            .commits = this,
+            .persists = this};
+  }
 
-  void add(const State<Space>& state, Wrenches<Space>& wrenches) const override {
-    quadratic_ ? add<true>(state, wrenches) : add<false>(state, wrenches);
+  void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
+    power_ = quadratic_ ? add<true>(state, wrenches, forces_.data())
+                        : add<false>(state, wrenches, forces_.data());
   }
   /// F goes with the submerged volume: nothing symmetric, and little beside buoyancy's.
   bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
@@ -151,9 +166,8 @@ class Drag final : public Force<Space> {
       tangent.add_body(static_cast<std::int32_t>(b), c);
     }
   }
-  bool add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const override {
-    add(state, wrenches);
-    return true;
+  void add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const override {
+    (void)(quadratic_ ? add<true>(state, wrenches, nullptr) : add<false>(state, wrenches, nullptr));
   }
   double stiffness_bound(std::int32_t) const override { return 0; }
 
@@ -197,11 +211,13 @@ class Drag final : public Force<Space> {
   }
 
  private:
+  /// Power on the bodies [W]. \param forces  filled, one per owned body; null: not wanted
   template <bool quadratic>
-  [[gnu::flatten]] void add(const State<Space>& state, Wrenches<Space>& wrenches) const {
+  [[gnu::flatten]] double add(const State<Space>& state, Wrenches<Space>& wrenches,
+                              std::array<double, 4>* forces) const {
     using std::sqrt;
     const Vec3<Lanes> current{current_.x, current_.y, current_.z};
-    power_ = 0;
+    double sum = 0;
     for (std::size_t block = 0; block < bodies_.blocks(); ++block) {
       const MovingBlock m = bodies_.block(state, block);
       const Vec3<Lanes> v = m.v - current;
@@ -214,10 +230,11 @@ class Drag final : public Force<Space> {
       scatter_four({force.x, force.y, force.z, Lanes(0.0)}, rows);
       for (std::size_t b = block * lanes; b < std::min((block + 1) * lanes, forces_.size()); ++b) {
         add_row(wrenches.of(b), rows[b % lanes]);
-        store_row(forces_[b].data(), rows[b % lanes]);
-        power_ += power[b % lanes];
+        if (forces != nullptr) store_row(forces[b].data(), rows[b % lanes]);
+        sum += power[b % lanes];
       }
     }
+    return sum;
   }
   /// Velocity of an owned body against the water, and the drag over it and over the area
   /// [N s/m^3].
@@ -234,11 +251,10 @@ class Drag final : public Force<Space> {
   Vec3<double> current_;
   double linear_, coefficient_;  ///< c [N s/m^3] and rho_w C_d/2 [N s^2/m^4]
   bool quadratic_;
-  mutable std::vector<std::array<double, 4>>
-      forces_;                ///< of the last evaluation [N], padded; a by-product
-  mutable double power_ = 0;  ///< of the last evaluation [W]; a by-product
-  double lost_ = 0;           ///< [J]
-  double last_dt_ = 0;        ///< of the step that led to the last state [s]
+  std::vector<std::array<double, 4>> forces_;  ///< of the last evaluation [N], padded
+  double power_ = 0;                           ///< of the last evaluation [W]
+  double lost_ = 0;                            ///< [J]
+  double last_dt_ = 0;                         ///< of the step that led to the last state [s]
 };
 
 }  // namespace

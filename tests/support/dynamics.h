@@ -13,6 +13,7 @@
 #include "explicit/planar_leapfrog_stepper.h"
 #include "scene/build.h"
 #include "support/frames.h"
+#include "support/roles.h"
 
 namespace floe::test {
 
@@ -48,7 +49,7 @@ class DynamicsIn {
   /// As a checkpoint finds the forces: the next evaluation is yet to come.
   double step_without_evaluation() {
     const double largest = motion_.step(state_, wrenches_, dt_);
-    for (const auto& force : model_.forces()) force->commit(state_, dt_);
+    for (const auto& force : model_.forces()) commit(*force, state_, dt_);
     return largest;
   }
   void steps(long count) {

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "forces/force.h"
+#include "support/roles.h"
 #include "support/states.h"
 
 namespace floe::test {
@@ -52,7 +53,7 @@ inline Dense tangent_of(const Force<Spatial>& force, const Part& part, const Sta
   const std::vector<std::uint8_t> held(static_cast<std::size_t>(part.local), 0);
   Tangent<Spatial> tangent(part, held, 1.0, 0.0, options);
   tangent.begin();
-  (void)force.add_tangent(state, tangent);
+  (void)add_tangent(force, state, tangent);
   tangent.end();
   return dense(tangent.matrix());
 }

@@ -8,6 +8,7 @@
 #include "floe/base/petsc.h"
 #include "fracture/fracture.h"
 #include "support/frames.h"
+#include "support/roles.h"
 #include "support/states.h"
 
 namespace floe::test {
@@ -61,7 +62,7 @@ class OneBeam {
       for (std::size_t k = 0; k < 6; ++k)
         work -= 0.5 * (before.of(b)[k] + wrenches_.of(b)[k]) * dt * rate(b, k);
     }
-    force->commit(state_, dt);
+    commit(*force, state_, dt);
     state_.time += dt;
   }
   /// Statics: to the given strains, damage following.
@@ -70,7 +71,7 @@ class OneBeam {
     while (fracture->advance(state_) != Advance::none) {
     }
     evaluate();
-    force->commit(state_, 1);
+    commit(*force, state_, 1);
   }
   void evaluate() {
     std::fill(wrenches_.values.begin(), wrenches_.values.end(), 0.0);

@@ -14,6 +14,7 @@
 #include "run/checkpoint.h"
 #include "scene/build.h"
 #include "support/lattices.h"
+#include "support/roles.h"
 
 namespace floe::test {
 namespace {
@@ -246,7 +247,7 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
     return [&model](Archive& archive) {
       for (std::size_t k = 0; k < model.forces().size(); ++k) {
         archive.enter("force_" + std::to_string(k));
-        model.forces()[k]->persist(archive);
+        if (auto* role = model.forces()[k]->roles().persists) role->persist(archive);
       }
     };
   };
@@ -263,7 +264,7 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
     }
     state.time = 0.1 * step;
     which.evaluate(state, wrenches);
-    for (const auto& force : which.forces()) force->commit(state, 0.1);
+    for (const auto& force : which.forces()) commit(*force, state, 0.1);
   };
   for (int step = 1; step <= 3; ++step) move(*model, step);
   Checkpoints(kept.options, model->part()).save(persist_forces(*model));

@@ -144,7 +144,7 @@ TEST(ContactStart, StepIsLimitedBySpeedsAgainstTheLeastWidth) {
   test::append_block(lattice, {1, 1, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0, 0, -50});
   const auto limit = [&] {
     Asked asked(scene, lattice);
-    return asked.force().step_limit(asked.dynamics.state());
+    return asked.force().roles().step->step_limit(asked.dynamics.state());
   };
   EXPECT_NEAR(limit().dt, 0.1 * 0.05 / 100, 1e-12);  // two bodies as fast may meet
   EXPECT_NE(limit().reason.find("body 0"), std::string::npos);
@@ -165,10 +165,10 @@ TEST(ContactStart, BodyPressedThroughAPlateIsSaid) {
     test::append_block(lattice, {1, 1, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0, 0, -5});
     Asked asked(scene, lattice);
     test::start(asked.dynamics, young < 1e9 ? 0.005 : 0.5);
-    std::vector<Force<Spatial>::Remark> remarks;
+    std::vector<Remark> remarks;
     while (asked.dynamics.state().time < 0.05) {
       (void)asked.dynamics.step();
-      for (const auto& remark : asked.force().take_remarks()) remarks.push_back(remark);
+      for (const auto& remark : asked.force().roles().remarks->take_remarks()) remarks.push_back(remark);
     }
     if (young > 1e9) {
       EXPECT_TRUE(remarks.empty());

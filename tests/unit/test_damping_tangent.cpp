@@ -7,6 +7,7 @@
 #include "beams/beam_force.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "support/roles.h"
 #include "water/drag.h"
 
 namespace floe {
@@ -67,7 +68,7 @@ Dense damping_of(const Force<Spatial>& force, const Part& part, const State<Spat
   Tangent<Spatial> tangent(part, held, 1.0, 0.0, options);
   tangent.begin();
   tangent.weigh(factor, frames);
-  force.add_damping(state, tangent);
+  add_damping(force, state, tangent);
   tangent.end();
   return test::dense(tangent.matrix());
 }
@@ -112,7 +113,7 @@ TEST(DampingTangent, LossesAreWhatVelocitiesAdd) {
     // Drag has no other part; with a current it acts on a body at rest too.
     if (force->name() == "drag") std::fill(without.begin(), without.end(), 0.0);
     Wrenches<Spatial> losses(static_cast<std::size_t>(m.part.local));
-    ASSERT_TRUE(force->add_losses(m.state, losses));
+    ASSERT_TRUE(add_losses(*force, m.state, losses));
     double scale = 0;
     for (std::size_t k = 0; k < with.size(); ++k) scale = std::max(scale, std::abs(with[k]));
     for (std::size_t k = 0; k < with.size(); ++k)

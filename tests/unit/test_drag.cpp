@@ -9,6 +9,7 @@
 #include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "support/roles.h"
 #include "water/buoyancy.h"
 #include "water/immersion.h"
 
@@ -75,7 +76,7 @@ TEST(Drag, LosesForceTimesWay) {
     const State<Spatial> before = m.state;
     for (std::int32_t b = 0; b < m.part.owned; ++b)
       for (std::size_t k = 7; k < 10; ++k) m.state.record(static_cast<std::size_t>(b))[k] *= 0.9;
-    drag->commit(m.state, dt);
+    commit(*drag, m.state, dt);
     for (std::size_t b = 0; b < static_cast<std::size_t>(m.part.owned); ++b)
       for (std::size_t k = 0; k < 3; ++k)
         expected -=

@@ -7,6 +7,7 @@
 #include "support/force_checks.h"
 #include "support/lattices.h"
 #include "support/planar.h"
+#include "support/roles.h"
 #include "water/drag.h"
 
 namespace floe {
@@ -67,8 +68,8 @@ TEST(PlanarForces, BeamsInLanes) {
           EXPECT_LT(difference(w, expected, local), 1e-13 + rounding)
               << damping << ' ' << common << ' ' << turn;
           if (damping > 0) {
-            EXPECT_LT(planar->power(state), 0);
-            EXPECT_NEAR(planar->power(state) / spatial->power(full), 1, 1e-12);
+            EXPECT_LT(power(*planar, state), 0);
+            EXPECT_NEAR(power(*planar, state) / power(*spatial, full), 1, 1e-12);
           }
           expect_same_report(*planar, state, *spatial, full, 1e-12 + rounding);
           EXPECT_EQ(planar->folded(state), spatial->folded(full));
@@ -92,10 +93,10 @@ TEST(PlanarForces, FastestRateOfBeams) {
   const auto spatial = make_beam_force<Spatial>(part, options);
   const State<Planar> rest(static_cast<std::size_t>(part.local));
   const State<Planar> state = deformed_in_plane(part, 0.5, 0.1, 2.0);
-  const auto rate = planar->rate_estimate(state);
+  const auto rate = rate_estimate(*planar, state);
   ASSERT_TRUE(rate.has_value());
-  EXPECT_NEAR(*rate / spatial->rate_estimate(in_space(state, false)).value(), 1, 1e-12);
-  EXPECT_GT(*rate, 1.05 * planar->rate_estimate(rest).value());
+  EXPECT_NEAR(*rate / rate_estimate(*spatial, in_space(state, false)).value(), 1, 1e-12);
+  EXPECT_GT(*rate, 1.05 * rate_estimate(*planar, rest).value());
   EXPECT_FALSE(make_beam_force<Planar>(part, {Shear::one_point, Kinematics::linear, 0})
                    ->rate_estimate(state)
                    .has_value());
@@ -124,10 +125,10 @@ TEST(PlanarForces, Tangents) {
     Tangent<Spatial> spatial(part, held, 1.0, 0.0, options);
     planar.begin();
     spatial.begin();
-    (void)beams->add_tangent(state, planar);
-    (void)push->add_tangent(state, planar);
-    (void)spatial_beams->add_tangent(full, spatial);
-    (void)spatial_push->add_tangent(full, spatial);
+    (void)add_tangent(*beams, state, planar);
+    (void)add_tangent(*push, state, planar);
+    (void)add_tangent(*spatial_beams, full, spatial);
+    (void)add_tangent(*spatial_push, full, spatial);
     planar.end();
     spatial.end();
     const test::Dense mine = test::dense(planar.matrix()), all = test::dense(spatial.matrix());
@@ -162,9 +163,9 @@ TEST(PlanarForces, Loads) {
         planar->add(state, w);
         spatial->add(full, expected);
         EXPECT_LT(difference(w, expected, local), 1e-15);
-        EXPECT_NEAR(planar->power(state) / spatial->power(full), 1, 1e-13);
-        planar->commit(state, 0.1);
-        spatial->commit(full, 0.1);
+        EXPECT_NEAR(power(*planar, state) / power(*spatial, full), 1, 1e-13);
+        commit(*planar, state, 0.1);
+        commit(*spatial, full, 0.1);
         expect_same_report(*planar, state, *spatial, full);
       }
     }
@@ -185,8 +186,8 @@ TEST(PlanarForces, Drag) {
     planar->add(state, w);
     spatial->add(full, expected);
     EXPECT_LT(difference(w, expected, local), 1e-14);
-    planar->commit(state, 0.1);
-    spatial->commit(full, 0.1);
+    commit(*planar, state, 0.1);
+    commit(*spatial, full, 0.1);
     expect_same_report(*planar, state, *spatial, full);
   }
 }

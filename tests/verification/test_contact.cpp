@@ -7,6 +7,7 @@
 
 #include "support/contact_scene.h"
 #include "support/record.h"
+#include "support/roles.h"
 
 namespace floe {
 namespace {
@@ -271,7 +272,7 @@ TEST(Contact, ThatIsBornWhenABeamBreaksHasNoEnergy) {
   const std::array<std::int32_t, 2> pair{0, 1};
   contact->release({&pair, 1});
   EXPECT_EQ(force(), 0);
-  contact->commit(state, 1e-3);
+  commit(*contact, state, 1e-3);
   EXPECT_EQ(force(), 0);
   state.record(1)[0] = -0.01;  // nearer than they were born
   EXPECT_NEAR(force(), -young * 0.01, 1e-6 * young);

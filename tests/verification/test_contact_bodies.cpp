@@ -14,6 +14,7 @@
 #include "support/dynamics.h"
 #include "support/lattices.h"
 #include "support/record.h"
+#include "support/roles.h"
 
 namespace floe {
 namespace {
@@ -208,7 +209,7 @@ TEST(ContactOfBrokenBeams, TouchAlsoInsideABlockOfSeveralLayers) {
   const std::array<std::int32_t, 2> pair{below, above};
   contact->release({&pair, 1});
   EXPECT_NEAR(force(), 0, 1e-6);
-  contact->commit(state, 1e-3);
+  commit(*contact, state, 1e-3);
   state.record(static_cast<std::size_t>(above))[2] = -0.01;
   EXPECT_NEAR(force(), young * 0.01, 1e-3 * young * 0.01);
 }
