@@ -54,7 +54,9 @@ class Case {
   void step() {
     model.evaluate(state, wrenches);
     benchmark::DoNotOptimize(motion.step(state, wrenches, dt));
-    for (const auto& force : model.forces()) commit(*force, state, dt);
+    for (const auto& force : model.forces()) {
+      if (auto* role = force->roles().commits) role->commit(state, dt);
+    }
   }
 
   static constexpr double dt = 1e-5;

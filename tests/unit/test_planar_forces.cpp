@@ -97,9 +97,8 @@ TEST(PlanarForces, FastestRateOfBeams) {
   ASSERT_TRUE(rate.has_value());
   EXPECT_NEAR(*rate / rate_estimate(*spatial, in_space(state, false)).value(), 1, 1e-12);
   EXPECT_GT(*rate, 1.05 * rate_estimate(*planar, rest).value());
-  EXPECT_FALSE(make_beam_force<Planar>(part, {Shear::one_point, Kinematics::linear, 0})
-                   ->rate_estimate(state)
-                   .has_value());
+  const auto linear = make_beam_force<Planar>(part, {Shear::one_point, Kinematics::linear, 0});
+  EXPECT_FALSE(rate_estimate(*linear, state).has_value());
 }
 
 /// The planar tangent is the in-plane part of the spatial one, in every storage.
