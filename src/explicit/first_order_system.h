@@ -5,7 +5,7 @@
 /// Of a rank, y holds 13 numbers per owned body,
 ///   u' = v,  q' = (0, omega) q / 2,  v' = F/m,  L' = tau,   omega = R I^-1 R^T L,
 /// (u displacement, q rotation from rest, L angular momentum in the world, R the principal axes),
-/// and after them integrals of this rank's powers: one per force (Force::power), and the
+/// and after them integrals of this rank's powers: one per force (DoesWork::power), and the
 /// boundaries'.
 ///
 /// Prescribed components are not integrated: at every stage they are what the boundary says at its
