@@ -228,7 +228,7 @@ MESSAGES = [
      "::evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const {",
      [("force->add(", FORCES, FORCES, "add(): beams, water, loads ...")]),
     ("src/contact_force/contact.cpp",
-     "void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) const override {",
+     "void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {",
      [("contacts_.changed()", FORCES, CONTACT, "add(), the last force"),
       ("expiry_.is_due(", CONTACT, CONTACT, "is the list of pairs too old? *"),
       ("build(state)", CONTACT, CONTACT, "a new list of pairs, if due *"),
@@ -242,7 +242,7 @@ MESSAGES = [
     (STEP_FILE, STEP_AT, [
         ("keep_step_stable(ts)", STEP, STEP, "keep_step_stable(): a new|stable step, if due *"),
         ("motion_.step(", STEP, MOTION, "step(): kick and drift of owned bodies"),
-        ("force->commit(", STEP, FORCES, "commit(): history of damage and energies"),
+        ("commits) role->commit(", STEP, FORCES, "commit(): history of damage and energies"),
     ]),
     ("src/contact_force/contact.cpp",
      "void commit(const State<Spatial>& state, double dt) override {",

@@ -10,11 +10,11 @@
 namespace floe {
 
 /// The stable step is found at the beginning and again, as often as that costs 1 % of the steps. It
-/// is found at once where the forces' own fastest rates (LimitsStep::rate_estimate), looked at with each
-/// sample, have grown so far that it may have fallen below what dt needs. `dt: auto` needs it where
-/// half of what `safety` leaves is used up, and takes shorter steps from there on; a given step
-/// ends the run when it is no longer stable. A run whose stable step does not fall so far goes on
-/// as if nobody had looked, to the last bit.
+/// is found at once where the forces' own fastest rates (LimitsStep::rate_estimate), looked at with
+/// each sample, have grown so far that it may have fallen below what dt needs. `dt: auto` needs it
+/// where half of what `safety` leaves is used up, and takes shorter steps from there on; a given
+/// step ends the run when it is no longer stable. A run whose stable step does not fall so far goes
+/// on as if nobody had looked, to the last bit.
 template <class Space>
 class ExplicitRun : public DynamicRun<Space> {
  public:

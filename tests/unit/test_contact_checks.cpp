@@ -168,7 +168,8 @@ TEST(ContactStart, BodyPressedThroughAPlateIsSaid) {
     std::vector<Remark> remarks;
     while (asked.dynamics.state().time < 0.05) {
       (void)asked.dynamics.step();
-      for (const auto& remark : asked.force().roles().remarks->take_remarks()) remarks.push_back(remark);
+      for (const auto& remark : asked.force().roles().remarks->take_remarks())
+        remarks.push_back(remark);
     }
     if (young > 1e9) {
       EXPECT_TRUE(remarks.empty());
