@@ -207,23 +207,24 @@ def draw_stages():
 
 
 # -- one step of leapfrog --------------------------------------------------------------------------
-TS, STEP, RUN, FORCES, CONTACT, MOTION, OUT = range(7)
-ACTORS = {TS: ("TS leapfrog", "explicit"), STEP: ("LeapfrogRun", "explicit"),
-          RUN: ("DynamicRun", "run"), FORCES: ("Model, its forces", "model, forces, ..."),
-          CONTACT: ("Contact", "contact_force"), MOTION: ("Motion", "explicit"),
-          OUT: ("Observer, disk", "output")}
+TS, LEAPFROG, RUN, STEP, FORCES, CONTACT, OUT = range(7)
+ACTORS = {TS: ("TS leapfrog", "explicit"), LEAPFROG: ("LeapfrogRun", "explicit"),
+          RUN: ("DynamicRun", "run"), STEP: ("ExplicitStep", "explicit/step.h"),
+          FORCES: ("Model, its forces", "model, forces, ..."),
+          CONTACT: ("Contact", "contact_force"), OUT: ("Observer, disk", "output")}
 STEP_FILE, STEP_AT = "src/explicit/explicit.cpp", "  bool step(TS ts) {"
 # Words in the step that are no calls worth a message.
-QUIET = {"if", "for", "done", "state", "wrenches", "dt", "model", "forces", "next_time"}
+QUIET = {"done", "dt", "if", "next_time"}
 # file, first line of the function, then per message: its text there, from, to, words on the picture
 # ("|" begins a second line, "*" says that ranks exchange messages).
+SEAM = "src/explicit/step.h"
 MESSAGES = [
     ("src/explicit/leapfrog.cpp", "PetscErrorCode step(TS ts) noexcept {",
-     [("work(ts->time_step)", TS, STEP, "step()")]),
-    (STEP_FILE, STEP_AT, [("evaluate()", STEP, RUN, "evaluate(), not in step 0")]),
-    ("src/run/dynamic_run.cpp", "void DynamicRun<Space>::evaluate() {",
-     [("ghosts.update(", RUN, RUN, "ghosts' records *"),
-      ("model_.evaluate(", RUN, FORCES, "evaluate(state at t_n)")]),
+     [("work(ts->time_step)", TS, LEAPFROG, "step()")]),
+    (STEP_FILE, STEP_AT, [("step_.evaluate()", LEAPFROG, STEP, "evaluate(), not in step 0")]),
+    (SEAM, "  void evaluate() {",
+     [("ghosts.update(", STEP, STEP, "ghosts' records *"),
+      ("model_.evaluate(", STEP, FORCES, "evaluate(state at t_n)")]),
     ("src/model/model.cpp",
      "::evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const {",
      [("force->add(", FORCES, FORCES, "add(): beams, water, loads ...")]),
@@ -234,25 +235,29 @@ MESSAGES = [
       ("build(state)", CONTACT, CONTACT, "a new list of pairs, if due *"),
       ("halo_.gather(", CONTACT, CONTACT, "records of bodies in pairs *"),
       ("balance_.evaluate(", CONTACT, CONTACT, "overlaps, laws, wrenches *")]),
-    (STEP_FILE, STEP_AT, [("sample_if_due()", STEP, RUN, "sample_if_due()")]),
+    (STEP_FILE, STEP_AT, [("sample_if_due()", LEAPFROG, RUN, "sample_if_due()")]),
     ("src/run/dynamic_run.cpp", "bool DynamicRun<Space>::sample(bool last) {",
      [("model_.report(", RUN, FORCES, "report(): energies *"),
       ("ledger_.take(", RUN, RUN, "energy balance, its limit"),
       ("observer_(", RUN, OUT, "row of history.csv, frame *")]),
     (STEP_FILE, STEP_AT, [
-        ("keep_step_stable(ts)", STEP, STEP, "keep_step_stable(): a new|stable step, if due *"),
-        ("motion_.step(", STEP, MOTION, "step(): kick and drift of owned bodies"),
-        ("commits) role->commit(", STEP, FORCES, "commit(): history of damage and energies"),
-    ]),
+        ("keep_step_stable(ts)", LEAPFROG, LEAPFROG,
+         "keep_step_stable(): a new|stable step, if due *"),
+        ("step_.advance(", LEAPFROG, STEP, "advance(): kick and drift of owned bodies"),
+        ("step_.commit(", LEAPFROG, STEP, "commit()")]),
+    (SEAM, "  void commit(double dt) {",
+     [("role->commit(", STEP, FORCES, "commit(): history of damage and energies")]),
     ("src/contact_force/contact.cpp",
      "void commit(const State<Spatial>& state, double dt) override {",
      [("halo_.gather(", FORCES, CONTACT, "commit(): records again *"),
       ("contacts_.commit(", CONTACT, CONTACT, "friction, crushing, work"),
       ("watch_obstacles(", CONTACT, CONTACT, "peaks on obstacles *")]),
+    (STEP_FILE, STEP_AT, [("step_.release()", LEAPFROG, STEP, "release()")]),
+    (SEAM, "  void release() {",
+     [("role->release(", STEP, CONTACT, "release(pairs whose beam broke) *")]),
     (STEP_FILE, STEP_AT, [
-        ("release_broken()", STEP, CONTACT, "release(pairs whose beam broke) *"),
-        ("moved(", STEP, RUN, "moved(): t_n+1; every 100 steps|the velocity limit *"),
-        ("look_around()", STEP, RUN, "look_around()")]),
+        ("moved(", LEAPFROG, RUN, "moved(): t_n+1; every 100 steps|the velocity limit *"),
+        ("look_around()", LEAPFROG, RUN, "look_around()")]),
     ("src/run/dynamic_run.cpp", "bool DynamicRun<Space>::look_around() {",
      [("checkpoints_.wish(", RUN, RUN, "is a stop or a checkpoint due? *"),
       ("save()", RUN, OUT, "checkpoint, if due *")]),

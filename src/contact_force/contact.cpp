@@ -23,6 +23,7 @@ class DistributedContact final : public Contact,
                                  public LimitsStep<Spatial>,
                                  public Commits<Spatial>,
                                  public Persists,
+                                 public TakesBrokenPairs,
                                  public Remarks {
  public:
   DistributedContact(const Part& part, const Lattice& lattice, const ContactOptions& options,
@@ -44,7 +45,7 @@ class DistributedContact final : public Contact,
 
   std::string_view name() const override { return "contact"; }
   Roles<Spatial> roles() override {
-    return {.step = this, .commits = this, .persists = this, .remarks = this};
+    return {.step = this, .commits = this, .persists = this, .broken_pairs = this, .remarks = this};
   }
   bool has_history() const override { return true; }
 

@@ -15,9 +15,6 @@ namespace floe {
 
 class Contact : public Force<Spatial> {
  public:
-  /// Beams are broken: their bodies (global indices) may touch from the next evaluation on, without
-  /// an energy. Collective; each rank may name pairs of its own.
-  virtual void release(std::span<const std::array<std::int32_t, 2>> pairs) = 0;
   /// What overlaps in the state at rest: a line for the user, empty if nothing does by more than
   /// 1e-3 of a size. The same on all ranks.
   virtual const std::string& overlap_at_start() const = 0;

@@ -1,13 +1,10 @@
 #include "explicit/explicit.h"
 
-#include "base/collectives.h"
-#include "contact_force/contact.h"
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
 #include "explicit/leapfrog.h"
-#include "explicit/planar_leapfrog_stepper.h"
 #include "explicit/stable_step.h"
-#include "fracture/fracture.h"
+#include "explicit/step.h"
 
 namespace floe {
 namespace {
@@ -19,64 +16,48 @@ class LeapfrogRun final : public ExplicitRun<Space> {
 
  public:
   LeapfrogRun(Model<Space>& model, const ExplicitOptions& options, const Observer<Space>& observer)
-      : Base(ts_leapfrog, model, options, observer), motion_(model) {
+      : Base(ts_leapfrog, model, options, observer), step_(model, this->state(), this->wrenches()) {
     this->result().stepper = ts_leapfrog;
-    for (const auto& force : model.forces()) {
-      if (auto* contact = dynamic_cast<Contact*>(force.get())) contact_ = contact;
-    }
-    motion_.start(this->state(), model.part().bodies.velocity,
-                  model.part().bodies.angular_velocity);
-    this->evaluate();
+    step_.start();
   }
 
   void begin() {
     this->choose_step();
-    motion_.stagger(this->state(), this->wrenches(), this->dt());
+    step_.stagger(this->dt());
     this->model().part().ghosts.update(this->state().records, Space::record);
   }
 
   /// The forces at t_n are known: samples that are due see them, then bodies move to t_n+1.
   bool step(TS ts) {
-    if (this->done() > 0) this->evaluate();
+    if (this->done() > 0) step_.evaluate();
     if (!this->sample_if_due()) return false;
     if (!this->keep_step_stable(ts)) return false;
-    const double speed2 = motion_.step(this->state(), this->wrenches(), this->dt());
-    for (const auto& force : this->model().forces()) {
-      if (auto* role = force->roles().commits) role->commit(this->state(), this->dt());
-    }
-    release_broken();
+    const double speed2 = step_.advance(this->dt());
+    step_.commit(this->dt());
+    step_.release();
     return this->moved(this->next_time(), speed2) && this->look_around();
   }
 
  private:
-  /// Bodies whose beam broke in this step may touch from now on.
-  void release_broken() {
-    if (contact_ == nullptr || this->model().fracture() == nullptr) return;
-    const auto pairs = this->model().fracture()->released();
-    if (on_any_rank(!pairs.empty(), this->model().part().comm)) contact_->release(pairs);
-  }
   StableStep find_stable_step() override {
     const StableStep stable = stable_step(this->model(), this->state());
     this->evaluate();  // forces keep by-products of their last evaluation: the power they take
     return stable;
   }
   /// Velocities lag half of the next step.
-  void step_changed(TS, double before) override {
-    motion_.stagger(this->state(), this->wrenches(), this->dt() - before);
-  }
+  void step_changed(TS, double before) override { step_.stagger(this->dt() - before); }
   typename Base::Energies energies() const override {
-    const auto [kinetic, boundary] = motion_.energies(this->state(), this->wrenches(), this->dt());
+    const auto [kinetic, boundary] = step_.energies(this->dt());
     return {kinetic, boundary};
   }
   void persist_own(Archive& archive) override {
     Base::persist_own(archive);
-    double work = motion_.boundary_work();
+    double work = step_.boundary_work();
     archive.share("boundary_work", work);
-    motion_.set_boundary_work(work);
+    step_.set_boundary_work(work);
   }
 
-  LeapfrogStepperOf<Space> motion_;
-  Contact* contact_ = nullptr;  ///< if the scene has it
+  ExplicitStep<Space> step_;
 };
 
 template <class Space>

@@ -2,9 +2,11 @@
 /// What every force does, and the roles that some have and integrators ask for.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -136,6 +138,18 @@ class DependsOnTime {
   ~DependsOnTime() = default;
 };
 
+/// A force that acts between bodies once no beam joins them any more.
+class TakesBrokenPairs {
+ public:
+  /// Makes pairs whose beam broke eligible from the next evaluation on; their present overlap
+  /// counts as stress-free. Collective; each rank may name pairs of its own. \param pairs  global
+  /// bodies
+  virtual void release(std::span<const std::array<std::int32_t, 2>> pairs) = 0;
+
+ protected:
+  ~TakesBrokenPairs() = default;
+};
+
 /// Something that a user must hear of once, as a body that passes through another.
 struct Remark {
   double time = 0;  ///< [s]
@@ -160,6 +174,7 @@ struct Roles {
   LimitsStep<Space>* step = nullptr;
   Commits<Space>* commits = nullptr;
   Persists* persists = nullptr;
+  TakesBrokenPairs* broken_pairs = nullptr;
   DependsOnTime* time = nullptr;
   Remarks* remarks = nullptr;
 };

@@ -371,7 +371,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
 
   /// A block with a beam that is damaged or may become so: what this state's damage leaves of it.
   [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
-                                                         const State<Spatial>& state) const {
+                                                         const State<Spatial>& state) {
     const Lanes s2 = criterion_of(b, state);
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {

@@ -131,6 +131,7 @@ class DynamicRun {
   const std::string& dt_key() const { return dt_key_; }
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
+  Wrenches<Space>& wrenches() { return wrenches_; }
   RunResult& result() { return result_; }
 
   /// All forces at the state.

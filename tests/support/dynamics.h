@@ -1,5 +1,5 @@
 /// \file
-/// A lattice in motion, stepped from outside: what run_explicit does, without samples and limits.
+/// A lattice in motion, stepped from outside: the step of run_explicit, without samples and limits.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,9 @@
 #include <string>
 
 #include "explicit/explicit.h"
-#include "explicit/planar_leapfrog_stepper.h"
+#include "explicit/step.h"
 #include "scene/build.h"
 #include "support/frames.h"
-#include "support/roles.h"
 
 namespace floe::test {
 
@@ -22,12 +21,11 @@ template <class Space>
 class DynamicsIn {
  public:
   DynamicsIn(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
-      : model_(lattice, comm, scene.boundaries), motion_(with_forces(scene, lattice, model_)) {
-    const auto local = static_cast<std::size_t>(model_.part().local);
-    state_ = State<Space>(local);
-    wrenches_ = Wrenches<Space>(local);
-    motion_.start(state_, model_.part().bodies.velocity, model_.part().bodies.angular_velocity);
-    evaluate();
+      : model_(lattice, comm, scene.boundaries),
+        state_(static_cast<std::size_t>(model_.part().local)),
+        wrenches_(static_cast<std::size_t>(model_.part().local)),
+        step_(with_forces(scene, lattice, model_), state_, wrenches_) {
+    step_.start();
   }
   DynamicsIn(const DynamicsIn&) = delete;
   DynamicsIn& operator=(const DynamicsIn&) = delete;
@@ -35,7 +33,7 @@ class DynamicsIn {
   /// To be called once, before the first step.
   void set_step(double dt) {
     dt_ = dt;
-    motion_.stagger(state_, wrenches_, dt_);
+    step_.stagger(dt_);
     evaluate();
   }
   /// The state is that of another run after set_step(dt).
@@ -48,8 +46,9 @@ class DynamicsIn {
   }
   /// As a checkpoint finds the forces: the next evaluation is yet to come.
   double step_without_evaluation() {
-    const double largest = motion_.step(state_, wrenches_, dt_);
-    for (const auto& force : model_.forces()) commit(*force, state_, dt_);
+    const double largest = step_.advance(dt_);
+    step_.commit(dt_);
+    step_.release();
     return largest;
   }
   void steps(long count) {
@@ -59,14 +58,11 @@ class DynamicsIn {
   Model<Space>& model() { return model_; }
   State<Space>& state() { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
-  const LeapfrogStepperOf<Space>& motion() const { return motion_; }
-  void evaluate() {
-    model_.part().ghosts.update(state_.records, Space::record);
-    model_.evaluate(state_, wrenches_);
-  }
+  void evaluate() { step_.evaluate(); }
 
-  double kinetic() const { return motion_.energies(state_, wrenches_, dt_).kinetic; }
-  std::array<double, 6> momentum() const { return motion_.momentum(state_, wrenches_, dt_); }
+  double boundary_work() const { return step_.boundary_work(); }
+  double kinetic() const { return step_.energies(dt_).kinetic; }
+  std::array<double, 6> momentum() const { return step_.momentum(dt_); }
   double reported(const std::string& name) const {
     for (const auto& [column, value] : model_.report(state_)) {
       if (column == name) return value;
@@ -76,17 +72,17 @@ class DynamicsIn {
 
  private:
   /// Forces first: water that bodies take along adds to what LeapfrogStepper moves.
-  static const Model<Space>& with_forces(const Scene& scene, const Lattice& lattice,
-                                         Model<Space>& model) {
+  static Model<Space>& with_forces(const Scene& scene, const Lattice& lattice,
+                                   Model<Space>& model) {
     add_forces(scene, place_loads(scene, lattice), model);
     add_contact(scene, lattice, model);
     return model;
   }
 
   Model<Space> model_;
-  LeapfrogStepperOf<Space> motion_;
   State<Space> state_;
   Wrenches<Space> wrenches_;
+  ExplicitStep<Space> step_;
   double dt_ = 0;
 };
 using Dynamics = DynamicsIn<Spatial>;

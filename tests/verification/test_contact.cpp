@@ -270,7 +270,7 @@ TEST(Contact, ThatIsBornWhenABeamBreaksHasNoEnergy) {
   };
   EXPECT_EQ(force(), 0);  // joined
   const std::array<std::int32_t, 2> pair{0, 1};
-  contact->release({&pair, 1});
+  contact->roles().broken_pairs->release({&pair, 1});
   EXPECT_EQ(force(), 0);
   commit(*contact, state, 1e-3);
   EXPECT_EQ(force(), 0);

@@ -207,7 +207,7 @@ TEST(ContactOfBrokenBeams, TouchAlsoInsideABlockOfSeveralLayers) {
   };
   EXPECT_EQ(force(), 0);
   const std::array<std::int32_t, 2> pair{below, above};
-  contact->release({&pair, 1});
+  contact->roles().broken_pairs->release({&pair, 1});
   EXPECT_NEAR(force(), 0, 1e-6);
   commit(*contact, state, 1e-3);
   state.record(static_cast<std::size_t>(above))[2] = -0.01;

@@ -244,7 +244,7 @@ TEST(Planar, DynamicsAreThoseOfSpace) {
                 .tolerance = 1e-9});
       }
       EXPECT_NEAR(planar.kinetic() / spatial.kinetic(), 1, 1e-9);
-      EXPECT_NEAR(planar.motion().boundary_work() / spatial.motion().boundary_work(), 1, 1e-9);
+      EXPECT_NEAR(planar.boundary_work() / spatial.boundary_work(), 1, 1e-9);
       for (const char* energy : {"energy_strain", "energy_external", "energy_drag"})
         EXPECT_NEAR(planar.reported(energy) / spatial.reported(energy), 1, 1e-9) << energy;
       EXPECT_NEAR(planar.reported("energy_damping"), spatial.reported("energy_damping"),
