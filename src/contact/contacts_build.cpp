@@ -4,14 +4,13 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/union_find.h"
 #include "contact/broad_phase.h"
 #include "contact/contacts.h"
 #include "contact/separation.h"
 
 namespace floe {
 namespace {
-
-double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 /// The least extent of a polyhedron along the normals of its faces [m]; infinite without vertices.
 double least_width(std::span<const Vec3<double>> vertices, std::span<const HalfSpace> planes) {
@@ -130,27 +129,15 @@ void Contacts::release(std::array<std::int32_t, 2> pair) {
 void Contacts::find_pieces() {
   const auto n = static_cast<std::size_t>(shapes_.bodies());
   std::vector<std::int32_t> beams(n, 0);
-  piece_.resize(n);
-  std::iota(piece_.begin(), piece_.end(), 0);
-  const auto root = [&](std::int32_t b) {
-    while (piece_[static_cast<std::size_t>(b)] != b) {
-      std::int32_t& up = piece_[static_cast<std::size_t>(b)];
-      up = piece_[static_cast<std::size_t>(up)];
-      b = up;
-    }
-    return b;
-  };
+  UnionFind pieces(n);
   for (const auto& [a, b] : joined_) {
     ++beams[static_cast<std::size_t>(a)];
     ++beams[static_cast<std::size_t>(b)];
-    const std::int32_t i = root(a), j = root(b);
-    piece_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
+    pieces.unite(a, b);
   }
+  piece_ = pieces.representatives();
   pieces_ = 0;
-  for (std::size_t b = 0; b < n; ++b) {
-    piece_[b] = root(static_cast<std::int32_t>(b));
-    pieces_ += piece_[b] == static_cast<std::int32_t>(b) ? 1 : 0;
-  }
+  for (std::size_t b = 0; b < n; ++b) pieces_ += piece_[b] == static_cast<std::int32_t>(b) ? 1 : 0;
   outer_.resize(n);
   for (std::size_t b = 0; b < n; ++b) outer_[b] = beams[b] < faces_[b] - 2 ? 1 : 0;
   for (const auto& [a, b] : released_)

@@ -6,8 +6,6 @@
 namespace floe {
 namespace {
 
-double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
-
 /// The stored force in the tangent plane of today's normal, as long as it was; falls with the
 /// stiffness.
 Vec3<double> carried(const PairHistory& memory, const Vec3<double>& normal, double shear) {

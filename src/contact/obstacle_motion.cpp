@@ -7,8 +7,6 @@ namespace floe {
 namespace {
 
 bool is_zero(const Vec3<double>& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
-double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
-
 }  // namespace
 
 // Most obstacles rest or move steadily: they ask for no sine.

@@ -10,8 +10,6 @@
 namespace floe {
 namespace {
 
-double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
-
 std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
   largest_over_ranks(mine, comm);
   return mine;

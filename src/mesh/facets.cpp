@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/union_find.h"
 #include "mesh/voronoi.h"
 
 namespace floe::mesh {
@@ -25,21 +26,15 @@ void Voronoi::merge_close_vertices() {
     }
     out_[t] = outcode(centre_[t]);
   }
-  std::vector<std::int32_t> root(triangles);  // a union-find whose roots are the lowest triangles
-  for (std::int32_t t = 0; t < triangles; ++t) root[t] = t;
-  const auto find = [&root](std::int32_t t) {
-    while (root[t] != t) t = root[t] = root[root[t]];
-    return t;
-  };
+  UnionFind places(static_cast<std::size_t>(triangles));
   for (std::int32_t e = 0; e < 3 * triangles; ++e) {
     const std::int32_t s = e / 3, t = delaunay_.twin(e) / 3;
     if (e > delaunay_.twin(e) || out_[s] || out_[t]) continue;
     if (std::hypot(centre_[s][0] - centre_[t][0], centre_[s][1] - centre_[t][1]) >= tolerance)
       continue;
-    const std::int32_t a = find(s), b = find(t);
-    root[std::max(a, b)] = std::min(a, b);
+    places.unite(s, t);
   }
-  for (std::int32_t t = 0; t < triangles; ++t) centre_[t] = centre_[find(t)];
+  for (std::int32_t t = 0; t < triangles; ++t) centre_[t] = centre_[places.find(t)];
 }
 
 /// Length inside the plan of the edge from p to q; negative if there is none of it (Liang & Barsky

@@ -95,8 +95,6 @@ Reference exact_overlap(const std::vector<Kernel::Plane_3>& a,
   return r;
 }
 
-double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
-
 /// One pair in B's frame: how A lies there.
 struct Pair {
   Shapes shapes;  ///< A, then B

@@ -42,8 +42,6 @@ Vec3<double> tip_displacement(const Lattice& lattice, const State<Spatial>& stat
   return displacement(state, static_cast<std::size_t>(lattice.sets.at("tip")[0]));
 }
 
-double norm(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
-
 // -- small deflections ----------------------------------------------------------------------------
 
 /// Flexibility of the tip of a cantilever of n beams, in its own axes: rows displacement and
@@ -264,13 +262,14 @@ TEST(Bend45, ConvergesToTheRodInSecondOrder) {
     for (std::size_t k = 0; k < 4; ++k) {
       report({.section = "Beams",
               .quantity = name + text(": error with %d beams", elements[k]),
-              .value = norm(tips[k] - bend.tip),
+              .value = length(tips[k] - bend.tip),
               .unit = "m"});
     }
     // The reference ends at the fourth digit, so the finest order is taken from differences between
     // the frames.
     for (std::size_t k = 0; k < 2; ++k) {
-      const double order = std::log2(norm(tips[k] - tips[k + 1]) / norm(tips[k + 1] - tips[k + 2]));
+      const double order =
+          std::log2(length(tips[k] - tips[k + 1]) / length(tips[k + 1] - tips[k + 2]));
       verify({.section = "Beams",
               .quantity = name + text(": order from %d, %d and %d beams", elements[k],
                                       elements[k + 1], elements[k + 2]),

@@ -34,6 +34,11 @@ T dot(const Vec3<S>& a, const Vec3<T>& b) {
   return T(a.x * b.x) + T(a.y * b.y) + T(a.z * b.z);
 }
 template <class T>
+T length(const Vec3<T>& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+template <class T>
 Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {T(a.y * b.z) - T(a.z * b.y), T(a.z * b.x) - T(a.x * b.z), T(a.x * b.y) - T(a.y * b.x)};
 }
