@@ -68,7 +68,7 @@ std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, dou
     const double radius = contacts.obstacle_radius(k);
     const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
     most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
-                                    2 * radius * length({turn.x, turn.y, turn.z}));
+                                    2 * radius * length(Vec3<double>{turn.x, turn.y, turn.z}));
     most[1] = std::max(most[1], m.largest_speed(radius));
   }
   return most;
@@ -86,7 +86,7 @@ double PairListExpiry::travels(const State<Spatial>& state, const Part& part,
     const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
                                       Quat<double>{was[3], -was[4], -was[5], -was[6]});
     farthest = std::max(farthest, length(way) + 2 * contacts.radius(part.global[k]) *
-                                                    length({turn.x, turn.y, turn.z}));
+                                                    length(Vec3<double>{turn.x, turn.y, turn.z}));
   }
   return farthest;
 }

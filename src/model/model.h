@@ -131,7 +131,7 @@ class Model {
   std::vector<double> inertial_mass_;
   std::vector<PlacedBoundary> boundaries_;
   std::vector<std::unique_ptr<Force<Space>>> forces_;
-  const BeamForce<Space>* beams_ = nullptr;
+  BeamForce<Space>* beams_ = nullptr;
   Fracture* fracture_ = nullptr;
   Kinematics kinematics_ = Kinematics::corotational;
   std::vector<std::uint8_t> prescribed_, held_;
