@@ -15,13 +15,14 @@ namespace {
 
 using Row = Eigen::Matrix<double, 1, 6>;
 
-/// Orthonormal columns, the first `count` of six; the others are zero.
+/// Orthonormal columns of six entries. Columns from `count` on are zero.
 struct Basis {
   Eigen::Matrix<double, 6, 6> columns = Eigen::Matrix<double, 6, 6>::Zero();
   int count = 0;
 };
 
-/// One piece, and how its bodies' unknowns depend on a rigid motion (t, r radius) of it.
+/// A connected piece. row() gives how the unknowns of its bodies depend on the coefficients (t, r
+/// radius) of a rigid motion of the piece.
 class Piece {
  public:
   Piece(const Lattice& lattice, std::vector<std::int32_t> bodies, double gyration)
@@ -34,7 +35,7 @@ class Piece {
     gyration_ = gyration;
   }
 
-  /// Change of component k (0..5) of a body, rotations as lengths, for unit coefficients.
+  /// Change of component k (0..5) of a body, rotations as lengths, per unit of each coefficient.
   Row row(std::int32_t body, int k) const {
     Row r = Row::Zero();
     if (k >= 3) {
@@ -64,7 +65,7 @@ class Piece {
   double radius_ = 0, gyration_ = 0;
 };
 
-/// Orthonormal basis of the rigid motions that nothing holds.
+/// Returns an orthonormal basis of the rigid motions that neither boundaries nor water hold.
 Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
                  std::span<const std::uint8_t> floating) {
   Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();
@@ -83,7 +84,8 @@ Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(gram);
   const double largest = solver.eigenvalues()[5];
   constexpr double relative_zero =
-      1e-14;  // of squares: supports 1e-7 of the piece's size apart still hold it
+      // Relative to squares: supports 1e-7 of the piece's size apart still hold the piece.
+      1e-14;
   Basis basis;
   for (; basis.count < 6 && solver.eigenvalues()[basis.count] <= relative_zero * largest;
        ++basis.count)
@@ -91,10 +93,11 @@ Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
   return basis;
 }
 
-/// Picks one unknown per free motion, each time the one that the motions left move most.
+/// Pins one unknown per free motion: in each turn the unknown that the remaining motions move most.
 void choose_pins(const Piece& piece, Basis basis, std::span<const std::uint8_t> held,
                  std::span<const std::uint8_t> avoid, std::vector<Pin>& pins) {
-  constexpr double avoidance = 1e-6;  // an avoided body is taken only where no other comes near
+  // An avoided body is taken only where no other unknown moves nearly as much.
+  constexpr double avoidance = 1e-6;
   while (basis.count > 0) {
     double best = 0;
     Pin pin{-1, 0};
@@ -105,15 +108,16 @@ void choose_pins(const Piece& piece, Basis basis, std::span<const std::uint8_t> 
         const Row moved = piece.row(b, k) * basis.columns;
         double size2 = moved.dot(moved);
         if (!avoid.empty() && avoid[body] != 0) size2 *= avoidance;
-        if (size2 > best * (1 + 1e-9)) {  // the first of equals, whatever the rounding
+        // The margin picks the first of equal unknowns, whatever the rounding.
+        if (size2 > best * (1 + 1e-9)) {
           best = size2;
           pin = {b, k};
         }
       }
     }
     pins.push_back(pin);
-    // Keep the motions that leave the pinned unknown at rest: a Householder reflection turns the
-    // one that moves it into the first column, which is dropped.
+    // Keep the motions that leave the pinned unknown at rest: a Householder reflection gathers all
+    // motion of the pinned unknown in the first column, which is dropped.
     Row v = piece.row(pin.body, pin.component) * basis.columns;
     v[0] += std::copysign(std::sqrt(v.dot(v)), v[0]);
     const Eigen::Matrix<double, 6, 6> turned =
@@ -160,8 +164,8 @@ void require_balance(const Model<Space>& model, const Lattice& lattice, const Fr
   Wrenches<Space> wrenches(static_cast<std::size_t>(part.local));
   model.evaluate(rest, wrenches);
 
-  // Work of the loads on the six rigid motions of each piece, and of their absolute values, to
-  // compare with.
+  // Work of the loads on the six rigid motions of each piece, and the sum of its absolute values,
+  // the size against which the net work is compared.
   std::map<std::int32_t, std::size_t> slot;
   for (const FreeMotion& m : free.motions) slot.emplace(m.piece, slot.size());
   std::vector<const FreeMotion*> first(slot.size(), nullptr);

@@ -14,7 +14,7 @@
 namespace floe {
 namespace {
 
-/// Bits of a space's unknowns from bits of x y z rx ry rz.
+/// Converts bits of x y z rx ry rz to bits of the space's unknowns.
 template <class Space>
 std::uint8_t bits_of_unknowns(std::uint8_t components) {
   unsigned bits = 0;
@@ -25,6 +25,7 @@ std::uint8_t bits_of_unknowns(std::uint8_t components) {
 
 constexpr std::array<const char*, 6> component_names{"x", "y", "z", "rx", "ry", "rz"};
 
+/// Bodies of the boundary's set. \throws InputError for an unknown set
 const std::vector<std::int32_t>& set_of(const Boundary& boundary, const Lattice& lattice) {
   return lattice.set(boundary.set, "boundary: " + boundary.name + ": set");
 }
@@ -50,7 +51,7 @@ void require_same_motion(const Boundary& a, const Boundary& b, std::size_t compo
 std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
                                                 const std::vector<Boundary>& boundaries) {
   std::vector<std::uint8_t> held(static_cast<std::size_t>(lattice.bodies.size()), 0);
-  std::vector<const Boundary*> first;  // per body, that prescribes the component
+  std::vector<const Boundary*> first;  // per body: the first boundary that prescribes the component
   for (std::size_t k = 0; k < component_names.size(); ++k) {
     first.assign(held.size(), nullptr);
     std::map<std::string_view, const Boundary*> on_set;
@@ -61,7 +62,7 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
         require_same_motion(*other->second, boundary, k, lattice);
         continue;
       }
-      const Boundary* same = nullptr;  // of those before it, the last that it was compared with
+      const Boundary* same = nullptr;  // the last earlier boundary with which this one was compared
       for (const std::int32_t body : set) {
         const Boundary*& other = first[static_cast<std::size_t>(body)];
         if (other == nullptr) {
@@ -87,8 +88,8 @@ Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Bou
   for (const Boundary& boundary : boundaries)
     boundaries_.push_back(
         {boundary, part_.localise(lattice.set(boundary.set, "boundary: " + boundary.name))});
-  // Rotations are solved for as lengths (see Tangent): times the mean beam, or a body's radius of
-  // gyration.
+  // Rotations are solved for as lengths (see Tangent): times the mean beam length, or a body's
+  // radius of gyration where there are no beams.
   double sum = 0;
   for (const double length : lattice.beams.length) sum += length;
   if (lattice.beams.size() > 0) {
@@ -211,7 +212,7 @@ template <class Space>
 std::vector<std::pair<std::string, double>> Model<Space>::report(const State<Space>& state) const {
   Columns columns;
   for (const auto& force : forces_) force->report(state, columns);
-  // Forces of one kind (several loads) share a column.
+  // Forces of the same kind (several loads) share a column.
   std::vector<std::pair<std::string, double>> sums;
   for (const auto& [name, value] : columns.values()) {
     const auto found =

@@ -1,5 +1,5 @@
 /// \file
-/// The model: a lattice's part on this rank, its forces, and which unknowns are prescribed.
+/// The model: the part of the lattice on this rank, its forces, and the prescribed unknowns.
 #pragma once
 
 #include <array>
@@ -16,60 +16,69 @@
 
 namespace floe {
 
-/// A boundary with its bodies (local indices, ghosts included).
+/// A boundary and its bodies (local indices, ghosts included).
 struct PlacedBoundary {
   Boundary boundary;
   std::vector<std::int32_t> bodies;
 };
 
-/// An unknown held to take a free rigid motion out of a static solve; it carries no reaction at
-/// equilibrium.
+/// An unknown held to take a free rigid motion out of a static solution. At equilibrium the pin
+/// carries no reaction.
 struct Pin {
   std::int32_t body;  ///< global index
   int component;      ///< 0..5: x y z rx ry rz
 };
 
-/// One free rigid motion of one connected piece: u = t + r x (X - centre), spin r.
+/// A free rigid motion of a connected piece: displacement u = t + r x (X - centre), spin r.
 struct FreeMotion {
   std::int32_t piece;
   Point3 centre;
-  double radius;  ///< of the piece about its centre [m]; r is in units of 1/radius
-  std::array<double, 6> coefficients;  ///< t and r, of unit norm together
+  /// Radius of the piece about its centre [m]; r is in units of 1/radius.
+  double radius;
+  /// t and r, of unit norm together.
+  std::array<double, 6> coefficients;
 };
 
-/// Free rigid motions of a lattice, piece by piece, and the pins that take them out.
+/// Free rigid motions of a lattice, piece by piece, and the pins that remove them.
 struct FreeMotions {
   std::vector<FreeMotion> motions;
   std::vector<Pin> pins;
   std::vector<std::int32_t> piece;  ///< per body: its connected piece
 };
 
-/// \param held      per body, a bit for each of x y z rx ry rz that a boundary prescribes
-/// \param floating  per body: cut by the water surface, which holds z, rx, ry of its piece;
-///                  may be empty
-/// \param avoid     bodies that should not be pinned if others can be (tests: the answer must
-///                  not depend on it)
+/// Finds the rigid motions of each connected piece that neither boundaries nor water hold, and
+/// chooses one pin for each (model.md, "Static solution").
+/// \param held  per body: a bit for each of x y z rx ry rz that a boundary prescribes
+/// \param floating  per body: whether the water surface cuts it, which holds z, rx, ry of its
+///   piece; may be empty
+/// \param avoid  per body: whether pins should go to other bodies if possible (for tests: the
+///   answer must not depend on the choice); may be empty
 FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> held,
                          std::span<const std::uint8_t> floating,
                          std::span<const std::uint8_t> avoid = {});
 
+/// The part of the lattice on this rank with its forces and prescribed unknowns.
 template <class Space>
 class Model {
  public:
   static constexpr int n = Space::unknowns;
 
+  /// Partitions the lattice and places the boundaries. Collective.
   /// \param lattice  whole, the same on every rank; needed during construction only
   /// \throws InputError for an unknown set or for two boundaries that prescribe one unknown
-  /// differently
+  ///   differently
   Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries);
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
   const Part& part() const { return part_; }
-  /// Forgets the beams' sections and stiffnesses (forces have their own), not whom they join.
+  /// Frees the sections and stiffnesses of the part's beams, of which forces keep their own copies.
+  /// The pairs of bodies that the beams join stay.
   void release_sections();
-  /// Forgets what the bodies look like.
+  /// Frees the shapes of the bodies.
   void release_shapes() { part_.shapes = {}; }
+  /// Length by which rotations are multiplied to be unknowns [m]: the mean beam length, or a body's
+  /// radius of gyration in a lattice without beams.
   double length_scale() const { return length_scale_; }
   const std::vector<PlacedBoundary>& boundaries() const { return boundaries_; }
 
@@ -77,48 +86,52 @@ class Model {
   void set_beams(std::unique_ptr<BeamForce<Space>> beams, Kinematics kinematics);
   const std::vector<std::unique_ptr<Force<Space>>>& forces() const { return forces_; }
   const BeamForce<Space>* beams() const { return beams_; }
-  /// Beams that may break: the same object as the force that set_beams() gets.
+  /// Registers the fracture of the beams, which is part of the force given to set_beams().
   void set_fracture(Fracture* fracture) { fracture_ = fracture; }
-  /// Null if nothing can break.
+  /// Null if no beam can break.
   Fracture* fracture() const { return fracture_; }
   Kinematics kinematics() const { return kinematics_; }
 
-  /// What resists acceleration, per local body: its mass and that of the water it takes along [kg].
+  /// Mass that resists acceleration, per local body: the body's own and its added mass [kg].
   const std::vector<double>& inertial_mass() const { return inertial_mass_; }
-  /// Water that owned bodies take along [kg]; what a body weighs stays as it is.
+  /// Adds the added mass of owned bodies [kg]; their weight does not change.
   void add_mass(std::span<const double> added);
 
-  /// All wrenches at a state whose ghosts are up to date.
+  /// Computes the wrenches of all forces at a state whose ghosts are up to date [N, N m].
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const;
 
-  /// Squares of the wrenches of all forces but beams on this rank's bodies, moments divided by the
-  /// length scale: summed over the forces, and of the forces' sum, in which weight and buoyancy
-  /// cancel [N^2].
+  /// Squared norms of the wrenches of all forces except beams on this rank's bodies, moments
+  /// divided by the length scale [N^2]. `apart` sums the squares of each force; `together` is the
+  /// square of the sum of the forces, in which weight and buoyancy cancel.
   struct Squares {
     double apart = 0, together = 0;
   };
-  /// The same as evaluate(), by way of `share`.
+  /// Does the same as evaluate() and also returns the squares. \param share  room for the wrenches
+  /// of a single force
   Squares evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
                          Wrenches<Space>& share) const;
 
-  /// When ramps of boundaries and loads end, ascending, each once, without 0 [s].
+  /// Times at which ramps of boundaries and loads end, ascending, without repetitions and without 0
+  /// [s].
   std::vector<double> ramp_ends() const;
 
-  /// Prescribed unknowns, n bits per local body; held() includes the pins.
+  /// Prescribed unknowns, n bits per local body; held() includes the pins too.
   std::span<const std::uint8_t> prescribed() const { return prescribed_; }
   std::span<const std::uint8_t> held() const { return held_; }
-  /// Takes the pins of free motions over; those of components that the space does not have say
-  /// nothing.
+  /// Holds the unknowns of these pins in addition to the prescribed ones. Pins of components that
+  /// the space does not have are ignored.
   void pin(const std::vector<Pin>& pins);
-  /// Prescribed values at a time [m, rad] into n entries per local body; those that are free or
-  /// pinned are left as they are. \param rows  per local body: where its n entries are, -1: nowhere
+  /// Writes prescribed values at a time [m, rad] into n entries per local body. Entries of free and
+  /// of pinned unknowns do not change.
+  /// \param rows  per local body: the row of its n entries, -1 for none; empty: the local index
   void prescribe(double time, std::span<double> values,
                  std::span<const std::int32_t> rows = {}) const;
-  /// Their rates [m/s, rad/s] and accelerations in the same form.
+  /// The same for the rates [m/s, rad/s] and the accelerations [m/s^2, rad/s^2] of prescribed
+  /// unknowns.
   void prescribe_rates(double time, std::span<double> rates) const;
   void prescribe_accelerations(double time, std::span<double> accelerations) const;
 
-  /// Sums over all ranks of what the forces report.
+  /// Sums the columns that the forces report over all ranks. Collective.
   std::vector<std::pair<std::string, double>> report(const State<Space>& state) const;
 
  private:
@@ -137,15 +150,15 @@ class Model {
   std::vector<std::uint8_t> prescribed_, held_;
 };
 
-/// Bits of the prescribed components of every body of a lattice.
+/// Returns the bits of the prescribed components (x y z rx ry rz) of every body of a lattice.
 /// \throws InputError for an unknown set or for two boundaries that prescribe one component
-/// differently
+///   differently
 std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
                                                 const std::vector<Boundary>& boundaries);
 
-/// Checks that no load pushes a free motion, which would have no static equilibrium. Collective.
-/// \param time  at which the loads are taken
-/// \throws InputError naming the motion and the force on it
+/// Checks that no load pushes a free motion: no static equilibrium would exist. Collective.
+/// \param time  the time at which the loads are taken [s]
+/// \throws InputError naming the motion and its piece
 template <class Space>
 void require_balance(const Model<Space>& model, const Lattice& lattice, const FreeMotions& free,
                      double time);

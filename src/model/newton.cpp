@@ -49,7 +49,9 @@ void set_newton_defaults(SNES snes) {
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes, &search));
   check(SNESLineSearchSetType(
-      search, SNESLINESEARCHBASIC));  // stretching makes |F| grow on the way to the solution
+      // A line search would reject good steps: where beams stretch, |F| grows on the way to the
+      // solution.
+      search, SNESLINESEARCHBASIC));
   KSP ksp = nullptr;
   check(SNESGetKSP(snes, &ksp));
   set_cholesky(ksp);
@@ -89,7 +91,7 @@ void attach_rigid_modes(const Model<Space>& model, std::span<const std::uint8_t>
     }
     PetscReal norm = 0;
     check(VecNorm(mode, NORM_2, &norm));
-    if (norm < 1e-10) continue;  // everything of it is held
+    if (norm < 1e-10) continue;  // all of this mode is held
     check(VecScale(mode, 1.0 / norm));
     list.push_back(mode);
   }
@@ -127,7 +129,7 @@ bool drop_failed_factor(KSP ksp) {
   PCFailedReason reason = PC_NOERROR;
   check(KSPGetPC(ksp, &pc));
   check(PCGetFailedReason(pc, &reason));
-  // With some preconditioners it is the reason of one rank's part.
+  // Some preconditioners report the reason of one rank's part only.
   if (!on_any_rank(reason != PC_NOERROR, PetscObjectComm(reinterpret_cast<PetscObject>(pc))))
     return false;
   check(PCReset(pc));
@@ -146,7 +148,7 @@ std::int64_t negative_pivots(KSP ksp) {
 
 namespace {
 
-/// Of MUMPS's errors those of memory and room to work in (its users' guide, INFOG(1)).
+/// Whether an error of MUMPS means too little memory or workspace (MUMPS users' guide, INFOG(1)).
 bool is_want_of_memory(PetscInt infog) {
   constexpr std::array<PetscInt, 9> codes{-5, -7, -8, -9, -11, -13, -17, -19, -20};
   return std::find(codes.begin(), codes.end(), infog) != codes.end();
@@ -179,14 +181,14 @@ void require_memory(KSP ksp) {
 
 void claim_blas_memory() {
   static const bool done = [] {
-    // OpenBLAS takes 128 MB of addresses on first need, keeps them, and tries for ever if it does
-    // not get them.
+    // OpenBLAS maps 128 MB of addresses when it first needs buffers, keeps them, and retries for
+    // ever if the mapping fails.
     constexpr std::size_t needed = 160U << 20;
     void* room = ::mmap(nullptr, needed, PROT_READ | PROT_WRITE,
                         MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (room == MAP_FAILED) throw std::bad_alloc();
     ::munmap(room, needed);
-    // A factorisation by blocks is what asks for them.
+    // A blocked factorisation makes OpenBLAS allocate these buffers.
     constexpr PetscInt n = 256;
     Handle<Mat> dense;
     MatFactorInfo info{};

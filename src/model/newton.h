@@ -1,6 +1,6 @@
 /// \file
-/// What Newton's method on a model's unknowns takes, in statics and in dynamics: matrices, solvers,
-/// defaults.
+/// Matrices, solvers and defaults of Newton's method on a model's unknowns, in statics and in
+/// implicit dynamics.
 #pragma once
 
 #include <span>
@@ -9,48 +9,51 @@
 
 namespace floe {
 
-/// The storage and form of the tangent that the chosen preconditioner wants: Cholesky takes blocked
-/// symmetric storage, LU the exact unsymmetric K, everything else (GAMG, hypre, ...) plain rows.
-/// -mat_type wins.
+/// Returns the storage and form of the tangent that the chosen preconditioner needs: blocked
+/// symmetric storage for Cholesky, the exact unsymmetric K for LU, plain rows for all others (GAMG,
+/// hypre, ...). -mat_type overrides the storage.
 TangentOptions tangent_options();
 
-/// A typical diagonal of the free unknowns for the prescribed ones, so that the matrix stays well
-/// scaled [N/m]. Collective.
+/// Largest stiffness bound of any body [N/m], 1 if no force has one: the diagonal entry for
+/// prescribed unknowns, by which the matrix stays well scaled. Collective.
 template <class Space>
 double typical_stiffness(const Model<Space>& model);
 
-/// Preonly + Cholesky by MUMPS.
+/// Sets a solver to preonly and Cholesky by MUMPS.
 void set_cholesky(KSP ksp);
 
-/// Newton without line search, preonly + Cholesky by MUMPS: options read later win.
+/// Sets Newton without line search, linear solves by preonly and Cholesky by MUMPS. Options read
+/// later override these.
 void set_newton_defaults(SNES snes);
 
-/// The rigid modes (six, in the plane three) as near-nullspace: what algebraic multigrid needs to
-/// know of an elastic body. \param held  n bits per local body: unknowns that do not move
+/// Attaches the rigid modes (six in space, three in the plane) to the matrix as near-nullspace,
+/// which algebraic multigrid needs for an elastic body. Collective.
+/// \param held  n bits per local body: unknowns that do not move
 template <class Space>
 void attach_rigid_modes(const Model<Space>& model, std::span<const std::uint8_t> held, Mat matrix);
 
-/// The factor of a solver that is Cholesky by MUMPS and has its operators; null for any other.
+/// Returns the factor if the solver is Cholesky by MUMPS and has its operators, else null.
 Mat mumps_cholesky(KSP ksp);
 
-/// Before the first factorisation: on several ranks MUMPS counts negative pivots only if its root
-/// front is not shared out.
+/// Keeps MUMPS's root front on one rank: on several ranks MUMPS counts negative pivots only then.
+/// To be called before the first factorisation.
 void let_mumps_count(KSP ksp);
 
-/// Number of negative eigenvalues of a solver's matrix, which is factorised if it is not yet; -1 if
-/// the solver does not tell. Collective.
+/// Returns the number of negative eigenvalues of a solver's matrix, -1 if the solver does not count
+/// them. Factorises the matrix if that has not been done. Collective.
 std::int64_t negative_pivots(KSP ksp);
 
-/// Has the library of dense algebra take its buffers while there is memory. \throws std::bad_alloc
+/// Makes the dense linear algebra library allocate its buffers while there is memory. \throws
+/// std::bad_alloc
 void claim_blas_memory();
 
-/// Before a matrix is factorised anew: drops a factor whose making failed. PETSc does not call
-/// MUMPS again for a factor that MUMPS once gave up, and solves with what is not there
-/// ("INFOG(1)=-3"). True if there was one. Collective.
+/// Drops a factor whose factorisation failed, before the matrix is factorised again. After MUMPS
+/// has given up a factor PETSc does not call MUMPS for that factor again and solves with nothing
+/// ("INFOG(1)=-3"). True if there was such a factor. Collective.
 bool drop_failed_factor(KSP ksp);
 
-/// After a linear solve that failed. \throws RunFailed if the factorisation had too little memory,
-/// which no smaller step mends. On all ranks alike.
+/// Checks why a linear solve failed. \throws RunFailed if the factorisation had too little memory,
+/// which a smaller step does not cure; on all ranks alike
 void require_memory(KSP ksp);
 
 }  // namespace floe

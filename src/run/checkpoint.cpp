@@ -20,7 +20,7 @@
 namespace floe {
 namespace {
 
-constexpr std::int64_t layout = 4;  // of the file; another one is refused
+constexpr std::int64_t layout = 4;  // of the file; other layouts are refused
 
 /// FNV-1a over 64-bit words.
 class Hash {
@@ -52,17 +52,17 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-/// How messages begin.
+/// Beginning of messages about a checkpoint.
 std::string named(const std::string& file) { return "checkpoint: restart: '" + file + "' "; }
 
-/// Opens a checkpoint that is as it was written. \throws InputError
+/// Opens a checkpoint whose length and checksum are right. \throws InputError
 Hdf5File open_whole(const std::string& path) {
   if (const std::string problem = seal_problem(path); !problem.empty())
     throw InputError(named(path) + problem);
   return Hdf5File::open(path, "checkpoint: restart");
 }
 
-/// Puts a file that is on the disk in its place, for good.
+/// Renames a complete file to its final name and syncs file and folder to the disk.
 void put_on_disk(const std::string& temporary, const std::string& path) {
   sync_to_disk(temporary);
   put_in_place(temporary, path);
@@ -101,13 +101,15 @@ Checkpoints::Checkpoints(const CheckpointOptions& options, const Part& part)
   if (options.file.empty()) {
     next_look_ = std::numeric_limits<std::int64_t>::max();
   } else if (rank(part.comm) == 0) {
-    std::error_code ignored;  // what asked an earlier run to stop does not ask this one
+    // A request that stopped an earlier run must not stop this one.
+    std::error_code ignored;
     std::filesystem::remove(options.stop_file, ignored);
   }
 }
 
-/// The next look is about a quarter of a second away by the slowest rank's clock; the maximum over
-/// ranks makes it the same step on all. The wall time counts what comes before the next look.
+/// The next look comes after about a quarter of a second by the slowest rank's clock; the maximum
+/// over ranks makes it the same step on all. The check of the wall time includes the time until the
+/// next look.
 Checkpoints::Wish Checkpoints::look(std::int64_t step) {
   constexpr double look_seconds = 0.25;
   constexpr double most_steps = 1000;
@@ -129,7 +131,7 @@ Checkpoints::Wish Checkpoints::look(std::int64_t step) {
   next_look_ = step + static_cast<std::int64_t>(
                           std::clamp(look_seconds / std::max(all[0], 1e-9), 1.0, most_steps));
   if (all[2] > 0 && rank(part_.comm) == 0) {
-    std::error_code ignored;  // asked for once
+    std::error_code ignored;  // one file asks for one stop
     std::filesystem::remove(options_.stop_file, ignored);
   }
   if (all[1] > 0 || all[2] > 0) return Wish::stop;
@@ -193,7 +195,7 @@ void make_newest(const std::string& restart, const std::string& file, MPI_Comm c
   });
 }
 
-/// What every checkpoint says first. \throws OtherRun
+/// Writes or compares the entries with which every checkpoint begins. \throws OtherRun
 void Checkpoints::head(Archive& archive) {
   std::string version = FLOE_VERSION, built = built_for(part_.comm), lattice = options_.lattice,
               obstacles = options_.obstacles, options = options_.options, scene = options_.scene;
@@ -232,7 +234,7 @@ void Checkpoints::save(const std::function<void(Archive&)>& persist,
   on_root(part_.comm, [&] {
     file->close([](const std::string& temporary, const std::string& path) {
       seal(temporary);
-      sync_to_disk(temporary);  // before the one in place gives up its name
+      sync_to_disk(temporary);  // before the checkpoint in place gives up its name
       give_second_name(path, previous_checkpoint(path));
       put_on_disk(temporary, path);
     });

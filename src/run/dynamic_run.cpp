@@ -23,7 +23,7 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
       checkpoints_(options_.checkpoint, model.part()),
       what_(what),
       type_(type) {
-  // What strains of 1e-12 everywhere would store.
+  // Floor of the energies: what strains of 1e-12 in all beams would store.
   double energy = 0;
   const double strain = 1e-12 * model.length_scale();
   for (std::int32_t b = 0; b < model.part().owned; ++b) {
@@ -65,7 +65,7 @@ void DynamicRun<Space>::plan(double wanted) {
 
 template <class Space>
 void DynamicRun<Space>::require_few_steps(double steps, double step) const {
-  constexpr double countable = 1e18;  // in 64 bits
+  constexpr double countable = 1e18;  // fits 64 bits
   if (steps <= countable &&
       std::min(steps, static_cast<double>(most_steps_)) <= options_.most_steps)
     return;
@@ -111,7 +111,7 @@ void DynamicRun<Space>::replan(TS ts, double wanted) {
   check(TSSetTimeStep(ts, dt_));
 }
 
-/// All that a run goes on from. Collective.
+/// Saves or loads the whole history of the run. Collective.
 template <class Space>
 void DynamicRun<Space>::persist(Archive& archive) {
   largest_ = largest_over_ranks(largest_, model_.part().comm);
@@ -152,7 +152,7 @@ void DynamicRun<Space>::persist(Archive& archive) {
   }
 }
 
-/// The checkpoint's step is kept, the end may lie further on.
+/// The run keeps the checkpoint's step; its end may lie later.
 template <class Space>
 bool DynamicRun<Space>::restart() {
   if (options_.checkpoint.restart.empty()) return false;
@@ -199,14 +199,14 @@ RunResult DynamicRun<Space>::solve(TS ts) {
   return result_;
 }
 
-/// All steps. False if the run did not come to its end.
+/// Makes all steps. False if the run did not reach its end.
 template <class Space>
 bool DynamicRun<Space>::step(TS ts) {
   for (;;) {
     begin_piece(ts);
     const int ierr = TSSolve(ts, nullptr);
     if (error_) std::rethrow_exception(error_);
-    if (ierr == PETSC_ERR_FP) {  // the error of an adaptive step
+    if (ierr == PETSC_ERR_FP) {  // from the error estimate of an adaptive step
       why_ = "a number that is not finite after time " + text(time_) + " s";
       return false;
     }
@@ -217,8 +217,8 @@ bool DynamicRun<Space>::step(TS ts) {
   }
 }
 
-/// The first piece's steps are the run's. Those of a later one begin with 1, since at step 0 a TS
-/// begins anew and forgets what it knows of the steps before.
+/// In the first piece the TS counts steps as the run does. Later pieces begin with step 1, since at
+/// step 0 a TS starts anew and forgets the steps before.
 template <class Space>
 void DynamicRun<Space>::begin_piece(TS ts) {
   const std::int64_t pieces = done_ / steps_of_a_piece;
@@ -227,7 +227,7 @@ void DynamicRun<Space>::begin_piece(TS ts) {
   limit_steps(ts);
 }
 
-/// The TS goes to the end of the piece, or of the run.
+/// Lets the TS step to the end of the piece or of the run.
 template <class Space>
 void DynamicRun<Space>::limit_steps(TS ts) {
   const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
@@ -263,7 +263,7 @@ bool DynamicRun<Space>::look_around() {
   if (done_ % show_every_ == 0) progress_->update(state_.time, step_text());
   const auto wish = checkpoints_.wish(done_);
   if (wish == Checkpoints::Wish::none) return true;
-  if (!within_limits()) return false;  // no checkpoint of a state that is lost already
+  if (!within_limits()) return false;  // a state beyond the limits gets no checkpoint
   save();
   result_.stopped = wish != Checkpoints::Wish::write;
   stopped_by_ = wish == Checkpoints::Wish::stop
@@ -277,7 +277,7 @@ void DynamicRun<Space>::save() {
   checkpoints_.save([&](Archive& archive) { persist(archive); }, column_names());
 }
 
-/// Of what sample() hands out.
+/// Names of the columns that sample() hands to the observer.
 template <class Space>
 std::vector<std::string> DynamicRun<Space>::column_names() const {
   std::vector<std::string> names;
@@ -293,15 +293,16 @@ std::string DynamicRun<Space>::step_text() const {
   return "step " + std::to_string(done_) + (adaptive_ ? "" : " of " + std::to_string(steps_));
 }
 
-/// The last state, whose forces no step has asked for.
+/// Samples the last state, whose forces no step has evaluated.
 template <class Space>
 bool DynamicRun<Space>::finish() {
-  if (sampled_ == done_) return true;  // as a checkpoint at the end of a run leaves it
+  if (sampled_ == done_)
+    return true;  // a checkpoint at the end of a run was taken after its last sample
   evaluate();
   return sample(true);
 }
 
-/// What forces have to say since the last look, in order of time, goes to the user. Collective.
+/// Passes the forces' remarks since the last call on to the user, in order of time. Collective.
 template <class Space>
 void DynamicRun<Space>::take_remarks() {
   std::vector<double> times;
@@ -334,7 +335,7 @@ void DynamicRun<Space>::take_remarks() {
   }
 }
 
-/// Collective: all ranks agree.
+/// Collective: all ranks get the same answer.
 template <class Space>
 bool DynamicRun<Space>::within_limits() {
   const double all = largest_over_ranks(largest_, model_.part().comm);
@@ -351,13 +352,14 @@ void DynamicRun<Space>::set_sampling() {
   sample_every_ = {options_.history > 0 ? options_.history : options_.end / 200, options_.fields};
 }
 
-/// The first state at or after the time, rounding aside: as the output counts too.
+/// A sample is due at the first state at or after its time, rounding aside; the output counts its
+/// frames by the same rule.
 template <class Space>
 bool DynamicRun<Space>::due() const {
   return state_.time >= next_sample_ - early * dt_;
 }
 
-/// Hands the state out, if it is good.
+/// Hands the state to the observer if it is within the limits.
 template <class Space>
 bool DynamicRun<Space>::sample(bool last) {
   if (!within_limits()) return false;
@@ -386,7 +388,7 @@ bool DynamicRun<Space>::sample(bool last) {
   return true;
 }
 
-/// The body that is fastest now.
+/// Describes the body that is fastest in the present state.
 template <class Space>
 std::string DynamicRun<Space>::where() const {
   const Part& part = model_.part();

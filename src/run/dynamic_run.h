@@ -1,6 +1,6 @@
 /// \file
-/// What every integrator that moves bodies shares around its steps: the state and its forces,
-/// samples, the energy ledger, limits, checkpoints, requests to stop, progress.
+/// The part of a run that all integrators of moving bodies share around their steps: the state and
+/// its forces, samples, the energy ledger, limits, checkpoints, requests to stop, progress.
 #pragma once
 
 #include <petscts.h>
@@ -23,20 +23,22 @@
 
 namespace floe {
 
-/// Most steps that a TS is asked for at once: it counts with 32 bits. Tests make it small.
+/// Largest number of steps that a TS gets in a single solve, since a TS counts with 32 bits. Tests
+/// make it small.
 inline std::int64_t steps_of_a_piece = std::int64_t{1} << 30;  // NOLINT
 
-/// A run with a step that divides it into equal ones, or with one that adapts. An integrator
-/// derives from this, and in each step calls
-///   evaluate()        the forces at t_n, unless it knows them,
+/// A run with equal steps that divide its time, or with adaptive steps. An integrator derives from
+/// this class and calls in each step
+///   evaluate()        to compute the forces at t_n, unless they are known,
 ///   sample_if_due()   false: the run ends here,
-///   moved()           once the state is that of t_n+1; false: the run ends here,
+///   moved()           when the state is that of t_n+1; false: the run ends here,
 ///   look_around()     false: the run ends here, on request.
 template <class Space>
 class DynamicRun {
  public:
-  /// \param what  a word for the progress line   \param type  of PETSc's TS: checkpoints of another
-  /// are not taken   \param model, observer  must outlive this
+  /// \param what  a word for the progress line
+  /// \param type  type of PETSc's TS; checkpoints of other types are refused
+  /// \param model, observer  must outlive this object
   DynamicRun(std::string_view what, std::string_view type, Model<Space>& model,
              const DynamicOptions& options, const Observer<Space>& observer);
   virtual ~DynamicRun() = default;
@@ -45,32 +47,34 @@ class DynamicRun {
 
   State<Space>& state() { return state_; }
   double dt() const { return dt_; }
-  /// Of the last accepted state, where state() may be that of a stage [s].
+  /// Time of the last accepted state [s]; state() may be that of a stage.
   double time() const { return time_; }
   std::int64_t done() const { return done_; }
 
-  /// Gives a TS the run's times and reads its options; -ts_dt, -ts_max_time and -ts_max_steps (of
-  /// 64 bits) win.
+  /// Gives a TS the run's times and reads the TS options; -ts_dt, -ts_max_time and -ts_max_steps
+  /// (of 64 bits) override the scene.
   void read_options(TS ts);
-  /// Goes on from the checkpoint that the options name, if they name one: then the step is its.
+  /// Goes on from the checkpoint that the options name and takes over its step. False if they name
+  /// none. Collective. \throws InputError if the checkpoint does not fit the run
   bool restart();
-  /// Takes a step as near to the wanted one as divides the run equally; if steps adapt, the wanted
-  /// one to begin with. \throws InputError if that makes more steps than allowed
+  /// Chooses the step nearest to the wanted one [s] that divides the run equally. Adaptive steps
+  /// begin with the wanted one.
+  /// \throws InputError if that makes more steps than allowed
   void plan(double wanted);
-  /// Tells options().on_plan. False: the run is not to be made.
+  /// Passes the plan to options().on_plan. False if the run is not to be made.
   bool announce() const;
-  /// The same for what is left of the run, in the middle of it.
+  /// Plans the rest of a run anew from the present time.
   void replan(TS ts, double wanted);
-  /// When the next step ends [s]; not for steps that adapt.
+  /// End time of the next step [s]; not for adaptive steps.
   double next_time() const {
     return time_base_ + static_cast<double>(done_ + 1 - step_base_) * dt_;
   }
-  /// Solves with a TS whose steps call the run's functions through guarded(), from the run's state
-  /// at the run's step; says how it ended.
+  /// Solves from the run's present state and step, with a TS whose steps call the run's functions
+  /// through guarded(). Returns how the run ended. Collective.
   RunResult solve(TS ts);
 
-  /// Does work inside a callback of PETSc, which no exception may cross: a verdict comes out of
-  /// solve(). False if there was one.
+  /// Does work inside a callback of PETSc, which no exception may cross. A verdict is kept and
+  /// thrown by solve(). False if there was one, or if the work returned false.
   template <class Work>
   bool guarded(Work&& work) {
     try {
@@ -82,85 +86,87 @@ class DynamicRun {
   }
 
  protected:
-  /// This rank's kinetic energy and the boundaries' work on its bodies so far [J].
+  /// Kinetic energy of this rank's bodies, and the boundaries' work on them since the start [J].
   struct Energies {
     double kinetic, boundary;
   };
-  /// At the state, whose wrenches are known.
+  /// Energies at the state, whose wrenches are known.
   virtual Energies energies() const = 0;
-  /// What else it has to report of this rank's bodies at the state.
+  /// Further columns of the integrator, for this rank's bodies at the state.
   virtual Columns own_columns() const { return {}; }
-  /// What the integrator itself takes along over a restart, beside records, time and dt.
+  /// Saves or loads the integrator's own history, apart from records, time and dt.
   virtual void persist_own(Archive& archive) = 0;
-  /// Its PETSc objects, for audits.
+  /// PETSc objects of the integrator that audits compare.
   virtual std::vector<PetscObject> objects() const { return {}; }
-  /// Compares the run's objects and its times over ranks, in audits. Collective then.
+  /// Compares the run's objects and times over ranks if auditing is on; collective then.
   void audit(const char* where) const;
-  /// What it does between the run's beginning and the first step; false: the run ends here.
+  /// Work of the integrator between the start of the run and the first step. False: the run ends
+  /// here.
   virtual bool first() { return true; }
 
-  /// What the plan says of the steps' time.
+  /// Adds the integrator's estimates (the time of a step) to the plan.
   virtual void add_to(RunPlan& /*plan*/) const {}
   /// \throws InputError for more steps than allowed
   void require_few_steps(double steps, double step) const;
-  /// Whether the step adapts: then the last one is cut to end at the end.
+  /// Whether the step adapts. The last step is then cut to end at the run's end.
   bool is_adaptive() const { return adaptive_; }
   void set_adaptive(bool adaptive) { adaptive_ = adaptive; }
-  /// Whether the state after a step is the run's last, where the TS gives the reason why it ends:
-  /// it ends, too, where a piece of the run does.
+  /// Whether the state after a step is the last of the run. The TS's reason does not tell by
+  /// itself: a TS also ends where a piece of the run ends.
   bool is_last(TSConvergedReason reason) const {
     return reason == TS_CONVERGED_TIME || (reason == TS_CONVERGED_ITS && done_ >= last_step());
   }
-  /// Progress is shown after so many steps.
+  /// Sets the number of steps between lines of progress.
   void show_every(std::int64_t steps) { show_every_ = steps; }
-  /// Progress within a step.
+  /// Shows progress within a step.
   void show(const std::string& what) { progress_->update(time_, step_text() + ", " + what); }
-  /// The same before work that takes about so long.
+  /// Shows progress before work that takes about `seconds`.
   void announce_work(const std::string& what, double seconds) {
     progress_->announce(time_, step_text() + ", " + what, seconds);
   }
-  /// The next step [s].
+  /// Sets the next step [s].
   void set_dt(double dt) { dt_ = dt; }
-  /// Says why a run ends that did not come to its end.
+  /// Sets the reason why a run ends before its end.
   void give_up(std::string why) { why_ = std::move(why); }
 
   Model<Space>& model() { return model_; }
   const Model<Space>& model() const { return model_; }
   const DynamicOptions& options() const { return options_; }
-  /// What gave the step: "time: dt" or "ts_dt".
+  /// Key that gave the step: "time: dt" or "ts_dt".
   const std::string& dt_key() const { return dt_key_; }
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
   Wrenches<Space>& wrenches() { return wrenches_; }
   RunResult& result() { return result_; }
 
-  /// All forces at the state.
+  /// Updates the ghosts and evaluates all forces at the state. Collective.
   void evaluate();
-  /// Hands the state out if a sample is due at its time.
+  /// Hands the state to the observer if a sample is due at its time. False: the run ends here.
   bool sample_if_due() { return !due() || sample(); }
-  /// Whether the state was a sample.
+  /// Whether the present state was sampled.
   bool sampled() const { return sampled_ == done_; }
   bool evaluate_and_sample_if_due() {
     if (!due()) return true;
     evaluate();
     return sample();
   }
-  /// The state is that after one more step, at `time`. \param speed2  square of the largest speed
-  /// of this rank's bodies [m^2/s^2]
+  /// Counts a step after which the state is that of `time` [s]. False: the run ends here.
+  /// \param speed2  square of the largest speed of this rank's bodies [m^2/s^2]
   bool moved(double time, double speed2);
-  /// Progress; a checkpoint or a stop if one is wished.
+  /// Shows progress; writes a checkpoint or stops if that is due. False: the run ends here.
   bool look_around();
 
  private:
   void save();
   std::vector<std::string> column_names() const;
-  static constexpr std::int64_t check_every = 100;  // steps between looks at the velocity limit
-  static constexpr double early = 1e-6;             // of a step
+  // Steps between checks of the velocity limit.
+  static constexpr std::int64_t check_every = 100;
+  static constexpr double early = 1e-6;  // a sample may be early by this part of a step
 
   bool step(TS ts);
   void begin_piece(TS ts);
   void limit_steps(TS ts);
-  /// Unless the time of its end comes first.
+  /// Last step of the run, unless its end time comes first.
   std::int64_t last_step() const { return adaptive_ ? most_steps_ : std::min(steps_, most_steps_); }
   void set_sampling();
   bool due() const;
@@ -173,7 +179,7 @@ class DynamicRun {
   void persist(Archive& archive);
 
   Model<Space>& model_;
-  DynamicOptions options_;  // the command line's -ts_* included
+  DynamicOptions options_;  // with the command line's -ts_* options
   const Observer<Space>& observer_;
   State<Space> state_;
   Wrenches<Space> wrenches_;
@@ -185,15 +191,15 @@ class DynamicRun {
   RunResult result_;
   std::exception_ptr error_;
   std::array<double, 2> sample_every_{};
-  bool given_ = false;  // the step, by the user
+  bool given_ = false;  // the user gave the step
   double time_ = 0, dt_ = 0, next_sample_ = 0, time_base_ = 0, largest_ = 0;
   bool adaptive_ = false;
-  // Step step_base_ ended at time_base_; equal ones follow.
+  // Step step_base_ ended at time_base_; equal steps follow.
   std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1;
   std::string dt_key_ = "time: dt";
   std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
   std::int64_t show_every_ = 1;
-  std::int64_t piece_ = 0;  // the TS's step 0
+  std::int64_t piece_ = 0;  // step of the run that is the TS's step 0
   std::string why_, stopped_by_;
 };
 

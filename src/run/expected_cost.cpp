@@ -14,14 +14,14 @@ namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// The number that a file begins with; infinite if it has none ("max").
+/// Returns the number at the beginning of a file, infinity if there is none ("max").
 double number_in(const std::filesystem::path& path) {
   std::ifstream file(path);
   double value = 0;
   return file >> value ? value : unlimited;
 }
 
-/// MemAvailable, and swap that is free.
+/// Returns MemAvailable plus free swap [B].
 double free_in_system() {
   std::ifstream file("/proc/meminfo");
   double sum = 0;
@@ -36,7 +36,7 @@ double free_in_system() {
   return known ? sum : unlimited;
 }
 
-/// What the groups leave that this process is in, by either version of cgroups.
+/// Returns the memory left by the cgroups (version 1 or 2) of this process [B].
 double free_in_group() {
   double least = unlimited;
   std::ifstream file("/proc/self/cgroup");
@@ -49,7 +49,7 @@ double free_in_group() {
     const std::filesystem::path root = is_new ? "/sys/fs/cgroup" : "/sys/fs/cgroup/memory";
     const char* const limit = is_new ? "memory.max" : "memory.limit_in_bytes";
     const char* const used = is_new ? "memory.current" : "memory.usage_in_bytes";
-    // A group's limit holds for those inside it too; a container may show none but its own root.
+    // A group's limit holds for the groups inside it too. A container may show only its own root.
     for (std::filesystem::path at = std::filesystem::path(line.substr(second + 1)).relative_path();;
          at = at.parent_path()) {
       const double most = number_in(root / at / limit), now = number_in(root / at / used);
@@ -63,9 +63,9 @@ double free_in_group() {
 }  // namespace
 
 FactorisationCost factorisation_cost(double unknowns, int ranks) {
-  // Nested dissection of a plane graph: n^1.5 operations, n log n numbers.
+  // Nested dissection of a plane graph takes n^1.5 operations and n log n numbers.
   constexpr double size = 177'000, seconds = 2, solve_seconds = 0.15, bytes_a_level = 150;
-  constexpr double least = 1e-3, least_solve = 2e-4;  // calls, whatever the size
+  constexpr double least = 1e-3, least_solve = 2e-4;  // of the calls themselves, whatever the size
   const double relative = unknowns / size, shared = std::pow(ranks, 0.7);
   return {least + seconds * std::pow(relative, 1.35) / shared,
           least_solve + solve_seconds * relative / shared,

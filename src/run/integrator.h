@@ -1,6 +1,6 @@
 /// \file
-/// Integrators take a model from its first state to the scene's end and hand every accepted state
-/// to an observer: what they have in common.
+/// Common types of integrators, which take a model from its first state to the scene's end and hand
+/// every accepted state to an observer.
 #pragma once
 
 #include <functional>
@@ -15,34 +15,38 @@
 
 namespace floe {
 
-/// An accepted state, with what is known of the step that led to it.
+/// An accepted state and the data of the step that led to it.
 template <class Space>
 struct Accepted {
   const State<Space>& state;
   const Wrenches<Space>& wrenches;  ///< of all forces, on owned bodies
   std::int64_t step;                ///< 0: the initial state
   std::vector<std::pair<std::string, double>> columns =
-      {};             ///< what the integrator itself knows (energies)
-  bool last = false;  ///< no other will follow
+      /// Columns of the integrator itself (energies).
+      {};
+  bool last = false;  ///< no further state follows
   std::vector<std::pair<std::string, double>> forces =
-      {};  ///< what the forces reported then; empty: they can still be asked
+      /// What the forces reported at this state; empty: the forces still have the evaluation and
+      /// can be asked.
+      {};
 };
 
 template <class Space>
 using Observer = std::function<void(const Accepted<Space>&)>;
-/// Where the space follows from a model, so that a lambda will do.
+/// For functions that deduce the space from a model, so that a lambda can be the argument.
 template <class Space>
 using ObserverOf = std::type_identity_t<Observer<Space>>;
 
-/// What an integrator that moves bodies is told.
+/// Settings of a run of an integrator that moves bodies.
 struct DynamicOptions {
   double end = 1;
-  double dt = 0;                 ///< 0: the integrator's own choice
-  double velocity_limit = 1000;  ///< of any body [m/s]
-  double energy_limit = 0.1;     ///< of the energy balance's error over the energies that move
-  double history = 0;            ///< time between samples [s]; 0: 200 over the run
-  double fields = 0;             ///< further samples, for frames [s]; 0: none
-  double most_steps = default_most_steps;  ///< a run that needs more is refused
+  double dt = 0;                 ///< step [s]; 0: the integrator chooses
+  double velocity_limit = 1000;  ///< largest speed of a body [m/s]
+  /// Largest error of the energy balance relative to the energies that moved.
+  double energy_limit = 0.1;
+  double history = 0;                      ///< time between samples [s]; 0: 200 over the run
+  double fields = 0;                       ///< time between further samples for frames [s]; 0: none
+  double most_steps = default_most_steps;  ///< a run that needs more steps is refused
   OnPlan on_plan = nullptr;
   CheckpointOptions checkpoint;
 };

@@ -21,7 +21,7 @@ void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, dou
     if (name == "energy_damping" || name == "energy_drag" || name == "energy_fracture" ||
         name == "energy_numerical") {
       lost += value;
-      size += std::abs(value);  // a current gives energy
+      size += std::abs(value);  // a current may add energy
     } else if (name == "energy_external") {
       external += value;
       size += std::abs(value);

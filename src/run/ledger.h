@@ -12,18 +12,20 @@
 
 namespace floe {
 
-/// Energies at a sample and what the balance says (all ranks).
+/// Energies at a sample, summed over ranks, and the error of their balance.
 class Ledger {
  public:
-  /// \param forces  sums over ranks of what the forces report   \param boundary  work of the
-  /// boundaries
+  /// Takes the energies of a sample [J].
+  /// \param forces  the forces' columns, summed over ranks
+  /// \param kinetic  kinetic energy
+  /// \param boundary  work of the boundaries since the start
   void take(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
             double boundary);
 
-  /// Error of the balance [J], and over the largest sum of energies that moved so far.
+  /// Error of the balance [J]. relative_error() divides it by the largest sum of moved energies.
   double error() const { return error_; }
   double relative_error() const;
-  /// Energies below this are rounding and are not judged [J].
+  /// Sets the energy below which differences count as rounding and are not judged [J].
   void set_floor(double floor) { floor_ = floor; }
   void persist(Archive& archive);
   std::vector<std::pair<std::string, double>> columns() const;

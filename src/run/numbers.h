@@ -1,5 +1,5 @@
 /// \file
-/// A vector's numbers on this rank as a span.
+/// Views of a PETSc vector's entries on this rank as a span, and their checkpoints.
 #pragma once
 
 #include <petscvec.h>
@@ -15,8 +15,9 @@
 
 namespace floe {
 
-/// To read and write, as long as the object lives. By all ranks or by none, whatever their share:
-/// it raises the vector's state, by which PETSc knows whether a norm is still good.
+/// Read and write access as long as the object lives. All ranks must make one or none, whatever
+/// their share: access raises the vector's state, by which PETSc knows whether a cached norm is
+/// valid.
 class Numbers {
  public:
   explicit Numbers(Vec vec) : vec_(vec) {
@@ -36,7 +37,7 @@ class Numbers {
   std::span<double> span_;
 };
 
-/// To read.
+/// Read access as long as the object lives.
 class ReadNumbers {
  public:
   explicit ReadNumbers(Vec vec) : vec_(vec) {
@@ -56,15 +57,15 @@ class ReadNumbers {
   std::span<const double> span_;
 };
 
-/// Local indices of a rank's own bodies.
+/// Returns the local indices of the bodies that this rank owns.
 inline std::vector<std::int32_t> owned_bodies(const Part& part) {
   std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
   std::iota(owned.begin(), owned.end(), 0);
   return owned;
 }
 
-/// A vector of `width` numbers per body, to and from a checkpoint; saving does not touch it.
-/// Collective.
+/// Saves a vector of `width` numbers per body to a checkpoint or loads it. Saving does not change
+/// the vector. Collective.
 inline void persist(Archive& archive, const Part& part, const std::string& name, Vec vector,
                     int width) {
   std::vector<double> rows;

@@ -50,7 +50,8 @@ HiddenMaxSteps::HiddenMaxSteps() : value_(ts_option("-ts_max_steps")) {
 HiddenMaxSteps::~HiddenMaxSteps() {
   if (!value_) return;
   (void)PetscOptionsSetValue(nullptr, "-ts_max_steps", value_->c_str());
-  PetscBool asked_for = PETSC_FALSE;  // it is no option that nothing has asked for
+  // PETSc must not report the option as unused.
+  PetscBool asked_for = PETSC_FALSE;
   (void)PetscOptionsHasName(nullptr, nullptr, "-ts_max_steps", &asked_for);
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// What of PETSc's options of TS all integrators in time ask for.
+/// PETSc options of TS that all integrators in time read or refuse.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,21 @@
 
 namespace floe {
 
-/// Value of an option, as "-ts_type"; nothing if it is not given.
+/// Returns the value of an option such as "-ts_type", nothing if it is not given.
 std::optional<std::string> ts_option(const char* option);
 
-/// \throws InputError that names the option and the reason, if it is given
+/// Refuses an option if it is given. \throws InputError that names the option and the reason
 void refuse_ts_option(const char* option, const std::string& why, const char* integrator);
 
-/// Refuses options that would upset samples and checkpoints. \throws InputError
+/// Refuses TS options that would upset samples and checkpoints. \throws InputError
 void refuse_ts_times(const char* integrator);
 
-/// -ts_max_steps, beyond PETSc's 32 bits; nothing if it is not given. \throws InputError
+/// Returns -ts_max_steps, which may exceed PETSc's 32 bits; nothing if it is not given. \throws
+/// InputError
 std::optional<std::int64_t> given_max_steps();
 
-/// During its life PETSc sees a small -ts_max_steps, if one is given: it could not read all that
-/// given_max_steps() can.
+/// While it lives PETSc sees a small -ts_max_steps if the option is given, since PETSc cannot read
+/// values of more than 32 bits.
 class HiddenMaxSteps {
  public:
   HiddenMaxSteps();
