@@ -1,5 +1,5 @@
 /// \file
-/// Stiffness and damping of a model at a state, as maps of vectors: differences of its forces.
+/// Stiffness and damping of a model at a state as linear maps, by differences of its forces.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +14,8 @@
 
 namespace floe {
 
-/// M^-1/2 K M^-1/2 and M^-1/2 C M^-1/2 on vectors of this rank's share of mass-weighted
-/// coordinates.
+/// The maps M^-1/2 K M^-1/2 and M^-1/2 C M^-1/2 on mass-weighted coordinates, of which a vector
+/// holds this rank's share.
 template <class Space>
 class Operators {
  public:
@@ -24,7 +24,7 @@ class Operators {
   using Components = std::array<double, static_cast<std::size_t>(n)>;
   using Rates = typename Force<Space>::Rates;
 
-  /// \param state  must outlive this
+  /// \param state  must outlive this object
   Operators(const Model<Space>& model, const State<Space>& state)
       : model_(model),
         part_(model.part()),
@@ -32,7 +32,7 @@ class Operators {
         moved_(state),
         forward_(static_cast<std::size_t>(part_.local)),
         backward_(forward_) {
-    // Stiffness without the velocities of the moment, so that dashpots have no part in it.
+    // Stiffness is measured with all velocities zero, so that dashpots do not contribute.
     double fastest2 = 0;
     for (std::size_t b = 0; b < static_cast<std::size_t>(part_.local); ++b) {
       const Vec3<double> speed = velocity(state, b);
@@ -55,8 +55,8 @@ class Operators {
     return sum_over_ranks(a.dot(b), part_.comm);
   }
 
-  /// World components of body b from mass-weighted ones, those of rotations along its principal
-  /// axes; prescribed ones left out.
+  /// Returns the world components of a body from mass-weighted ones, whose rotations are along the
+  /// body's principal axes. Prescribed components are zero.
   Components unweighted(const Vector& z, std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
     const auto i = static_cast<Eigen::Index>(body) * n;
@@ -70,8 +70,8 @@ class Operators {
     return x;
   }
 
-  /// Stiffness and damping times z; the latter is empty if nothing damps. Steps of the differences
-  /// are 1e-6 of the length scale and of a radian.
+  /// Computes stiffness and damping times z; `damping` is empty if no force damps. The differences
+  /// step by 1e-6 of the length scale and of a radian. Collective.
   void apply(const Vector& z, Vector& stiffness, Vector& damping) {
     double largest = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b) {
@@ -90,14 +90,14 @@ class Operators {
     if (step > 0 && !decided_) decide(damping);
     if (damped_) damping += bound_.damping * z;
   }
-  /// Once a vector has been applied.
+  /// Whether any force damps; valid after the first apply().
   bool is_damped() const { return damped_; }
-  /// Bounds of the forces whose differences are not taken.
+  /// Bounds of stiffness and damping of the forces that take no part in the differences.
   const Rates& bound() const { return bound_; }
 
  private:
-  /// M^-1/2 times the forces at displacements of -step z and velocities of -speed z, less those at
-  /// +step z and +speed z.
+  /// M^-1/2 times the forces at displacements -step z and velocities -speed z, minus those at +step
+  /// z and +speed z.
   Vector difference(const Vector& z, double step, double speed) {
     displace(z, step, speed);
     evaluate(forward_);
@@ -106,7 +106,7 @@ class Operators {
     return weighted(backward_, forward_);
   }
 
-  /// \param step  of displacements that are 1e-6 of the length scale and of a radian
+  /// \param step  step of displacements that makes them 1e-6 of the length scale and of a radian
   void difference_damping(const Vector& z, double step, Vector& damping) {
     if (speed_ < slow || step == 0) {
       if (at_rest_.values.empty()) {
@@ -119,15 +119,16 @@ class Operators {
       damping = weighted(at_rest_, forward_);
       return;
     }
-    // About the velocities of the moment, on which quadratic drag depends: by 1e-3 of them to
-    // either side, or the images of a search's vectors would not be those of one linear map.
+    // Quadratic drag depends on the present velocities, so the difference is taken about them, by
+    // 1e-3 of them to either side; otherwise the images of a search's vectors would not be those of
+    // one linear map.
     const double change = 1e3 * step * speed_ / model_.length_scale();
     damping = difference(z, 0, change);
     damping *= 0.5 / change;
   }
 
-  /// What leaves a random vector, the first of every search, at exactly zero is zero: the images
-  /// need not be taken, nor kept.
+  /// Decides whether the model is damped. The first vector of every search is random, so if its
+  /// image is exactly zero the damping is zero, and further images are neither computed nor kept.
   void decide(Vector& damping) {
     const double mine = damping.size() > 0 ? damping.cwiseAbs().maxCoeff() : 0;
     const double largest = largest_over_ranks(mine, part_.comm);
@@ -146,8 +147,8 @@ class Operators {
     }
     ++evaluations_;
   }
-  /// Rotation components from a body's principal axes to the world, or the other way. In the plane
-  /// they are one and the same.
+  /// Rotates the rotation components from a body's principal axes to the world, or back. In the
+  /// plane both are the same.
   template <bool to_world>
   void turn(std::size_t b, Components& x) const {
     if constexpr (std::is_same_v<Space, Spatial>) {
@@ -159,7 +160,7 @@ class Operators {
       x[3] = turned.x, x[4] = turned.y, x[5] = turned.z;
     }
   }
-  /// Square roots of the masses and of the moments of inertia.
+  /// Square roots of the mass and of the moments of inertia.
   Components roots(std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
     Components root;
@@ -171,7 +172,7 @@ class Operators {
     }
     return root;
   }
-  /// Turns the rotation of a record.
+  /// Rotates a record's rotation by `by` times the rotation components of x.
   void turn_record(std::size_t b, const Components& x, double by, double* r) const {
     if constexpr (std::is_same_v<Space, Spatial>) {
       const Vec3<double> spin{by * x[3], by * x[4], by * x[5]};
@@ -187,7 +188,8 @@ class Operators {
     }
   }
 
-  /// \param speed  0: no velocities at all
+  /// Moves all bodies by `by` times z and changes their velocities by `speed` times z; speed 0: all
+  /// velocities are zero.
   void displace(const Vector& z, double by, double speed) {
     const double from = speed_ < slow ? 0 : 1;
     for (std::int32_t body = 0; body < part_.owned; ++body) {
@@ -204,7 +206,7 @@ class Operators {
     part_.ghosts.update(moved_.records, Space::record);
   }
 
-  /// M^-1/2 (a - b), prescribed components left out.
+  /// M^-1/2 (a - b); prescribed components are zero.
   Vector weighted(const Wrenches<Space>& a, const Wrenches<Space>& b) const {
     Vector y(size());
     for (std::int32_t body = 0; body < part_.owned; ++body) {
@@ -223,7 +225,7 @@ class Operators {
 
   const Model<Space>& model_;
   const Part& part_;
-  static constexpr double slow = 1e-6;  // [m/s]: no quadratic drag to speak of
+  static constexpr double slow = 1e-6;  // [m/s]: quadratic drag is negligible below
   const State<Space>& state_;
   State<Space> moved_;
   Wrenches<Space> forward_, backward_, at_rest_;

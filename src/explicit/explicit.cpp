@@ -9,7 +9,7 @@
 namespace floe {
 namespace {
 
-/// Leapfrog's run: velocities half a step behind positions.
+/// A run by leapfrog, whose velocities lag half a step behind positions.
 template <class Space>
 class LeapfrogRun final : public ExplicitRun<Space> {
   using Base = ExplicitRun<Space>;
@@ -27,7 +27,8 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     this->model().part().ghosts.update(this->state().records, Space::record);
   }
 
-  /// The forces at t_n are known: samples that are due see them, then bodies move to t_n+1.
+  /// Makes a step. The forces at t_n are known; a sample that is due gets them before the bodies
+  /// move to t_n+1.
   bool step(TS ts) {
     if (this->done() > 0) step_.evaluate();
     if (!this->sample_if_due()) return false;
@@ -41,10 +42,11 @@ class LeapfrogRun final : public ExplicitRun<Space> {
  private:
   StableStep find_stable_step() override {
     const StableStep stable = stable_step(this->model(), this->state());
-    this->evaluate();  // forces keep by-products of their last evaluation: the power they take
+    // Forces keep by-products of their last evaluation (their power), which the search has changed.
+    this->evaluate();
     return stable;
   }
-  /// Velocities lag half of the next step.
+  /// Keeps velocities half of the next step behind.
   void step_changed(TS, double before) override { step_.stagger(this->dt() - before); }
   typename Base::Energies energies() const override {
     const auto [kinetic, boundary] = step_.energies(this->dt());

@@ -1,5 +1,5 @@
 /// \file
-/// Explicit dynamics.
+/// Explicit dynamics (model.md, "Explicit dynamics").
 #pragma once
 
 #include <string>
@@ -8,21 +8,23 @@
 
 namespace floe {
 
-/// What explicit dynamics is told.
+/// Settings of explicit dynamics.
 struct ExplicitOptions : DynamicOptions {
-  double safety = 0.9;          ///< dt = 0: this part of the stable step
-  bool allow_unstable = false;  ///< take a given dt above the stable step
+  double safety = 0.9;          ///< with dt = 0: the step as a part of the stable step
+  bool allow_unstable = false;  ///< accept a given dt above the stable step
 };
 
-/// Newton's equations by PETSc's TS: own type `leapfrog`, velocities half a step behind. Every
-/// sample goes to the observer. Stops, with the last sample as last good state, when a velocity or
-/// the energy balance crosses its limit or a number is not finite. Collective. \throws InputError
-/// for a dt above the stable step, and for options of solvers that explicit dynamics does not use
+/// Integrates Newton's equations by PETSc's TS, of the own type `leapfrog` (velocities half a step
+/// behind) or `rk`. Every sample goes to the observer. Stops, with the last sample as the last good
+/// state, when a velocity or the energy balance crosses its limit or a number is not finite.
+/// Collective.
+/// \throws InputError for a dt above the stable step, and for options of solvers that explicit
+///   dynamics does not use
 template <class Space>
 RunResult run_explicit(Model<Space>& model, const ExplicitOptions& options,
                        const ObserverOf<Space>& observer);
 
-/// Why the stepper that the options choose takes spatial models only; empty if it does not.
+/// Returns why the chosen stepper takes spatial models only; empty if it takes planar models too.
 std::string explicit_needs_space();
 
 }  // namespace floe

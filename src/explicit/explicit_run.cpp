@@ -11,7 +11,7 @@
 namespace floe {
 namespace {
 
-/// Of an evaluation of all forces: what a step takes beside it.
+/// Time of the other work of a step, relative to an evaluation of all forces.
 constexpr double moving = 0.25;
 
 }  // namespace
@@ -56,7 +56,8 @@ void ExplicitRun<Space>::choose_step() {
   this->plan(wanted);
 }
 
-/// Sum of the forces' own fastest rates, of all ranks' bodies; 0 if none has any.
+/// Sum over the forces of their fastest rates [1/s], each the largest over ranks; 0 if no force
+/// gives one. Collective.
 template <class Space>
 double ExplicitRun<Space>::rate_estimate() {
   std::vector<double> rates;
@@ -70,7 +71,7 @@ double ExplicitRun<Space>::rate_estimate() {
   return std::accumulate(rates.begin(), rates.end(), 0.0);
 }
 
-/// The shortest of the steps that forces limit for other reasons than stability. Collective.
+/// Shortest of the steps that forces require for reasons other than stability. Collective.
 template <class Space>
 typename LimitsStep<Space>::Limit ExplicitRun<Space>::step_limit() {
   typename LimitsStep<Space>::Limit least;
@@ -86,7 +87,7 @@ typename LimitsStep<Space>::Limit ExplicitRun<Space>::step_limit() {
   return least;
 }
 
-/// Sum of the bounds that forces give themselves [1/s^2].
+/// Sum of the forces' own stiffness bounds [1/s^2].
 template <class Space>
 double ExplicitRun<Space>::own_stiffness() {
   double sum = 0;
@@ -96,7 +97,7 @@ double ExplicitRun<Space>::own_stiffness() {
   return sum;
 }
 
-/// The least stable step that dt is taken with.
+/// Smallest stable step that allows the present dt [s].
 template <class Space>
 double ExplicitRun<Space>::needed() const {
   return this->options().dt > 0 ? this->dt() : this->dt() / (0.5 * (1 + explicit_options_.safety));
@@ -106,7 +107,7 @@ template <class Space>
 bool ExplicitRun<Space>::look_is_due() {
   if (explicit_options_.allow_unstable || this->done() == 0) return false;
   if (own_stiffness() > last_own_) return true;
-  // A step costs about an evaluation, and the rates less than half of it.
+  // A step costs about one evaluation, the rates less than half of one.
   constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
   if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
   if (!this->sampled() && this->done() % now_and_then != 0) return false;
@@ -146,7 +147,7 @@ bool ExplicitRun<Space>::keep_step_stable(TS ts) {
 
 template <class Space>
 void ExplicitRun<Space>::add_to(RunPlan& plan) const {
-  if (!(seconds_an_evaluation_ > 0)) return;  // a restart has not looked
+  if (!(seconds_an_evaluation_ > 0)) return;  // after a restart no search has been timed
   plan.seconds_a_step = evaluations_a_step() * (1 + moving) * seconds_an_evaluation_;
   plan.measured = std::to_string(evaluations_) + " evaluations of the forces";
 }

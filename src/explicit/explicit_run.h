@@ -1,6 +1,6 @@
 /// \file
-/// What the types of explicit dynamics share beside DynamicRun: a step below the stable one, also
-/// where that falls in the course of the run.
+/// The part of a run that all explicit integrators share on top of DynamicRun: a step below the
+/// stable step, also where the stable step falls during the run.
 #pragma once
 
 #include "explicit/explicit.h"
@@ -9,12 +9,13 @@
 
 namespace floe {
 
-/// The stable step is found at the beginning and again, as often as that costs 1 % of the steps. It
-/// is found at once where the forces' own fastest rates (LimitsStep::rate_estimate), looked at with
-/// each sample, have grown so far that it may have fallen below what dt needs. `dt: auto` needs it
-/// where half of what `safety` leaves is used up, and takes shorter steps from there on; a given
-/// step ends the run when it is no longer stable. A run whose stable step does not fall so far goes
-/// on as if nobody had looked, to the last bit.
+/// A run whose step stays below the stable step (model.md, "Explicit dynamics"). The stable step is
+/// searched at the start and again as often as that costs 1 % of the steps. It is searched
+/// immediately where the forces' own fastest rates (LimitsStep::rate_estimate), checked with each
+/// sample, have grown so far that the stable step may have fallen below the one that dt needs. `dt:
+/// auto` takes shorter steps once half of the margin that `safety` leaves is used up; a given step
+/// ends the run when it is no longer stable. A run whose stable step does not fall so far is the
+/// same to the last bit as without these searches.
 template <class Space>
 class ExplicitRun : public DynamicRun<Space> {
  public:
@@ -22,18 +23,20 @@ class ExplicitRun : public DynamicRun<Space> {
               const Observer<Space>& observer);
 
  protected:
-  /// At the state, whose wrenches must be known afterwards as they were before.
+  /// Searches the stable step at the state; the state's wrenches must be known afterwards as
+  /// before.
   virtual StableStep find_stable_step() = 0;
-  /// Takes over that the next step is another than `before`; the state's wrenches are known.
+  /// Called when the next step differs from `before` [s]; the state's wrenches are known.
   virtual void step_changed(TS ts, double before) = 0;
   void persist_own(Archive& archive) override;
   void add_to(RunPlan& plan) const override;
   virtual int evaluations_a_step() const { return 1; }
 
-  /// The given step, or from the stable one. \throws InputError for a given one above it that was
-  /// not asked for all the same, and if there is neither
+  /// Takes the given step, or a step from the stable one.
+  /// \throws InputError for a given step above the stable one unless allow_unstable is set, and if
+  ///   neither a given nor a stable step exists
   void choose_step();
-  /// Between two steps: looks at the stable step if that is due. False: the run ends here.
+  /// Searches the stable step between two steps if that is due. False: the run ends here.
   bool keep_step_stable(TS ts);
 
   const ExplicitOptions& explicit_options() const { return explicit_options_; }
@@ -47,13 +50,14 @@ class ExplicitRun : public DynamicRun<Space> {
   double needed() const;
 
   const ExplicitOptions& explicit_options_;
-  // Of the last look:
+  // Results of the last search:
   std::int64_t last_look_ = 0, evaluations_ = 0;
   double last_stable_ = 0, last_rate_ = 0, last_own_ = 0, seconds_an_evaluation_ = 0;
 };
 
-/// Newton's equations by PETSc's explicit Runge-Kutta methods, all of their -ts_rk_type, on bodies'
-/// records as vectors; the step fixed, or PETSc's -ts_adapt_type basic. \throws InputError
+/// Integrates Newton's equations by PETSc's explicit Runge-Kutta methods (all -ts_rk_type) on
+/// bodies' records as vectors, with a fixed step or PETSc's -ts_adapt_type basic (model.md,
+/// "Explicit dynamics"). Collective. \throws InputError
 RunResult run_rk(Model<Spatial>& model, const ExplicitOptions& options,
                  const Observer<Spatial>& observer);
 

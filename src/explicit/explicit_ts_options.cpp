@@ -12,7 +12,7 @@
 namespace floe {
 namespace {
 
-/// TS would read options of solvers for a solver that it never uses.
+/// Refuses options of solvers: TS would read them for a solver that is never used.
 void refuse_solvers() {
   PetscInt count = 0;
   char **names = nullptr, **values = nullptr;
@@ -29,7 +29,7 @@ void refuse_solvers() {
     throw InputError(found + ": integrator: explicit solves no system of equations");
 }
 
-/// Why a type of PETSc's cannot step rigid bodies with dashpots.
+/// Returns why a TS type of PETSc cannot step rigid bodies with dashpots.
 std::string reason_against(const std::string& type) {
   static const std::map<std::string, const char*> known{
       {"basicsymplectic",
@@ -56,7 +56,7 @@ std::string chosen_type() {
   return type;
 }
 
-/// Options that TS would read without effect, or that would upset samples and checkpoints.
+/// Refuses options that TS would read without effect, or that would upset samples and checkpoints.
 void refuse_without_effect(const std::string& type) {
   refuse_ts_times("explicit");
   for (const char* option : {"-ts_rk_multirate", "-ts_rk_dtratio", "-ts_use_splitrhsfunction"})

@@ -102,8 +102,8 @@ void FirstOrderSystem::prescribe(State<Spatial>& state) const {
   }
 }
 
-/// Angular velocity of a body from its prescribed components and the angular momentum's free ones,
-/// and with it the rest of the angular momentum.
+/// Computes the angular velocity of a body from its prescribed components and the free components
+/// of the angular momentum, and then the remaining components of the angular momentum.
 void FirstOrderSystem::hold_spin(std::size_t b, const double* rate, double* r) const {
   const std::array<bool, 3> held{fixed(b, 3), fixed(b, 4), fixed(b, 5)};
   if (!held[0] && !held[1] && !held[2]) return;
@@ -116,7 +116,7 @@ void FirstOrderSystem::hold_spin(std::size_t b, const double* rate, double* r) c
       turn * Eigen::Vector3d(principal.x, principal.y, principal.z).asDiagonal() * turn.transpose();
   Eigen::Map<Eigen::Vector3d> omega(r + Spatial::angular_velocity);
   Eigen::Map<Eigen::Vector3d> l(r + Spatial::angular_momentum);
-  // Rows in units of inertia, so that pivots compare.
+  // All rows are in units of inertia, so that pivots are comparable.
   const double scale = inertia.trace();
   Eigen::Matrix3d a = inertia;
   Eigen::Vector3d right = l;
@@ -211,7 +211,8 @@ double FirstOrderSystem::work_of_state(const State<Spatial>& state) const {
 }
 
 double FirstOrderSystem::largest_speed2(const State<Spatial>& state) const {
-  double largest = 0, sum = 0;  // a maximum would lose what is not a number
+  // The sum keeps numbers that are not finite, which a maximum would lose.
+  double largest = 0, sum = 0;
   for (std::size_t b = 0; b < owned_; ++b) {
     const Vec3<double> v = three(state.record(b) + Spatial::velocity);
     const double speed2 = dot(v, v);

@@ -1,22 +1,21 @@
 /// \file
 /// Newton's and Euler's equations of the bodies as one system y' = f(t, y) of first order, for time
-/// integrators that know vectors only (model.md section 8, "Runge-Kutta").
+/// integrators that work on vectors (model.md, "Explicit dynamics": Runge-Kutta).
 ///
-/// Of a rank, y holds 13 numbers per owned body,
+/// On each rank y holds 13 numbers per owned body,
 ///   u' = v,  q' = (0, omega) q / 2,  v' = F/m,  L' = tau,   omega = R I^-1 R^T L,
 /// (u displacement, q rotation from rest, L angular momentum in the world, R the principal axes),
-/// and after them integrals of this rank's powers: one per force (DoesWork::power), and the
-/// boundaries'.
+/// followed by the integrals of this rank's powers: one per force (DoesWork::power), and that of
+/// the boundaries.
 ///
-/// Prescribed components are not integrated: at every stage they are what the boundary says at its
-/// time. Where some components of the angular velocity are prescribed (h) and others free (f), the
-/// reaction acts on L_h only; so L_f is integrated, and J omega = L gives omega_f, then L_h.
+/// Prescribed components are not integrated: at every stage they have the boundary's value at the
+/// stage's time. Where some components of the angular velocity are prescribed (h) and others free
+/// (f), the reaction acts on L_h only; so L_f is integrated, J omega = L gives omega_f, then L_h.
 ///
-/// The boundaries' work. Let h run over prescribed components. With m a_h = F_h + r_h and
-/// L_h' = tau_h + r_h the reactions r do the work
-///   sum m v_h^2/2 + omega_h L_h - integral (F_h v_h + tau_h omega_h + L_h omega_h') dt,
-/// of which the former is known from the state, also where v_h jumps, and the latter is integrated
-/// with y.
+/// Work of the boundaries: let h run over prescribed components. With m a_h = F_h + r_h and L_h' =
+/// tau_h + r_h the reactions r do the work
+///   sum m v_h^2/2 + omega_h L_h - integral (F_h v_h + tau_h omega_h + L_h omega_h') dt.
+/// The first part follows from the state, also where v_h jumps; the integral is computed with y.
 #pragma once
 
 #include <span>
@@ -27,47 +26,50 @@
 
 namespace floe {
 
+/// The system of first order on this rank's owned bodies.
 class FirstOrderSystem {
  public:
   static constexpr std::size_t width = 13;
   static constexpr std::size_t displacement = 0, rotation = 3, velocity = 7, momentum = 10;
 
-  /// \param model  must outlive this, and have its forces
+  /// \param model  must outlive this object and already have its forces
   explicit FirstOrderSystem(const Model<Spatial>& model);
 
-  /// Numbers in y on this rank, and how many of them are of bodies.
+  /// Length of y on this rank, and the length of its part for bodies.
   std::size_t size() const { return bodies_size() + works(); }
   std::size_t bodies_size() const { return owned_ * width; }
-  std::size_t works() const { return model_.forces().size() + 1; }  ///< the last: the boundaries'
+  std::size_t works() const {
+    return model_.forces().size() + 1;
+  }  ///< number of integrals of power, the boundaries' last
 
-  /// Sets the bodies' first velocities, and their angular momenta; prescribed components get theirs
-  /// at once. Returns the boundaries' work for that, less work_of_state() [J].
+  /// Sets the initial velocities and angular momenta of the bodies. Prescribed components get their
+  /// prescribed velocities. Returns the boundaries' work for that, less work_of_state() [J].
   double begin(State<Spatial>& state);
-  /// After a restart: prescribed components keep the distance that they have from their
-  /// prescription.
+  /// Stores, after a restart, the distance of prescribed components from their prescription, which
+  /// later stages keep.
   void go_on(const State<Spatial>& state);
 
-  /// Records of owned bodies at a time from y: quaternions of unit length, prescribed components as
-  /// prescribed, angular velocities from angular momenta.
+  /// Writes the records of owned bodies at a time from y: quaternions of unit length, prescribed
+  /// components as prescribed, angular velocities from angular momenta.
   void to_records(std::span<const double> y, double time, State<Spatial>& state) const;
-  /// y of records, with its integrals 0.
+  /// Writes y from records, with zero integrals.
   void from_records(const State<Spatial>& state, std::span<double> y) const;
-  /// y' from a state with its wrenches.
+  /// Computes y' from a state and its wrenches.
   void rates(const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
              std::span<double> rates) const;
 
-  /// This rank's kinetic energy [J].
+  /// Returns this rank's kinetic energy [J].
   double kinetic(const State<Spatial>& state) const;
-  /// The part of the boundaries' work that the state tells [J].
+  /// Returns the part of the boundaries' work that follows from the state [J].
   double work_of_state(const State<Spatial>& state) const;
-  /// Square of the largest speed [m^2/s^2]; not finite if one is not.
+  /// Returns the square of the largest speed [m^2/s^2]; not finite if one of them is not.
   double largest_speed2(const State<Spatial>& state) const;
 
  private:
   struct Body {
     double mass;
     Vec3<double> inertia;
-    Quat<double> axes;  // at rest
+    Quat<double> axes;  // principal axes at rest
   };
   void prescribe(State<Spatial>& state) const;
   Vec3<double> spin(const Body& body, const Quat<double>& q, const Vec3<double>& l) const;
@@ -80,7 +82,8 @@ class FirstOrderSystem {
   std::size_t owned_;
   std::vector<Body> bodies_;
   std::vector<std::int32_t> held_;  ///< owned bodies with a prescribed component
-  std::vector<double> offset_;      ///< per component of those: place less prescription [m]
+  std::vector<double>
+      offset_;  ///< per component of held bodies: displacement less prescription [m]
   mutable std::vector<double> place_, rate_, acceleration_;  ///< prescribed (work space)
 };
 

@@ -1,6 +1,6 @@
 /// \file
-/// PETSc TS type `leapfrog`: the default of explicit dynamics, at the cost of a bare loop (own type
-/// because PETSc's explicit types move whole vectors about several times a step).
+/// PETSc TS type `leapfrog`, the default of explicit dynamics. It costs no more than a bare loop;
+/// PETSc's explicit types move whole vectors several times a step.
 #pragma once
 
 #include <petscts.h>
@@ -11,15 +11,16 @@
 
 namespace floe {
 
-/// One step of `dt` from the time that the stepper itself keeps; false stops the run.
+/// Makes one step of `dt` [s] from the time that the stepper keeps itself. False stops the run.
 using LeapfrogStep = std::function<bool(double dt)>;
 
+/// Name of the type in PETSc.
 inline constexpr const char* ts_leapfrog = "leapfrog";
 
-/// Makes the type known to PETSc (once).
+/// Registers the type with PETSc, once.
 void register_leapfrog();
 
-/// The work that a TS of this type does each step. \param step must outlive the TS
+/// Sets the work that a TS of this type does in each step. \param step  must outlive the TS
 void set_leapfrog_step(TS ts, LeapfrogStep* step);
 
 }  // namespace floe

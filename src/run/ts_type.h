@@ -1,7 +1,7 @@
 /// \file
-/// What floe's own TS types take from PETSc's private header: a new type has no other way into a
-/// TS. The layout may change with any release, so the shape of all that is used is checked here at
-/// compile time, and test_ts_types.cpp runs both types.
+/// PETSc's private TS header for floe's own TS types, which have no other access to a TS. The
+/// layout may change with any release, so the types of all members used are checked here at compile
+/// time, and test_ts_types.cpp runs both TS types.
 #pragma once
 
 #include <petsc/private/tsimpl.h>
@@ -17,15 +17,15 @@ struct SecondArgument<Result (*)(First, Second)> {
   using type = Second;
 };
 
-/// What setfromoptions is given: PetscOptionItems* up to PETSc 3.22, then PetscOptionItems, which
-/// has become a pointer itself.
+/// Argument of setfromoptions: PetscOptionItems* up to PETSc 3.22, then PetscOptionItems, which is
+/// a pointer itself since.
 using TsOptionItems = SecondArgument<decltype(_TSOps::setfromoptions)>::type;
 static_assert(std::is_pointer_v<TsOptionItems>);
 
 template <class Member, class Expected>
 concept Holds = std::is_same_v<Member, Expected>;
 
-// Functions of a type.
+// Functions of a TS type.
 using TsFunction = PetscErrorCode (*)(TS);
 static_assert(Holds<decltype(_TSOps::setup), TsFunction>);
 static_assert(Holds<decltype(_TSOps::step), TsFunction>);
@@ -38,7 +38,7 @@ static_assert(Holds<decltype(_TSOps::snesjacobian), PetscErrorCode (*)(SNES, Vec
 static_assert(
     Holds<decltype(_TSOps::evaluatewlte), PetscErrorCode (*)(TS, NormType, PetscInt*, PetscReal*)>);
 
-// What a type reads and writes.
+// Members that a TS type reads and writes.
 static_assert(Holds<decltype(_p_TS::data), void*>);
 static_assert(Holds<decltype(_p_TS::vec_sol), Vec>);
 static_assert(Holds<decltype(_p_TS::vec_dot), Vec>);

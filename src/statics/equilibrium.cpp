@@ -19,7 +19,8 @@ constexpr double default_rtol = 1e-10, petsc_atol = 1e-50;
 
 /// Diagonal of the box around all bodies, and at least a body's own size [m].
 double extent(const Part& part) {
-  std::array<double, 7> all;  // high, minus low, radius of gyration
+  std::array<double, 7>
+      all;  // maxima of the coordinates, of minus the coordinates, of the radius of gyration
   all.fill(-std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -63,7 +64,8 @@ Equilibrium<Space>::Equilibrium(Model<Space>& model)
   check(SNESSetConvergenceTest(snes_, converged, this, nullptr));
 }
 
-/// What MUMPS could not factorise, a smaller load step may make regular again.
+/// Drops a factor that MUMPS failed to compute: with a smaller load step the matrix may be regular
+/// again.
 template <class Space>
 void Equilibrium<Space>::begin_anew_after_failure() {
   KSP ksp = nullptr;
@@ -74,7 +76,7 @@ void Equilibrium<Space>::begin_anew_after_failure() {
   }
 }
 
-/// Defaults that PETSc's own options override.
+/// Sets defaults that PETSc's own options override.
 template <class Space>
 void Equilibrium<Space>::set_defaults() {
   set_newton_defaults(snes_);
@@ -127,8 +129,8 @@ void Equilibrium<Space>::rebase(Vec x) {
   check(VecRestoreArrayRead(x, &values));
 }
 
-/// Wrenches force by force: the size of what must balance is the external forces' and the
-/// reactions'.
+/// Computes the residual, evaluating force by force: the convergence test needs the size of the
+/// external forces and of the reactions.
 template <class Space>
 void Equilibrium<Space>::fill_residual(Vec f) {
   const Timed timed(Event::forces);
@@ -171,8 +173,9 @@ PetscErrorCode Equilibrium<Space>::residual(SNES snes, Vec x, Vec f, void* self)
   return 0;
 }
 
-/// A factorisation costs a dozen solves. The one of the prediction serves on while each iteration
-/// takes a digit off the residual; after a prediction that turned bodies far it is not even tried.
+/// Whether to keep the factorisation, since a new one costs a dozen solves. That of the prediction
+/// is kept while each iteration takes a digit off the residual. After a prediction with large
+/// rotations it is not tried.
 template <class Space>
 bool Equilibrium<Space>::keeps_factorisation() const {
   constexpr double a_digit = 0.1;
@@ -190,8 +193,8 @@ PetscErrorCode Equilibrium<Space>::jacobian(SNES, Vec x, Mat, Mat, void* self) n
   return 0;
 }
 
-/// Relative to the forces that balance (external ones and reactions), never below the rounding of
-/// the beams' own.
+/// Size of the forces that balance (external forces and reactions), and the rounding level of the
+/// beams' forces.
 template <class Space>
 typename Equilibrium<Space>::Scale Equilibrium<Space>::scale_of_forces() const {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
@@ -205,8 +208,8 @@ typename Equilibrium<Space>::Scale Equilibrium<Space>::scale_of_forces() const {
   return {std::sqrt(all[0]), rounding * std::sqrt(all[1])};
 }
 
-/// So far from rest that rounding hides any load: an overloaded sheet that sinks for ever is no
-/// equilibrium.
+/// Whether a body is so far from rest that rounding hides any load: an overloaded sheet that sinks
+/// for ever is not in equilibrium.
 template <class Space>
 bool Equilibrium<Space>::is_lost() const {
   constexpr double far = 100;  // times the lattice's extent
@@ -244,8 +247,8 @@ PetscErrorCode Equilibrium<Space>::converged(SNES snes, PetscInt it, PetscReal, 
   return 0;
 }
 
-/// What prescribed unknowns lack of their values at a time, n per local body; empty if nothing
-/// moves. Notes the largest displacement that is prescribed.
+/// Increments that bring prescribed unknowns to their values at a time, n per local body; empty if
+/// no prescribed unknown moves. Stores the largest prescribed displacement. Collective.
 template <class Space>
 std::vector<double> Equilibrium<Space>::increments_to(double time) {
   std::vector<double> target(static_cast<std::size_t>(part_.local) * n),
@@ -266,12 +269,14 @@ std::vector<double> Equilibrium<Space>::increments_to(double time) {
   largest_over_ranks(all, part_.comm);
   prescribed_ = all[1];
   if (all[0] == 0) return {};
-  part_.ghosts.update(increments, n);  // their present values come with their owners' increments
+  // Owners know the present values of their unknowns, so ghosts receive the increments.
+  part_.ghosts.update(increments, n);
   return increments;
 }
 
-/// Right-hand side of the linear step. With a new tangent, -F_f - K_fc d_c; with a constant one
-/// that is factorised, prescribed unknowns are moved first, and -F_f is all.
+/// Fills the right-hand side of the linear step. With a new tangent it is -F_f - K_fc d_c. With a
+/// constant, factorised tangent the prescribed unknowns are moved first, and -F_f is the right-hand
+/// side.
 template <class Space>
 void Equilibrium<Space>::fill_right_hand_side(std::vector<double>& increments) {
   if (constant_) {
@@ -294,8 +299,8 @@ void Equilibrium<Space>::fill_right_hand_side(std::vector<double>& increments) {
   check(VecRestoreArray(f_, &f));
 }
 
-/// Brings prescribed unknowns to their values at the new time, and all others along: one linear
-/// solve with the tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
+/// Moves prescribed unknowns to their values at the new time, and all other unknowns with them, by
+/// one linear solve with the tangent of the present state, K_ff d_f = -F_f - K_fc d_c.
 template <class Space>
 bool Equilibrium<Space>::predict(double time) {
   std::vector<double> increments = increments_to(time);
@@ -389,9 +394,9 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
   return true;
 }
 
-/// Beams break one at a time, the most overloaded first, and others soften, each time to a new
-/// balance: states that are in balance but for the beams that break, as slow loading passes
-/// through them.
+/// Lets beams break, one at a time, the most overloaded first, and others soften; each change is
+/// followed by a new equilibrium. The path passes through states that are in equilibrium except for
+/// the beams that break, as under slow loading.
 template <class Space>
 bool Equilibrium<Space>::let_break(double time, double overload_limit) {
   if constexpr (std::is_same_v<Space, Spatial>) {
@@ -417,8 +422,8 @@ bool Equilibrium<Space>::let_break(double time, double overload_limit) {
   }
 }
 
-/// Newton's method from the present state to equilibrium at `time`; leaves the state anywhere if it
-/// fails.
+/// Solves by Newton's method from the present state for equilibrium at `time`. After a failure the
+/// state is undefined.
 template <class Space>
 bool Equilibrium<Space>::balance(double time) {
   if (!predict(time)) return false;
@@ -457,10 +462,10 @@ std::int64_t Equilibrium<Space>::count_folded() const {
   return sum_over_ranks(model_.beams()->folded(state_), part_.comm);
 }
 
-/// The tangent on z, rx, ry at a planar state, into the planar one's matrix, whose size and pattern
-/// it has, so that MUMPS need not analyse it again. No entry couples these with x, y, rz (mirror
-/// symmetry); so the negative eigenvalues of both together are those of the spatial tangent
-/// (Sylvester's law of inertia).
+/// Assembles the tangent on z, rx, ry at a planar state into the matrix of the planar tangent,
+/// which has the same size and pattern, so that MUMPS need not analyse the matrix again. No entry
+/// couples z, rx, ry with x, y, rz (mirror symmetry), so the two tangents together have the
+/// negative eigenvalues of the spatial tangent (Sylvester's law of inertia).
 template <class Space>
 void Equilibrium<Space>::assemble_out_of_plane(const OutOfPlane& rest) {
   const Timed timed(Event::tangent);
@@ -495,7 +500,7 @@ std::int64_t Equilibrium<Space>::unstable_modes(const OutOfPlane* rest) {
   }
   const Timed timed(Event::solve);
   std::int64_t negative = negative_pivots(ksp);
-  // With linear kinematics forces in the plane have no effect out of it.
+  // With linear kinematics in-plane forces have no effect out of the plane.
   if (rest != nullptr && model_.kinematics() != Kinematics::linear) {
     assemble_out_of_plane(*rest);
     use_tangent();

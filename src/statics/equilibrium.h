@@ -1,12 +1,12 @@
 /// \file
-/// The nonlinear equations of static equilibrium as a SNES problem.
+/// Static equilibrium as a SNES problem (model.md, "Static solution").
 ///
-/// Unknowns x (blocks of n per body, PETSc's rows): displacement u [m] and the running sum of
-/// rotation increments times the model's length scale; whenever a tangent is formed increments are
-/// spins, so that it is exact (StaticRotations). The residual is minus the wrenches (moments
-/// divided by the length scale), zero where unknowns are prescribed.
+/// Unknowns x (blocks of n per body, PETSc's rows) are the displacement u [m] and the running sum
+/// of rotation increments times the model's length scale [m]. Whenever a tangent is formed,
+/// increments are spins, so that the tangent is exact (StaticRotations). The residual is minus the
+/// wrenches (moments divided by the length scale) [N], zero where unknowns are prescribed.
 ///
-/// Where all forces are linear in the unknowns the tangent is one and the same: it is assembled and
+/// Where all forces are linear in the unknowns the tangent is constant: it is assembled and
 /// factorised once in a run, and a load step is one solve.
 #pragma once
 
@@ -32,17 +32,18 @@ class Equilibrium {
   Equilibrium(const Equilibrium&) = delete;
   Equilibrium& operator=(const Equilibrium&) = delete;
 
-  /// Solves for the state at `time`, starting from the present one. Returns false, with the state
-  /// as before, if Newton fails; why() then says so.
-  /// Beams that may break do so until none is overloaded. \param overload_limit  on the largest s
-  /// of undamaged beams before the first of them breaks: above it the step is refused
+  /// Solves for the state at `time`, starting from the present one. Beams that may break do so
+  /// until none is overloaded. Returns false and restores the state before if Newton's method
+  /// fails; why() then gives the reason. Collective.
+  /// \param overload_limit  largest allowed s of undamaged beams before the first of them breaks;
+  ///   above it the step is refused
   bool solve(double time, double overload_limit = std::numeric_limits<double>::infinity());
 
-  /// Called in each of Newton's iterations, with its number from 0.
+  /// Sets a function that is called in each Newton iteration with the iteration's number, from 0.
   void set_on_iteration(std::function<void(std::int64_t)> on_iteration) {
     on_iteration_ = std::move(on_iteration);
   }
-  /// Called before each factorisation.
+  /// Sets a function that is called before each factorisation.
   void set_on_factorisation(std::function<void()> on_factorisation) {
     on_factorisation_ = std::move(on_factorisation);
   }
@@ -52,23 +53,23 @@ class Equilibrium {
   std::int64_t newton_iterations() const { return iterations_; }
   std::int64_t factorisations() const { return assemblies_; }
   const std::string& why() const { return why_; }
-  /// Whether the last failure came after beams had broken: the way on is dynamic.
+  /// Whether the last failure came after beams had broken, so that only dynamics can go on.
   bool collapsed() const { return collapsed_; }
   /// Whether the last failure was a request to stop.
   bool stopped() const { return stopped_; }
-  /// Largest reaction of a pin over the size of the forces in equilibrium: above rounding, a load
-  /// pushes a motion that nothing holds.
+  /// Largest reaction of a pin relative to the forces in equilibrium. Above rounding, a load pushes
+  /// a motion that nothing holds. Collective.
   double pin_reaction() const;
-  /// Whether the pins' reactions are there only because Newton's method stopped early: solves on
-  /// from the present state, to the default tolerance, and looks whether they are below `small`
-  /// then. Leaves the state anywhere.
+  /// Whether pins carry reactions only because Newton's method stopped early: solves from the
+  /// present state to the default tolerance and compares the reactions with `small`. Leaves the
+  /// state undefined. Collective.
   bool is_stopped_early(double small);
-  /// The tolerances that Newton's method has, as options.
+  /// Tolerances of Newton's method in the form of options.
   std::string tolerances() const;
-  /// Number of negative eigenvalues of the tangent at the present state: more than none is an
-  /// unstable equilibrium. Costs a factorisation if forces are not linear, and one more for what a
-  /// planar model leaves out; -1 if the solver is not Cholesky by MUMPS, which tells. To be asked
-  /// last.
+  /// Number of negative eigenvalues of the tangent at the present state: if there are any, the
+  /// equilibrium is unstable; -1 if the solver is not Cholesky by MUMPS, which counts them. Costs a
+  /// factorisation if forces are not linear, and another one for the part that a planar model
+  /// leaves out. To be called last, since it replaces the tangent. Collective.
   std::int64_t unstable_modes(const OutOfPlane* rest);
 
  private:
@@ -78,7 +79,8 @@ class Equilibrium {
     std::vector<PetscScalar> x;
   };
 
-  /// Sizes (2-norms over all ranks) at the present state [N]. What the residual must fall below.
+  /// Sizes of forces (2-norms over all ranks) at the present state [N], and the tolerance of the
+  /// residual.
   struct Scale {
     double forces;    ///< of external forces and reactions
     double rounding;  ///< of the beams' forces
@@ -96,10 +98,10 @@ class Equilibrium {
 
   void set_defaults();
   void begin_anew_after_failure();
-  void take(Vec x);    ///< state of the unknowns, ghosts included
+  void take(Vec x);    ///< sets the state from the unknowns and updates ghosts
   void rebase(Vec x);  ///< moves the reference of the rotations to the present state
   void fill_residual(Vec f);
-  /// Forces' share of a component of the residual [N].
+  /// Factor from a wrench component to a residual component: 1, or 1/length scale for moments.
   double weight(std::size_t k) const {
     return k % n < Space::translations ? 1.0 : 1.0 / model_.length_scale();
   }
@@ -124,22 +126,26 @@ class Equilibrium {
   State<Space> state_;
   Wrenches<Space> wrenches_, share_;
   StaticRotations<Space> rotations_;
-  /// Owned bodies: square of the rotation so far [rad^2]. A full turn counts as one, although its
-  /// quaternion is that of rest: what it took to get there has left rounding.
+  /// Per owned body: square of the accumulated rotation [rad^2]. Rounding grows even when the
+  /// quaternion returns to rest, so a full turn counts as one.
   std::vector<double> turned2_;
   std::vector<double> stiffness_;  ///< per owned body, for the rounding level [N/m]
   bool adaptive_ =
-      true;  ///< whether to keep a factorisation that still converges (not if the user set a lag)
-  bool small_turns_ = false;                ///< the prediction of this step turned no body by much
-  double last_norm_ = 0, contraction_ = 1;  ///< of the residual, over the last iteration
-  double external2_ = 0;  ///< squared norm of each external force's wrenches, summed, this rank
+      /// Whether to keep a factorisation that still converges (not if the user set a lag).
+      true;
+  bool small_turns_ = false;  ///< the prediction of this step turned no body far
+  /// Norm of the residual [N], and its ratio to that of the iteration before.
+  double last_norm_ = 0, contraction_ = 1;
+  /// Squared norms of the wrenches of each external force, summed, on this rank [N^2].
+  double external2_ = 0;
   double extent_ = 0,
-         prescribed_ = 0;  ///< of the lattice; largest displacement that is prescribed [m]
+         /// Extent of the lattice [m]; largest prescribed displacement [m].
+      prescribed_ = 0;
   Tangent<Space> tangent_;
   Handle<Vec> x_, f_, step_;
   Handle<SNES> snes_;
   std::int64_t iterations_ = 0, assemblies_ = 0;
-  bool constant_ = false;  ///< the assembled tangent is that of any state
+  bool constant_ = false;  ///< the assembled tangent holds for any state
   std::function<void(std::int64_t)> on_iteration_ = [](std::int64_t) {};
   std::function<void()> on_factorisation_ = [] {};
   std::string why_;

@@ -13,13 +13,15 @@
 namespace floe {
 namespace {
 
-constexpr double smallest_fraction = 1.0 / 4096;  // of the given step, before a run is given up
-/// Of a beam's strength: a step that would load one beyond is taken in smaller ones first.
+// Smallest part of the given step before a run is given up.
+constexpr double smallest_fraction = 1.0 / 4096;
+/// Steps that would load a beam beyond its strength by more than this part are halved first.
 constexpr double overload_tolerance = 0.005;
 constexpr double pin_tolerance =
-    1e-6;  // of the forces in balance: more means a free motion is loaded
+    // Of the forces in balance; larger pin reactions mean that a free motion is loaded.
+    1e-6;
 
-/// What a plan says of time and memory: of scenes whose tangent is one and the same, and others.
+/// Adds expected time and memory to a plan, by whether the tangent is constant.
 template <class Space>
 void add_cost(const Model<Space>& model, const FactorisationCost& cost, RunPlan& plan) {
   plan.bytes = cost.bytes;
@@ -28,7 +30,7 @@ void add_cost(const Model<Space>& model, const FactorisationCost& cost, RunPlan&
                        static_cast<double>(part.global_beams)))
     return;
   const bool linear = model.kinematics() == Kinematics::linear && model.fracture() == nullptr;
-  constexpr double at_the_ends = 2;  // at time 0, and for stability
+  constexpr double at_the_ends = 2;  // at time 0, and for the stability at the end
   const double once = (linear ? 1 : at_the_ends) * cost.seconds;
   const double each = linear ? 2 * cost.solve_seconds : 1.5 * cost.seconds;
   plan.seconds_a_step = once / plan.steps + each;
@@ -104,10 +106,11 @@ RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
   }
   if (!balanced(0.0)) return result;
   accept(0);
-  constexpr double rounding = 1e-12;  // a last step shorter than this part of a step is none
+  constexpr double rounding = 1e-12;  // a shorter remainder, in parts of a step, is no step
   while (time.end - now > rounding * given) {
     const double left = time.end - now;
-    // Equal steps that end at the end: a remainder within rounding of a step is a step.
+    // Steps are equal and the last one ends at the end: a remainder within rounding of a step is a
+    // step.
     const double step = dt >= left * (1 - rounding) ? left : dt;
     const double next = step == left ? time.end : now + step;
     const bool divisible = 0.5 * step >= smallest_fraction * given;

@@ -1,5 +1,5 @@
 /// \file
-/// Static equilibrium, load step by load step.
+/// Quasi-static runs: static equilibria, load step by load step.
 #pragma once
 
 #include <memory>
@@ -9,24 +9,26 @@
 
 namespace floe {
 
+/// Time span of a static run in pseudo-time.
 struct TimeSpan {
   double end = 1;
-  double dt = 0;  ///< 0: one step
+  double dt = 0;  ///< load step [s]; 0: one step
   double most_steps = default_most_steps;
   OnPlan on_plan = nullptr;
 };
 
-/// What a planar model leaves out, for one question at the end of a static run: whether the
-/// equilibrium would stand a disturbance out of plane.
+/// Forces and held unknowns that a planar model leaves out, by which the end of a static run
+/// decides whether the equilibrium withstands a disturbance out of the plane.
 struct OutOfPlane {
   std::vector<std::unique_ptr<Force<Spatial>>> forces;
   std::vector<std::uint8_t> held;  ///< per local body, bits of x y z rx ry rz: prescribed or pinned
 };
 
-/// Equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the exact
-/// tangent, the step halved when Newton fails. All of PETSc's -snes_*, -ksp_*, -pc_*, -mat_*
-/// options apply; the default is Newton with preonly + Cholesky by MUMPS on blocked symmetric
-/// storage. Collective. \param rest  of a planar model: its unstable modes count too; else null
+/// Finds equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the
+/// exact tangent; the step is halved when Newton fails (model.md, "Static solution"). All of
+/// PETSc's -snes_*, -ksp_*, -pc_*, -mat_* options apply; the default is Newton with preonly +
+/// Cholesky by MUMPS on blocked symmetric storage. Collective.
+/// \param rest  for a planar model: the part whose unstable modes count too; else null
 template <class Space>
 RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
                           const ObserverOf<Space>& observer, const OutOfPlane* rest = nullptr);

@@ -11,19 +11,19 @@
 
 namespace floe {
 
-/// Of a rank's owned bodies.
+/// Rotations of a rank's owned bodies.
 template <class Space>
 class StaticRotations;
 
-/// q = exp(theta - theta_ref) q_ref, where the reference moves to the present state whenever a
-/// tangent is formed, so that there increments are spins; or, linear, q = (1, theta/2).
+/// q = exp(theta - theta_ref) q_ref. The reference moves to the present state whenever a tangent is
+/// formed, so that increments are spins there. With linear kinematics q = (1, theta/2).
 template <>
 class StaticRotations<Spatial> {
  public:
   StaticRotations(std::size_t bodies, Kinematics kinematics)
       : linear_(kinematics == Kinematics::linear), reference_(bodies) {}
 
-  /// Puts a body's rotation into its record. \param t  theta [rad]
+  /// Writes a body's rotation into its record. \param t  theta [rad]
   void take(std::size_t body, const std::array<double, 3>& t, double* record) const {
     double* q = record + Spatial::rotation;
     if (linear_) {
@@ -36,7 +36,7 @@ class StaticRotations<Spatial> {
     const Quat<double> now = normalised(product(exp_rotation(spin), from));
     q[0] = now.w, q[1] = now.x, q[2] = now.y, q[3] = now.z;
   }
-  /// Moves a body's reference to theta and the record's rotation, which belong together.
+  /// Moves a body's reference to theta and to the record's rotation, which must be that of theta.
   void rebase(std::size_t body, const std::array<double, 3>& t, const double* record) {
     const double* q = record + Spatial::rotation;
     reference_[body] = {{q[0], q[1], q[2], q[3]}, t};
@@ -51,7 +51,7 @@ class StaticRotations<Spatial> {
   std::vector<Reference> reference_;
 };
 
-/// The angle itself, which needs no reference.
+/// In the plane the unknown is the angle, which needs no reference.
 template <>
 class StaticRotations<Planar> {
  public:
