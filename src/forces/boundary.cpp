@@ -4,7 +4,8 @@ namespace floe {
 
 namespace {
 
-/// \param moved, moving  factors of what is given as a displacement and as a velocity
+/// Components of a boundary.
+/// \param moved, moving  factors of its `displacement`, and of its velocities
 std::array<double, 6> motion(const Boundary& b, double moved, double moving) {
   std::array<double, 6> at{};
   for (std::size_t k = 0; k < 3; ++k) {

@@ -7,16 +7,16 @@
 namespace floe {
 namespace {
 
-/// The axis that an unknown turns a body about.
+/// Axis (0, 1, 2) about which a rotation unknown turns a body.
 template <class Space>
 constexpr int turns_about(int unknown) {
   return Space::components[static_cast<std::size_t>(unknown)] - 3;
 }
 
-/// Dead load F with the moment M: wrench (F, a x F + M) on each body, a = R r the turned arm.
-/// Potential -F.(u + a) of the force; a dead moment has none, which the exact tangent K shows as a
-/// skew part. With linear kinematics a = r in the wrench, which is constant then, and r + theta x r
-/// in the potential.
+/// A dead force F and moment M: wrench (F, a x F + M) on each body, with a = R r the turned arm.
+/// The force has the potential -F.(u + a). A dead moment has no potential, and its exact tangent K
+/// has a skew part. With linear kinematics a = r in the wrench, which is therefore constant, and
+/// a = r + theta x r in the potential.
 template <class Space>
 class DeadLoad final : public Force<Space>,
                        public HasTangent<Space>,
@@ -51,7 +51,7 @@ class DeadLoad final : public Force<Space>,
     }
   }
 
-  /// Second variation of -F.a along a spin t: (F.a)|t|^2 - (F.t)(a.t).
+  /// The second variation of -F.a along a spin t is (F.a)|t|^2 - (F.t)(a.t).
   bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
     if (linear_) return false;
     const Vec3<double> f = force(state.time);
@@ -66,8 +66,8 @@ class DeadLoad final : public Force<Space>,
         }
       }
       if (!tangent.symmetric()) {
-        // K = H - skew(g)/2 with g = -(a x F) the force's moment gradient (the applied moment
-        // itself is constant).
+        // K = H - skew(g)/2 with g = -(a x F) the moment gradient of the force; the applied moment
+        // is constant and adds nothing.
         const Vec3<double> g = cross(f, a);
         k(0, 1) += 0.5 * g.z, k(1, 0) -= 0.5 * g.z;
         k(0, 2) -= 0.5 * g.y, k(2, 0) += 0.5 * g.y;
@@ -85,7 +85,8 @@ class DeadLoad final : public Force<Space>,
     return true;
   }
 
-  /// Work over the step by the trapezoidal rule; moments on the rotation of the step.
+  /// Adds the work over the step by the trapezoidal rule; moments act on the rotation vector of the
+  /// step.
   void commit(const State<Space>& state, double) override {
     const Vec3<double> f = force(state.time), m = moment(state.time);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -132,7 +133,7 @@ class DeadLoad final : public Force<Space>,
     }
   }
 
-  /// Potential of the dead force; applied moments are left out, they have none.
+  /// Reports the potential of the dead force; applied moments have none.
   void report(const State<Space>& state, Columns& columns) const override {
     const Vec3<double> f = force(state.time);
     double energy = 0;
@@ -158,7 +159,7 @@ class DeadLoad final : public Force<Space>,
     return rotate(rotation(state, body), arm_);
   }
 
-  /// Displacement of the point where the force acts, and rotation, of one body.
+  /// Displacement of the point where the force acts [m], and rotation of its body.
   struct Place {
     Vec3<double> at{0, 0, 0};
     Quat<double> q{1, 0, 0, 0};

@@ -1,5 +1,5 @@
 /// \file
-/// What every force does, and the roles that some have and integrators ask for.
+/// The interface of all forces, and the roles that some forces have and integrators ask for.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@
 
 namespace floe {
 
-/// Named numbers for history.csv and summary.json, in order; each rank gives its share, the sum is
-/// reported.
+/// Named numbers for history.csv and summary.json, in order. Each rank adds its share; the sum over
+/// the ranks is reported.
 class Columns {
  public:
   void add(std::string name, double value) { values_.emplace_back(std::move(name), value); }
@@ -31,51 +31,53 @@ class Columns {
   std::vector<std::pair<std::string, double>> values_;
 };
 
-/// A force with a tangent, for integrators that solve equations.
+/// Role of a force with a tangent, for integrators that solve equations.
 template <class Space>
 class HasTangent {
  public:
-  /// Adds minus the derivative of the wrenches to displacements and rotations; false if nothing was
-  /// added.
+  /// Adds minus the derivative of the wrenches to displacements and rotations.
+  /// \returns false if nothing was added
   virtual bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const = 0;
 
  protected:
   ~HasTangent() = default;
 };
 
-/// A force that depends on velocities, for integrators that solve equations.
+/// Role of a force that depends on velocities, for integrators that solve equations.
 template <class Space>
 class Damps {
  public:
   /// Adds minus the derivative of the wrenches to the velocities.
   virtual void add_damping(const State<Space>& state, Tangent<Space>& tangent) const = 0;
-  /// Adds the wrenches that take energy by the bodies' velocities, which no potential accounts for.
+  /// Adds the part of the wrenches that depends on velocities and takes energy out of the motion,
+  /// for which no potential accounts [N, N m].
   virtual void add_losses(const State<Space>& state, Wrenches<Space>& wrenches) const = 0;
 
  protected:
   ~Damps() = default;
 };
 
-/// A force with power that no potential of it accounts for, for integrators that integrate the
-/// power themselves.
+/// Role of a force with a power that its potential does not account for, for integrators that
+/// integrate this power themselves.
 template <class Space>
 class DoesWork {
  public:
-  /// Power on this rank's bodies in the last evaluation, which was at `state` [W]; negative where
-  /// bodies lose energy.
+  /// Power on this rank's bodies in the last evaluation [W]; negative where bodies lose energy.
+  /// \param state  of the last evaluation
   virtual double power(const State<Space>& state) const = 0;
-  /// Takes over the integral of power() over a step [J].
+  /// Adds the integral of power() over a step to the work of the force.
+  /// \param work  [J]
   virtual void take_work(double work) = 0;
 
  protected:
   ~DoesWork() = default;
 };
 
-/// A force that limits the step of explicit dynamics.
+/// Role of a force that limits the step of explicit dynamics (model.md, "Explicit dynamics").
 template <class Space>
 class LimitsStep {
  public:
-  /// An upper bound of the stiffness against a unit displacement of an owned body [N/m].
+  /// Upper bound of the stiffness against a displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
 
   /// Upper bounds of M^-1 K [1/s^2] and M^-1 C [1/s].
@@ -83,52 +85,56 @@ class LimitsStep {
     double stiffness = 0, damping = 0;
   };
   /// Stiffness and damping that the present state does not show (contacts that have not formed),
-  /// added to what the search for the stable step measures; where it is not zero the force takes no
-  /// part in the measurement. Default: none.
+  /// added to those that the search for the stable step measures. A force that returns more than
+  /// zero takes no part in the measurement. Default: none.
   virtual Rates hidden_stiffness() const { return {}; }
 
-  /// A cheap estimate of the fastest rate at which the force alone moves or stops one of this
-  /// rank's bodies [1/s], where that rate changes in a run (bodies come to the water, beams are
-  /// pressed, drag grows with the speed). Where the sum over forces has grown, the stable step is
-  /// found anew. Either all ranks give a number or none does.
+  /// Cheap estimate of the fastest rate at which the force alone moves or stops one of this rank's
+  /// bodies [1/s], for forces whose rate changes in a run (bodies reach the water, beams are
+  /// pressed, drag grows with the speed). If the sum over the forces grows, the stable step is
+  /// found anew. Either all ranks return a number or none does.
   virtual std::optional<double> rate_estimate(const State<Space>& /*state*/) const { return {}; }
 
-  /// The longest step for another reason than stability (travel of bodies against their widths)
-  /// [s], and that reason, for this rank's bodies.
+  /// A limit of the step for another reason than stability.
   struct Limit {
-    double dt = std::numeric_limits<double>::infinity();
+    double dt = std::numeric_limits<double>::infinity();  ///< [s]
     std::string reason;
   };
+  /// Limit that this rank's bodies set, such as their travel in a step against their widths.
+  /// Default: none.
   virtual Limit step_limit(const State<Space>& /*state*/) const { return {}; }
 
  protected:
   ~LimitsStep() = default;
 };
 
-/// A force that takes over what an accepted step changes: damage, slip, dissipated energy.
+/// Role of a force with history that an accepted step changes: damage, slip, dissipated energy.
 template <class Space>
 class Commits {
  public:
-  /// After a step of leapfrog, whose velocities lag half a step, or a load step. \param dt  [s]
+  /// Makes the findings of the last evaluation history, after a load step or a step of leapfrog.
+  /// \param state  after the step; velocities of leapfrog lag half a step
+  /// \param dt     length of the step [s]
   virtual void commit(const State<Space>& state, double dt) = 0;
-  /// Whether wrenches depend on what commit() took over: then only integrators that evaluate once a
-  /// step, and never take one back, can use the force.
+  /// Whether wrenches depend on this history. Only integrators that evaluate once per step and
+  /// never take a step back can use such a force.
   virtual bool has_history() const { return false; }
 
  protected:
   ~Commits() = default;
 };
 
-/// A force with numbers that a checkpoint keeps.
+/// Role of a force with numbers that a checkpoint keeps.
 class Persists {
  public:
+  /// Saves these numbers to the archive, or loads them from it. Collective.
   virtual void persist(Archive& archive) = 0;
 
  protected:
   ~Persists() = default;
 };
 
-/// A force that depends on the time explicitly.
+/// Role of a force that depends on the time explicitly.
 class DependsOnTime {
  public:
   /// Time after which the force no longer depends on the time (the end of its ramp) [s].
@@ -138,34 +144,34 @@ class DependsOnTime {
   ~DependsOnTime() = default;
 };
 
-/// A force that acts between bodies once no beam joins them any more.
+/// Role of a force that acts between bodies once no beam joins them any more.
 class TakesBrokenPairs {
  public:
   /// Makes pairs whose beam broke eligible from the next evaluation on; their present overlap
-  /// counts as stress-free. Collective; each rank may name pairs of its own. \param pairs  global
-  /// bodies
+  /// counts as stress-free. Collective.
+  /// \param pairs  global bodies; each rank may name other pairs
   virtual void release(std::span<const std::array<std::int32_t, 2>> pairs) = 0;
 
  protected:
   ~TakesBrokenPairs() = default;
 };
 
-/// Something that a user must hear of once, as a body that passes through another.
+/// A line for the user, given once: for example that a body passes through another.
 struct Remark {
   double time = 0;  ///< [s]
   std::string text;
 };
-/// A force that has remarks.
+/// Role of a force that has remarks.
 class Remarks {
  public:
-  /// Those since the last call, on this rank.
+  /// Remarks of this rank since the last call.
   virtual std::vector<Remark> take_remarks() = 0;
 
  protected:
   ~Remarks() = default;
 };
 
-/// What a force can do beside adding wrenches; null: it cannot.
+/// Roles of a force beside adding wrenches; null: the force does not have the role.
 template <class Space>
 struct Roles {
   HasTangent<Space>* tangent = nullptr;
@@ -179,7 +185,8 @@ struct Roles {
   Remarks* remarks = nullptr;
 };
 
-/// One virtual call per force per evaluation; what is not named in a scene has no object.
+/// A force on the bodies of a part. An evaluation makes one virtual call per force; a scene that
+/// does not name a force has no object for it.
 template <class Space>
 class Force {
  public:
@@ -189,10 +196,11 @@ class Force {
   virtual ~Force() = default;
 
   virtual std::string_view name() const = 0;
-  /// Adds the force's wrenches on owned bodies at state.time [N, N m]. Keeps by-products of the
-  /// evaluation (powers, lists of pairs); history changes by Commits::commit() only.
+  /// Adds the wrenches on owned bodies at state.time [N, N m]. May keep by-products of the
+  /// evaluation (powers, pair lists); history changes by Commits::commit() only.
   virtual void add(const State<Space>& state, Wrenches<Space>& wrenches) = 0;
-  /// Energies and counts of this rank's share, at the state of the last evaluation.
+  /// Adds this rank's share of the energies [J] and counts of the force.
+  /// \param state  of the last evaluation
   virtual void report(const State<Space>& state, Columns& columns) const = 0;
   virtual Roles<Space> roles() { return {}; }
 };

@@ -13,7 +13,7 @@ class Gravity final : public Force<Spatial> {
       wrenches.of(static_cast<std::size_t>(b))[2] -=
           part_.bodies.mass[static_cast<std::size_t>(b)] * g_;
   }
-  /// Potential m g u_z, from the state at rest.
+  /// Reports the potential m g u_z, 0 at rest.
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b)

@@ -8,7 +8,9 @@
 
 namespace floe {
 
-/// Force -m g along z. \param acceleration g [m/s^2]   \param part  must outlive the force
+/// Makes the force -m g along z, at the centroid of each owned body.
+/// \param part          must outlive the force
+/// \param acceleration  g [m/s^2]
 template <class Space>
 std::unique_ptr<Force<Space>> make_gravity(const Part& part, double acceleration);
 

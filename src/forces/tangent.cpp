@@ -6,8 +6,8 @@
 namespace floe {
 namespace {
 
-/// Exact number of blocks per owned row: in all on this rank's columns and others', and in the
-/// upper triangle.
+/// Exact number of blocks per owned block row, for preallocation: in this rank's columns and in
+/// those of other ranks, of the whole matrix and of its upper triangle.
 struct RowCounts {
   std::vector<PetscInt> here, elsewhere, here_upper, elsewhere_upper;
 };
@@ -94,7 +94,8 @@ void Tangent<Space>::weigh(double factor, std::span<const TurnFrame> frames) {
   frames_ = frames;
 }
 
-/// Rotations of a planar body are the same in all frames.
+/// Takes the rotation rows of a body from world axes to the frame of the unknowns. A planar body
+/// has one rotation, which is the same in all frames.
 template <class Space>
 void Tangent<Space>::turn_rows(std::int32_t body, std::span<double> rows, int columns) const {
   if constexpr (n - Space::translations == 3) {
@@ -112,7 +113,9 @@ void Tangent<Space>::turn_rows(std::int32_t body, std::span<double> rows, int co
   }
 }
 
-/// \param first  column of the body's first unknown   \param columns  of the block
+/// Takes the rotation columns of a body from world axes to the frame of the unknowns.
+/// \param first    column of the first unknown of the body
+/// \param columns  number of columns of the block
 template <class Space>
 void Tangent<Space>::turn_columns(std::int32_t body, std::span<double> block, int first,
                                   int columns) const {
@@ -128,7 +131,7 @@ void Tangent<Space>::turn_columns(std::int32_t body, std::span<double> block, in
   }
 }
 
-/// Scales rows of one body, gives up rows that are prescribed.
+/// Turns and scales the rows of a body, and sets the rows of prescribed unknowns to zero.
 template <class Space>
 void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int columns) {
   if (!frames_.empty()) turn_rows(body, rows, columns);
@@ -138,13 +141,14 @@ void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int
   }
 }
 
-/// Adds blocks of the unknowns that the matrix has. \param block  (bodies x n) by (bodies x n),
-/// row-major; used up
+/// Adds a block to the matrix, reduced to the unknowns that the matrix has.
+/// \param rows, columns  local bodies
+/// \param block          (rows x n) by (columns x n), row-major; overwritten
 template <class Space>
 void Tangent<Space>::insert(std::span<const std::int32_t> rows,
                             std::span<const std::int32_t> columns, double* block) {
   const std::size_t width = unknowns_.size(), all = n;
-  if (width < all) {  // kept entries move to the front, never ahead of one that is still to move
+  if (width < all) {  // kept entries move to the front, in place: none moves past one still unread
     double* to = block;
     for (std::size_t r = 0; r < rows.size() * width; ++r) {
       const double* row = block + (r / width * all + unknowns_[r % width]) * columns.size() * all;

@@ -2,16 +2,16 @@
 /// The tangent stiffness matrix: blocks of bodies and pairs of bodies, inserted into a PETSc
 /// matrix.
 ///
-/// Unknowns are displacements [m] and rotations times the lattice's length scale [m], so that all
-/// entries are in N/m whatever the units: a block's rotation rows and columns are divided by that
-/// length.
+/// Unknowns are displacements [m] and rotations times the length scale of the lattice [m], so all
+/// entries are in N/m: the rotation rows and columns of a block are divided by that length.
 ///
-/// On rotations, differentiation of the gradient gives K = H - skew(m)/2 with H the Hessian and m
-/// the block's moment gradient; H = K + skew(m)/2 is assembled (model.md section 2), unless the
-/// exact K was asked for.
+/// Differentiation of the gradient to rotations gives K = H - skew(m)/2, with H the Hessian and m
+/// the moment gradient of the block. H = K + skew(m)/2 is assembled, unless the exact K is asked
+/// for (model.md, "Beam").
 ///
-/// In dynamics a body's rotation unknowns may stand in a frame that goes with it, and the same
-/// matrix takes derivatives to velocities, which the unknowns move too: weigh().
+/// In dynamics the rotation unknowns of a body may stand in a frame that moves with the body, and
+/// the matrix also takes derivatives to velocities, since a change of the unknowns changes the
+/// velocities too: weigh().
 #pragma once
 
 #include <array>
@@ -25,18 +25,19 @@
 
 namespace floe {
 
-/// How the matrix is stored and whether K or its symmetric form H is assembled.
+/// Storage of the matrix, and whether K or its symmetric form H is assembled.
 struct TangentOptions {
-  const char* type = MATSBAIJ;
-  bool symmetric = true;
+  const char* type = MATSBAIJ;  ///< PETSc's matrix type, unless -mat_type names another
+  bool symmetric = true;        ///< H instead of K
 };
 
-/// Rotation unknowns of a body in a frame of their own, row-major.
+/// Frame of the rotation unknowns of a body: two 3 x 3 matrices, row-major.
 struct TurnFrame {
-  std::array<double, 9> rows;     ///< takes a moment in the world to the unknowns' rows
-  std::array<double, 9> columns;  ///< the spin in the world that a change of the unknowns is
+  std::array<double, 9> rows;     ///< moment in world axes to the rows of the unknowns
+  std::array<double, 9> columns;  ///< change of the unknowns to the spin in world axes
 };
 
+/// Assembles the tangent of a part's bodies, block by block.
 template <class Space>
 class Tangent {
  public:
@@ -45,36 +46,45 @@ class Tangent {
   using PairBlock =
       std::array<double, static_cast<std::size_t>(4 * n * n)>;  ///< (i, j) x (i, j), row-major
 
-  /// \param held          n bits per local body: unknowns that are prescribed
-  /// \param length_scale  [m]
-  /// \param held_diagonal what stands on the diagonal of a prescribed unknown [N/m]
+  /// Creates the matrix, with a block for each body and each beam. Collective.
+  /// \param part          must outlive the tangent
+  /// \param held          prescribed unknowns: n bits per local body; must outlive the tangent
+  /// \param length_scale  length that rotations are multiplied by [m]
+  /// \param held_diagonal diagonal entry of a prescribed unknown [N/m]
   Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
           double held_diagonal, const TangentOptions& options);
-  /// Some of the unknowns only, into a matrix that is there: H in blocks of their number.
-  /// \param unknowns  a bit for each of a body's that the matrix has
+  /// Assembles H for some of the unknowns only, into a given matrix.
+  /// \param matrix    has blocks of as many rows as a body has selected unknowns
+  /// \param unknowns  selected unknowns of a body, one bit each
   Tangent(const Part& part, std::span<const std::uint8_t> held, double length_scale,
           double held_diagonal, Mat matrix, std::uint8_t unknowns);
 
   bool symmetric() const { return symmetric_; }
   Mat matrix() const { return matrix_; }
 
-  /// Empties the matrix. If `increments` (n per local body, in the unknowns' units) is not empty,
-  /// the columns of prescribed unknowns times their increments are collected in lift() while blocks
-  /// come in.
+  /// Empties the matrix, and resets weigh() to the factor 1 without frames. Collective.
+  /// \param increments  of the prescribed unknowns, n per local body [m]; if not empty, lift()
+  ///                    collects the columns of these unknowns times their increments
   void begin(std::span<const double> increments = {});
-  /// Blocks that follow are multiplied by `factor`, and their rotations are taken from the world to
-  /// the unknowns' frames (one per local body; none: they stand in the world). begin() goes back to
-  /// 1 and none. \param frames  must outlive what follows
+  /// Sets how the blocks that follow are transformed.
+  /// \param factor  multiplies the blocks
+  /// \param frames  of the rotation unknowns, one per local body; empty: world axes. Must outlive
+  ///                the calls that follow
   void weigh(double factor, std::span<const TurnFrame> frames);
-  /// Adds a body's own stiffness. \param block n x n [N/m, N, N m]; already H or K as symmetric()
-  /// says
+  /// Adds the own stiffness of an owned body; does nothing for a ghost.
+  /// \param body   local index
+  /// \param block  n x n in world axes [N/m, N, N m]; H if symmetric(), else K
   void add_body(std::int32_t body, const Block& block);
-  /// Adds a pair's stiffness; rows of bodies that other ranks own are left to them.
+  /// Adds the stiffness between two bodies. Only rows of owned bodies are added: each rank adds its
+  /// own.
+  /// \param i, j   local indices
+  /// \param block  2n x 2n in world axes [N/m, N, N m]; H if symmetric(), else K
   void add_pair(std::int32_t i, std::int32_t j, const PairBlock& block);
-  /// Puts the prescribed unknowns' diagonal in and assembles. Collective.
+  /// Adds the diagonal of the prescribed unknowns and assembles. Collective.
   void end();
 
-  /// K of prescribed columns times their increments, n per owned body; 0 on prescribed rows.
+  /// Columns of the prescribed unknowns times their increments, n per owned body [N]; 0 in
+  /// prescribed rows.
   std::span<const double> lift() const { return lift_; }
 
  private:
@@ -93,7 +103,7 @@ class Tangent {
   double held_diagonal_;
   std::array<double, static_cast<std::size_t>(n)> scale_;
   bool symmetric_;
-  std::vector<std::size_t> unknowns_;  ///< those that the matrix has
+  std::vector<std::size_t> unknowns_;  ///< of a body, in the matrix
   Handle<Mat> matrix_;
   double factor_ = 1;
   std::span<const TurnFrame> frames_;

@@ -12,8 +12,8 @@
 namespace floe {
 
 /// Prescribed components of the motion of a set of bodies: x y z rx ry rz.
-/// With `velocity`, displacements are its integral over the ramp; with `displacement`, they follow
-/// the ramp. Rotations are integrals of `angular_velocity` in the same way.
+/// Displacements are `displacement` times the ramp, or `velocity` times the integral of the ramp.
+/// Rotations are `angular_velocity` times the integral of the ramp.
 struct Boundary {
   std::string name, set;
   std::array<bool, 6> fixed{};
@@ -22,10 +22,11 @@ struct Boundary {
   Point3 angular_velocity{};           ///< [rad/s]
   Ramp ramp;
 
-  /// Prescribed displacement and rotation [m, rad] at `time`; entries that are not fixed are 0.
+  /// Prescribed displacement and rotation [m, rad] at `time` [s]; entries that are not fixed are 0.
   std::array<double, 6> value(double time) const;
-  /// Their rates [m/s, rad/s] and accelerations, from the right; what happens at once has none.
+  /// Rate of value() [m/s, rad/s], from the right. A jump (ramp of 0 s) has no rate.
   std::array<double, 6> rate(double time) const;
+  /// Rate of rate() [m/s^2, rad/s^2], from the right. A jump of the velocity has no acceleration.
   std::array<double, 6> acceleration(double time) const;
 };
 

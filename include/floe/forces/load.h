@@ -10,12 +10,13 @@
 
 namespace floe {
 
-/// A dead load in world axes: on a set (the total, shared equally by its bodies) or at a point in
-/// plan (carried by the nearest body, statically equivalent: a force at a body-fixed point).
+/// A dead load in world axes: a total that the bodies of a set share equally, or a load at a point
+/// in plan. The body nearest to the point carries the latter as a statically equivalent force at a
+/// body-fixed point.
 struct Load {
   std::string name;
-  std::string set;              ///< empty: at a point
-  std::optional<Point2> point;  ///< [m]
+  std::string set;              ///< empty: the load is at `point`
+  std::optional<Point2> point;  ///< x, y [m]
   Point3 force{};               ///< [N]
   Point3 moment{};              ///< [N m]
   Ramp ramp;
