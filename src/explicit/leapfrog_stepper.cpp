@@ -22,7 +22,7 @@ void write(const BodyMotion<double>& m, double* r) {
   std::copy(all.begin(), all.end(), r);
 }
 
-/// Tensor of inertia in the world, or its inverse, from principal values.
+/// Returns the tensor of inertia in world axes, or its inverse, from principal values.
 Eigen::Matrix3d in_world(const Triad<double>& axes, const Vec3<double>& principal) {
   Eigen::Matrix3d r;
   r << axes.e1.x, axes.e2.x, axes.e3.x, axes.e1.y, axes.e2.y, axes.e3.y, axes.e1.z, axes.e2.z,
@@ -30,7 +30,7 @@ Eigen::Matrix3d in_world(const Triad<double>& axes, const Vec3<double>& principa
   return r * Eigen::Vector3d(principal.x, principal.y, principal.z).asDiagonal() * r.transpose();
 }
 
-/// Force and moment on the components that nothing prescribes.
+/// Force and moment, with the prescribed components set to zero.
 std::array<Vec3<double>, 2> on_free(const double* w, std::uint8_t prescribed) {
   std::array<double, 6> f{};
   for (std::size_t k = 0; k < 6; ++k) f[k] = (prescribed >> k & 1U) != 0 ? 0.0 : w[k];
@@ -105,7 +105,8 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
   }
 }
 
-/// \param count  bodies of the block: lanes beyond the last body repeat it, and are not written
+/// \param count  number of bodies in the block; lanes beyond the last body repeat it, and are not
+///   written
 template <class Count>
 [[gnu::always_inline]] inline LeapfrogStepper::Squares LeapfrogStepper::step_block(
     std::size_t block, Count count, State<Spatial>& state, const Wrenches<Spatial>& wrenches,
@@ -144,7 +145,7 @@ template <class Count>
     State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const {
   const auto owned = static_cast<std::size_t>(part_.owned);
   const std::size_t whole = owned / lanes, left = owned % lanes;
-  // A maximum would lose what is not a number, a sum keeps it.
+  // The sum keeps numbers that are not finite, which a maximum would lose.
   Squares largest;
   Lanes sum(0.0);
   const auto take = [&](const Squares& squares) {
@@ -177,7 +178,7 @@ double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wre
                 std::span(next_).subspan(first, Spatial::unknowns), dt);
       const auto b = static_cast<std::size_t>(held_[k]);
       const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
-      speed2 = std::max(speed2, dot(v, v));  // what is not a number stays
+      speed2 = std::max(speed2, dot(v, v));  // keeps a speed that is not finite
       spin2 = std::max(spin2, dot(w, w));
     }
   }
@@ -187,9 +188,9 @@ double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wre
   return speed2;
 }
 
-/// A body of which some components are prescribed, stepped as if it were free: those get the
-/// velocity that takes them where they must be, by an impulse of the boundary; the others are free.
-/// The boundary's work is that impulse times the mean velocity.
+/// Corrects a body that was stepped as if it were free: prescribed components get the velocity that
+/// takes them to their prescribed places, by an impulse of the boundary; the others stay free. The
+/// boundary's work is that impulse times the mean velocity.
 void LeapfrogStepper::step_held(std::int32_t body, const double* before, State<Spatial>& state,
                                 const Wrenches<Spatial>& wrenches, std::span<const double> now,
                                 std::span<const double> next, double dt) {
@@ -208,7 +209,7 @@ void LeapfrogStepper::step_held(std::int32_t body, const double* before, State<S
   if (bits >> 3 != 0) turn_held(body, before, after, wrenches.of(b), now, next, dt);
 }
 
-/// The rotation of a body that is held about some axes.
+/// Corrects the rotation of a body that is held about some axes.
 void LeapfrogStepper::turn_held(std::int32_t body, const double* before, double* after,
                                 const double* f, std::span<const double> now,
                                 std::span<const double> next, double dt) {
@@ -220,7 +221,7 @@ void LeapfrogStepper::turn_held(std::int32_t body, const double* before, double*
   const Eigen::Matrix3d inverse = in_world(triad(product(m.q, c.axes)), c.inverse_inertia);
   const Eigen::Vector3d spin = inverse * Eigen::Vector3d(m.momentum.x, m.momentum.y, m.momentum.z);
   const Eigen::Vector3d old_spin(m.w.x, m.w.y, m.w.z);
-  // Impulses about the axes that are held; 0 about the others.
+  // Impulses about the held axes, 0 about the others.
   Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity();
   Eigen::Vector3d miss = Eigen::Vector3d::Zero(), mean = miss;
   for (Eigen::Index r = 0; r < 3; ++r) {
@@ -235,7 +236,7 @@ void LeapfrogStepper::turn_held(std::int32_t body, const double* before, double*
   const Eigen::Vector3d impulse = compliance.partialPivLu().solve(miss);
   boundary_work_ += impulse.dot(mean);
   m.momentum = m.momentum + Vec3<double>{impulse[0], impulse[1], impulse[2]};
-  if (bits >> 3 == 7) {  // the rotation is given whole: no gyroscopic motion beside it
+  if (bits >> 3 == 7) {  // the rotation is prescribed completely: no gyroscopic motion
     m.w = {(next[3] - now[3]) / dt, (next[4] - now[4]) / dt, (next[5] - now[5]) / dt};
     m.q = normalised(product(exp_rotation(dt * m.w), m.q));
     const Triad<double> axes = triad(product(m.q, c.axes));
@@ -250,8 +251,8 @@ void LeapfrogStepper::turn_held(std::int32_t body, const double* before, double*
   write(m, after);
 }
 
-/// Velocity and angular momentum half a step on: by the forces where a body is free, as given where
-/// it is not.
+/// Velocity and angular momentum half a step later: by the forces where a body is free, prescribed
+/// elsewhere.
 std::pair<Vec3<double>, Vec3<double>> LeapfrogStepper::half_step_on(
     std::int32_t body, const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
     double dt) const {

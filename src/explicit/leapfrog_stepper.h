@@ -1,5 +1,5 @@
 /// \file
-/// Bodies in motion: mass, momentum, and the explicit update of all of a rank's bodies.
+/// The explicit update of the motion of all bodies of a rank.
 #pragma once
 
 #include <array>
@@ -12,35 +12,40 @@
 
 namespace floe {
 
-/// Leapfrog of a rank's owned bodies. Positions are at t_n, velocities and momenta at t_n - dt/2.
+/// Leapfrog of a rank's owned bodies (model.md, "Explicit dynamics"). Positions are at t_n,
+/// velocities and momenta at t_n - dt/2.
 class LeapfrogStepper {
  public:
   explicit LeapfrogStepper(const Model<Spatial>& model);
 
-  /// Sets velocities and angular momenta of the state from initial ones in the world, both at t_0.
+  /// Sets velocities and angular momenta of the state from initial velocities [m/s] and angular
+  /// velocities [rad/s] in the world; all are at t_0.
   void start(State<Spatial>& state, const std::vector<Point3>& velocity,
              const std::vector<Point3>& spin) const;
-  /// Takes velocities back from t_0 to t_0 - dt/2.
+  /// Moves velocities back from t_0 to t_0 - dt/2.
   void stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const;
 
-  /// From t_n to t_n + dt with the wrenches at t_n. Returns the square of the largest speed of a
-  /// body [m^2/s^2] (not finite if a body's is not), and leaves that speed and the largest spin in
-  /// the state.
+  /// Steps from t_n to t_n + dt with the wrenches at t_n. Returns the square of the largest speed
+  /// of a body [m^2/s^2], which is not finite if a body's speed is not. Stores that speed and the
+  /// largest angular velocity in the state.
   double step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt);
 
-  /// This rank's kinetic energy and the boundaries' work on its bodies so far, at t_n [J].
+  /// Kinetic energy of this rank's bodies, and the boundaries' work on them since the start, at t_n
+  /// [J].
   struct Energies {
     double kinetic, boundary;
   };
-  /// As leapfrog has them: kinetic energy 1/2 v_(n-1/2).M v_(n+1/2), and work by the mean of the
-  /// forces at a step's two ends. With the potential energy at t_n their balance is exact for a
-  /// linear system at any stable step, where 1/2 v_n.M v_n swings by up to (omega dt)^2/4.
+  /// Returns the energies in leapfrog's own form: kinetic energy 1/2 v_(n-1/2).M v_(n+1/2), and
+  /// work by the mean of the forces at a step's two ends. With the potential energy at t_n their
+  /// balance is exact for a linear system at any stable step, where 1/2 v_n.M v_n swings by up to
+  /// (omega dt)^2/4.
   Energies energies(const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
                     double dt) const;
-  /// Linear momentum and angular momentum about the origin at t_n, this rank's share.
+  /// Returns the linear momentum [kg m/s] and the angular momentum about the origin [kg m^2/s] of
+  /// this rank's bodies at t_n.
   std::array<double, 6> momentum(const State<Spatial>& state, const Wrenches<Spatial>& wrenches,
                                  double dt) const;
-  /// Work that boundaries have done on the bodies so far, this rank's share [J].
+  /// Work that boundaries have done on this rank's bodies since the start [J].
   double boundary_work() const { return boundary_work_; }
   void set_boundary_work(double work) { boundary_work_ = work; }
 
@@ -71,8 +76,8 @@ class LeapfrogStepper {
   const Part& part_;
   std::vector<Block> blocks_;
   std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
-  std::vector<std::int32_t> rows_;          ///< per local body: its place in held_, or -1
-  std::vector<double> saved_;               ///< their records before a step
+  std::vector<std::int32_t> rows_;          ///< per local body: its index in held_, or -1
+  std::vector<double> saved_;               ///< records of held_ before a step
   mutable std::vector<double> now_, next_;  ///< prescribed values of held_ (work space)
   double boundary_work_ = 0;
 };

@@ -40,7 +40,7 @@ void PlanarLeapfrogStepper::stagger(State<Planar>& state, const Wrenches<Planar>
   }
 }
 
-/// All bodies as if nothing held them. A record is two rows, places and their rates.
+/// Steps all bodies as if they were free. A record is two rows: places and their rates.
 double PlanarLeapfrogStepper::step_free(State<Planar>& state, const Wrenches<Planar>& wrenches,
                                         double dt) const {
   Row largest{}, sum{};
@@ -52,7 +52,7 @@ double PlanarLeapfrogStepper::step_free(State<Planar>& state, const Wrenches<Pla
     store_row(record + Planar::velocity, v);
     const Row speed2 = pair_sums(v * v);
     largest = larger(speed2, largest);
-    sum = sum + speed2;  // a maximum would lose what is not a number
+    sum = sum + speed2;  // keeps numbers that are not finite, which a maximum would lose
   }
   return std::isfinite(sum[0]) ? largest[0] : std::numeric_limits<double>::quiet_NaN();
 }
@@ -78,8 +78,8 @@ double PlanarLeapfrogStepper::step(State<Planar>& state, const Wrenches<Planar>&
   return largest;
 }
 
-/// Prescribed unknowns get the velocity that takes them where they must be, by an impulse of the
-/// boundary; its work is that impulse times the mean velocity.
+/// Gives prescribed unknowns the velocity that takes them to their prescribed places, by an impulse
+/// of the boundary. Its work is that impulse times the mean velocity.
 void PlanarLeapfrogStepper::step_held(std::int32_t body, const double* before, double* record,
                                       double dt) {
   const auto b = static_cast<std::size_t>(body);

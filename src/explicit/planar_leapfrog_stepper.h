@@ -1,6 +1,6 @@
 /// \file
-/// Planar bodies in motion: LeapfrogStepper's part (leapfrog_stepper.h) where bodies turn about z
-/// only.
+/// The explicit update of the motion of planar bodies, which turn about z only; the counterpart of
+/// leapfrog_stepper.h.
 #pragma once
 
 #include <array>
@@ -13,22 +13,24 @@
 namespace floe {
 
 /// Leapfrog of a rank's owned bodies. Positions and angles are at t_n, their rates at t_n - dt/2.
-/// Each of a body's three unknowns moves by itself, with the mass or the moment of inertia about z.
+/// Each of a body's three unknowns moves independently, with the mass or the moment of inertia
+/// about z.
 class PlanarLeapfrogStepper {
  public:
   explicit PlanarLeapfrogStepper(const Model<Planar>& model);
 
-  /// Sets velocities of the state from initial ones in the world, both at t_0.
+  /// Sets velocities of the state from initial velocities [m/s] and angular velocities [rad/s] in
+  /// the world; all are at t_0.
   void start(State<Planar>& state, const std::vector<Point3>& velocity,
              const std::vector<Point3>& spin) const;
-  /// Takes velocities back from t_0 to t_0 - dt/2.
+  /// Moves velocities back from t_0 to t_0 - dt/2.
   void stagger(State<Planar>& state, const Wrenches<Planar>& wrenches, double dt) const;
 
-  /// From t_n to t_n + dt with the wrenches at t_n. Returns the square of the largest speed of a
-  /// body [m^2/s^2] (not finite if a body's is not).
+  /// Steps from t_n to t_n + dt with the wrenches at t_n. Returns the square of the largest speed
+  /// of a body [m^2/s^2], which is not finite if a body's speed is not.
   double step(State<Planar>& state, const Wrenches<Planar>& wrenches, double dt);
 
-  /// As LeapfrogStepper's.
+  /// These functions correspond to those of LeapfrogStepper.
   using Energies = LeapfrogStepper::Energies;
   Energies energies(const State<Planar>& state, const Wrenches<Planar>& wrenches, double dt) const;
   std::array<double, 6> momentum(const State<Planar>& state, const Wrenches<Planar>& wrenches,
@@ -55,12 +57,12 @@ class PlanarLeapfrogStepper {
   const Part& part_;
   std::vector<Inverse> inverse_;
   std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
-  std::vector<double> saved_;               ///< their records before a step
+  std::vector<double> saved_;               ///< records of held_ before a step
   mutable std::vector<double> now_, next_;  ///< prescribed values (work space)
   double boundary_work_ = 0;
 };
 
-/// What moves the bodies of a space.
+/// The stepper of the bodies of a space.
 template <class Space>
 using LeapfrogStepperOf =
     std::conditional_t<std::is_same_v<Space, Planar>, PlanarLeapfrogStepper, LeapfrogStepper>;

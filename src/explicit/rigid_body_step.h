@@ -1,14 +1,13 @@
 /// \file
-/// One leapfrog step of rigid bodies, one body per lane (model.md section 8, "Rotation of a
-/// body").
+/// One leapfrog step of rigid bodies, one body per lane (model.md, "Explicit dynamics").
 ///
 /// Kick:  v += dt F/m, L += dt tau   (L: angular momentum in the world)
-/// Drift: u += dt v, and the free rotation of a rigid body with momentum L over dt by the symmetric
-/// product of rotations about its principal axes 1 2 3 2 1 by dt/2 dt/2 dt dt/2 dt/2 (each the flow
-/// of l_k^2/2I_k, so symplectic and time-reversible; McLachlan 1993; Reich 1994). L stays as it is,
-/// only the body turns under it. A rotation by theta enters as t = tan(theta'/2) = theta/2
-/// (Cayley): theta' depends on l_k only, so the map stays symplectic and of second order, without a
-/// transcendental function.
+/// Drift: u += dt v, and the free rotation of a rigid body with angular momentum L over dt, by the
+/// symmetric product of rotations about its principal axes 1 2 3 2 1 by dt/2 dt/2 dt dt/2 dt/2
+/// (each the flow of l_k^2/2I_k, so symplectic and time-reversible; McLachlan 1993; Reich 1994). L
+/// does not change in the drift; the body turns under it. A rotation by theta enters as t =
+/// tan(theta'/2) = theta/2 (Cayley): theta' depends on l_k only, so the map stays symplectic and of
+/// second order, without a transcendental function.
 #pragma once
 
 #include <cmath>
@@ -18,7 +17,7 @@
 
 namespace floe {
 
-/// What a body resists with: inverse mass and principal moments, and its principal axes at rest.
+/// Inverse mass and inverse principal moments of inertia of a body, and its principal axes at rest.
 template <class T>
 struct BodyConstants {
   T inverse_mass;
@@ -26,16 +25,17 @@ struct BodyConstants {
   Quat<T> axes;
 };
 
+/// Motion of a body: displacement, rotation, velocity, angular velocity, angular momentum.
 template <class T>
 struct BodyMotion {
   Vec3<T> u;
-  Quat<T> q;  ///< from rest
+  Quat<T> q;  ///< rotation from rest
   Vec3<T> v, w, momentum;
 };
 
-/// 1/(1 + x) for a small x >= 0: the series, whose first term left out is 1e-16; a body that turns
-/// by more than 0.04 rad per step needs the division. Bodies that do not need it must not see that
-/// their neighbours in the lanes do.
+/// 1/(1 + x) for a small x >= 0 by its series, whose first neglected term is 1e-16. A body that
+/// turns by more than 0.04 rad per step needs the division. The results of other bodies in the
+/// lanes must not depend on whether one of them needs it.
 inline constexpr double small_square = 1e-4;
 template <class T>
 T inverse_above_one_series(const T& x) {
@@ -52,7 +52,8 @@ inline Lanes inverse_above_one(const Lanes& x) {
   return value;
 }
 
-/// 1/sqrt(1 + x) for a small x: as above, first term left out 0.2 x^6 (Abramowitz & Stegun 3.6.10).
+/// 1/sqrt(1 + x) for a small x by its series, as above; the first neglected term is 0.2 x^6
+/// (Abramowitz & Stegun 3.6.10).
 inline constexpr double small_excess = 1e-3;
 template <class T>
 T inverse_root_series(const T& x) {
@@ -72,7 +73,8 @@ inline Lanes inverse_root(const Lanes& x) {
   return value;
 }
 
-/// Angular momentum and quaternion (principal axes to world, not normalised) turned about one axis.
+/// Turns the angular momentum l (in principal axes) and the quaternion q (principal axes to world,
+/// not normalised) about one axis.
 /// \param half  half the step over the moment of inertia: t = half l, the rotation is by 2 atan t
 template <int axis, class T>
 void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
@@ -98,7 +100,7 @@ void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
   }
 }
 
-/// A quaternion that is a unit one but for turns of one step.
+/// Normalises a quaternion whose norm differs from 1 by the rotations of one step only.
 template <class T>
 Quat<T> unit(const Quat<T>& q) {
   const T n =
@@ -106,7 +108,7 @@ Quat<T> unit(const Quat<T>& q) {
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 
-/// Turns a body freely over dt under its angular momentum; sets its angular velocity at the end.
+/// Turns a body freely over dt under its angular momentum and sets its angular velocity at the end.
 template <class T>
 void drift_rotation(const BodyConstants<T>& body, BodyMotion<T>& m, double dt) {
   Quat<T> axes = product(m.q, body.axes);

@@ -1,8 +1,8 @@
-// Explicit dynamics by PETSc's TSRK. Bodies are vectors here: FirstOrderSystem. After each accepted
-// step quaternions are made unit, prescribed components exact and integrals of powers are handed to
-// their owners; that changes the solution, so that TS evaluates the first stage anew even if the
-// method could reuse its last one (TSPostStep compares the vector's state). A restart from a
-// checkpoint is then the same to the last bit.
+// Explicit dynamics by PETSc's TSRK, with bodies as vectors (FirstOrderSystem). After each accepted
+// step quaternions are normalised, prescribed components are set to their exact values and
+// integrals of powers are handed to their owners. That changes the solution, so TS evaluates the
+// first stage anew even if the method could reuse its last one (TSPostStep compares the vector's
+// state). A restart from a checkpoint is therefore the same to the last bit.
 #include <petscts.h>
 
 #include <algorithm>
@@ -107,10 +107,11 @@ class RkRun final : public ExplicitRun<Spatial> {
   FirstOrderSystem equations_;
   Handle<Vec> solution_;
   Handle<TS> ts_;
-  double boundary_work_ = 0;  ///< less what the state tells [J]
+  double boundary_work_ = 0;  ///< less the part that follows from the state [J]
 };
 
-/// What the command line chose, if it can step bodies.
+/// Reads the method and the adaptivity that the command line chose. \throws InputError for those
+/// that cannot step bodies
 void RkRun::read_types() {
   TSRKType type = nullptr;
   check(TSRKGetType(ts_, &type));
@@ -150,8 +151,8 @@ StabilityPolynomial RkRun::polynomial() const {
 StableStep RkRun::find_stable_step() {
   model().part().ghosts.update(state().records, Spatial::record);
   const StableStep stable = rk_stable_step(polynomial(), model(), state());
-  // Steps this far inside what the scene's rates allow mean that the region leaves out the
-  // imaginary axis, or nearly.
+  // A step so far below the limit of the scene's rates means that the stability region leaves out
+  // the imaginary axis, or nearly does.
   constexpr double useless = 0.2;
   const double fastest = std::max(stable.omega, stable.decay);
   if (done() == 0 && !explicit_options().allow_unstable && stable.dt * fastest < useless)
@@ -166,8 +167,8 @@ StableStep RkRun::find_stable_step() {
   return stable;
 }
 
-/// Errors of a step are measured against atol + rtol |y|; for components of different units, atol
-/// times the beams' mean length, a radian, and these per stable step.
+/// Sets the tolerances atol + rtol |y| of a step's error. As components have different units, atol
+/// is scaled by the beams' mean length, a radian, and these per stable step.
 void RkRun::set_tolerances() {
   PetscReal absolute = 0, relative = 0;
   check(TSGetTolerances(ts_, &absolute, nullptr, &relative, nullptr));
@@ -188,7 +189,7 @@ void RkRun::set_tolerances() {
       std::fill_n(at + FirstOrderSystem::velocity, 3, absolute * model().length_scale() / time);
       std::fill_n(at + FirstOrderSystem::momentum, 3, absolute * moment / time);
     }
-    // Works do not count: without a tolerance they are left out.
+    // Integrals of power do not count: PETSc leaves out components without a tolerance.
     const auto works = static_cast<std::ptrdiff_t>(equations_.bodies_size());
     std::fill((*a).begin() + works, (*a).end(), 0.0);
     std::fill((*r).begin() + works, (*r).end(), 0.0);
@@ -196,7 +197,7 @@ void RkRun::set_tolerances() {
   check(TSSetTolerances(ts_, absolute, atol, relative, rtol));
 }
 
-/// Steps that adapt stay below the stable one.
+/// Keeps adaptive steps below the stable one.
 void RkRun::limit_steps() {
   if (!std::isfinite(result().stable_dt) || explicit_options().allow_unstable) return;
   TSAdapt adapt = nullptr;
@@ -207,7 +208,7 @@ void RkRun::limit_steps() {
                              std::min(most, explicit_options().safety * result().stable_dt)));
 }
 
-/// After an accepted step.
+/// Work after an accepted step. False: the run ends here.
 bool RkRun::stepped() {
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
   check(TSGetConvergedReason(ts_, &reason));
@@ -223,7 +224,7 @@ bool RkRun::stepped() {
     check(TSGetTimeStep(ts_, &next));
     set_dt(next);
   } else {
-    check(TSSetTime(ts_, now));  // no sum of roundings
+    check(TSSetTime(ts_, now));  // roundings do not add up
   }
   {
     const Numbers numbers(solution_);
@@ -237,7 +238,7 @@ bool RkRun::stepped() {
     equations_.from_records(state(), *numbers);
   }
   if (!moved(now, equations_.largest_speed2(state()))) return false;
-  // The last state is the run's to sample.
+  // The run samples the last state itself.
   if (!is_last(reason) && !(evaluate_and_sample_if_due() && keep_step_stable(ts_))) return false;
   return look_around();
 }

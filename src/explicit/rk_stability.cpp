@@ -11,7 +11,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A pair (c, k), each over its largest value.
+/// A pair (c, k), each relative to its largest value.
 struct Pair {
   double c, k;
 };
@@ -24,7 +24,7 @@ Pair between(const Pair& a, const Pair& b, double t) {
 
 using Polygon = std::vector<Pair>;  // convex, counter-clockwise
 
-/// The part of a polygon where n.p <= s (Sutherland and Hodgman 1974).
+/// Clips a polygon to the half-plane n.p <= s (Sutherland and Hodgman 1974).
 Polygon clipped(const Polygon& polygon, const Pair& n, double s) {
   Polygon kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -55,7 +55,7 @@ Polygon hull(Polygon points) {
   return ring;
 }
 
-/// The point of a polygon's boundary nearest to p.
+/// Returns the point of a polygon's boundary nearest to p.
 Pair nearest(const Polygon& polygon, const Pair& p) {
   Pair best{};
   double least = infinity;
@@ -74,8 +74,8 @@ Pair nearest(const Polygon& polygon, const Pair& p) {
   return best;
 }
 
-/// The boundary's point with the least stable step. As dt grows from 0, the set (c dt, k dt^2) of
-/// all pairs meets the unstable ones with its boundary first.
+/// The point of the boundary with the least stable step. As dt grows from 0, the boundary of the
+/// set (c dt, k dt^2) of all pairs is the first part to reach unstable pairs.
 struct Worst {
   double dt = infinity;
   Pair at{};
@@ -106,7 +106,7 @@ Complex StabilityPolynomial::operator()(Complex z) const {
 }
 
 double StabilityPolynomial::largest_step(double stiffness, double damping, double growth) const {
-  // In units of 1/size the roots are of size 1 or less.
+  // In units of `size` the roots have absolute values of at most 2.
   const double size = std::max(damping, std::sqrt(stiffness));
   if (!(size > 0)) return infinity;
   const double half = 0.5 * damping / size, k = stiffness / size / size;
@@ -115,7 +115,7 @@ double StabilityPolynomial::largest_step(double stiffness, double damping, doubl
   const double most = (1 + growth) * (1 + growth);
   const auto grows = [&](Complex z) { return !(std::norm((*this)(z)) <= most); };
   const auto unstable = [&](double t) { return grows(t * roots[0]) || grows(t * roots[1]); };
-  // No method's region reaches further than the square of its number of stages.
+  // The stability region of no method extends further than the square of its number of stages.
   const auto stages = static_cast<double>(coefficients_.size() - 1);
   double low = 0, high = 1e-4;
   for (constexpr double stride = 0.02; !unstable(high); high += stride) {
@@ -157,7 +157,7 @@ StableStep rk_stable_step(const StabilityPolynomial& polynomial, const Model<Spa
     result.evaluations += modes.back().evaluations;
     return modes.back();
   };
-  // Eigenvalues are found to 1e-6; a margin keeps the polygon outside all the same.
+  // Eigenvalues are found to 1e-6; the margin keeps the polygon outside in spite of that.
   constexpr double margin = 1e-5;
   Pair scale{};
   scale.k = std::max(0.0, search({1, 0}).value);
@@ -177,7 +177,7 @@ StableStep rk_stable_step(const StabilityPolynomial& polynomial, const Model<Spa
   for (int it = 0; damped && scale.k > 0 && it < most; ++it) {
     const Polygon reached = hull(inner);
     if (limit.dt >= close * worst(polynomial, reached, scale, growth).dt) break;
-    // A line that parts the limiting point from what was reached.
+    // The line separates the limiting point from the hull of the pairs found.
     Pair n = limit.at - nearest(reached, limit.at);
     const double length = std::sqrt(dot(n, n));
     if (length < margin) break;
@@ -190,7 +190,7 @@ StableStep rk_stable_step(const StabilityPolynomial& polynomial, const Model<Spa
   result.dt = limit.dt;
   result.omega = std::sqrt(std::max(0.0, limit.at.k) * scale.k);
   result.decay = std::max(0.0, limit.at.c) * scale.c;
-  // The mode found that is nearest to it.
+  // Report the mode whose pair is nearest to the limiting point.
   double least = infinity;
   for (const VibrationMode& mode : modes) {
     const Pair apart = pair_of(mode) - limit.at;

@@ -19,9 +19,9 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
-/// A trial vector with its images.
+/// A trial vector z and its images k = K z, c = C z.
 struct Trial {
-  Vector z, k, c;  ///< c is empty if nothing damps
+  Vector z, k, c;  ///< c is empty if no force damps
   void scale(double s) { z *= s, k *= s, c *= s; }
   void add(double s, const Trial& other) { z += s * other.z, k += s * other.k, c += s * other.c; }
   Vector image(const Weights& weights) const {
@@ -30,7 +30,7 @@ struct Trial {
   }
 };
 
-/// Largest eigenvalue of w_k K + w_c C in a small orthonormal space, with its vector.
+/// Returns the largest eigenvalue of w_k K + w_c C in a small orthonormal space, and its vector.
 std::pair<double, Vector> largest(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c,
                                   const Weights& weights) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(weights.stiffness * k +
@@ -38,10 +38,11 @@ std::pair<double, Vector> largest(const Eigen::MatrixXd& k, const Eigen::MatrixX
   return {solver.eigenvalues()[k.rows() - 1], solver.eigenvectors().col(k.rows() - 1)};
 }
 
-/// Leapfrog's search: the dt at which the largest eigenvalue of dt^2 K + 2 dt C is 4.
+/// Search for leapfrog's stable step: the dt at which the largest eigenvalue of dt^2 K + 2 dt C is
+/// 4.
 class CriticalStep {
  public:
-  /// From a vector with x.Kx and x.Cx; false if nothing acts on it.
+  /// Starts from a vector with x.Kx and x.Cx; false if no force acts on the vector.
   bool begin(double k, double c) {
     if (k <= 0 && c <= 0) return false;
     value_ = k > 0 ? (std::sqrt(c * c + 4 * k) - c) / k : 2 / c;  // dt^2 k + 2 dt c = 4
@@ -50,7 +51,7 @@ class CriticalStep {
   double value() const { return value_; }
   double size() const { return value_; }
   Weights weights() const { return weights(value_); }
-  /// In a small space, by bisection: the eigenvalue grows with dt.
+  /// Solves for dt in a small space, by bisection, since the eigenvalue grows with dt.
   void improve(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c) {
     double low = 0, high = value_;
     while (largest(k, c, weights(high)).first < 4) {
@@ -69,7 +70,7 @@ class CriticalStep {
   double value_ = 0;
 };
 
-/// The largest eigenvalue of given weights.
+/// Search for the largest eigenvalue of given weights.
 class Extreme {
  public:
   explicit Extreme(const Weights& weights) : weights_(weights) {}
@@ -85,12 +86,12 @@ class Extreme {
   }
 
  private:
-  static constexpr double smallest = 1e-3;  // with weights that make sizes of about 1
+  static constexpr double smallest = 1e-3;  // for weights that make eigenvalues of about 1
   Weights weights_;
   double value_ = 0;
 };
 
-/// The body that moves most in a mode, and whether it moves or turns.
+/// Describes the body that moves most in a mode, and whether it shifts or turns.
 template <class Space>
 std::string describe(const Operators<Space>& a, const Model<Space>& model, const Vector& z) {
   constexpr int n = Space::unknowns;
@@ -123,7 +124,7 @@ std::string describe(const Operators<Space>& a, const Model<Space>& model, const
   return text.str();
 }
 
-/// The same vector on any number of ranks: by global index.
+/// Random vector that depends on global indices, so that it is the same on any number of ranks.
 template <class Space>
 Vector random_vector(const Operators<Space>& a, const Part& part) {
   constexpr int n = Space::unknowns;
@@ -138,8 +139,8 @@ Vector random_vector(const Operators<Space>& a, const Part& part) {
   return start;
 }
 
-/// Locally optimal conjugate gradients for the top mode of what `search` weights; empty if nothing
-/// acts.
+/// Finds the top mode of the combination that `search` weights, by locally optimal conjugate
+/// gradients; empty if no force acts.
 template <class Space>
 std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
   const auto make = [&](Vector z) {
@@ -160,7 +161,8 @@ std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
   for (int it = 0; it < most && quiet < 3; ++it) {
     if (it > 0) progress.update(it, "iteration " + std::to_string(it));
     if (it == 0 && !search.begin(a.dot(x.z, x.k), along(x, x))) return {};
-    std::vector<Trial> space;  // trials are moved about, never copied: each is 144 bytes per body
+    // Trials are moved, never copied: each takes 144 bytes per body.
+    std::vector<Trial> space;
     space.reserve(3);
     space.push_back(std::move(x));
     const auto orthonormal = [&](Trial t) {
@@ -237,7 +239,7 @@ VibrationMode extreme_mode(const Model<Spatial>& model, const State<Spatial>& st
                            const Weights& weights, const VibrationMode* start) {
   Operators<Spatial> a(model, state);
   Extreme search(weights);
-  // A little of everything beside the mode to start from, which may be another's.
+  // A small random part is added, since the start may be the mode of other weights.
   Vector first = random_vector(a, model.part());
   first *= 0.1 / std::sqrt(a.dot(first, first));
   if (start) first += start->shape;

@@ -1,6 +1,6 @@
 /// \file
-/// One step of explicit dynamics, on one page: evaluate, advance, commit, release. The integrator
-/// of a run (explicit.cpp), tests, and any other back end of the step are written in these words.
+/// One step of explicit dynamics: evaluate, advance, commit, release. The integrator of a run
+/// (explicit.cpp), tests, and any other back end of the step use these functions.
 #pragma once
 
 #include "base/collectives.h"
@@ -9,26 +9,27 @@
 
 namespace floe {
 
-/// Leapfrog: positions at t_n, velocities at t_n - dt/2, and the wrenches of the last evaluation.
+/// Leapfrog with positions at t_n, velocities at t_n - dt/2, and the wrenches of the last
+/// evaluation.
 template <class Space>
 class ExplicitStep {
  public:
   using Energies = LeapfrogStepper::Energies;
 
-  /// All must outlive this. \param model  with all of its forces
+  /// All must outlive this object. \param model  with all of its forces
   ExplicitStep(Model<Space>& model, State<Space>& state, Wrenches<Space>& wrenches)
       : model_(model), state_(state), wrenches_(wrenches), stepper_(model) {}
 
-  /// Sets the bodies' initial velocities, at t_0, and evaluates.
+  /// Sets the bodies' initial velocities, at t_0, and evaluates the forces. Collective.
   void start() {
     const Bodies& bodies = model_.part().bodies;
     stepper_.start(state_, bodies.velocity, bodies.angular_velocity);
     evaluate();
   }
-  /// Takes velocities back by half of dt [s], with the wrenches of the last evaluation.
+  /// Moves velocities back by half of dt [s], with the wrenches of the last evaluation.
   void stagger(double dt) { stepper_.stagger(state_, wrenches_, dt); }
 
-  /// All forces at t_n. Collective.
+  /// Evaluates all forces at t_n. Collective.
   void evaluate() {
     model_.part().ghosts.update(state_.records, Space::record);
     model_.evaluate(state_, wrenches_);
@@ -36,13 +37,14 @@ class ExplicitStep {
   /// Kick and drift of the owned bodies, from t_n to t_n + dt. Returns the square of the largest
   /// speed [m^2/s^2], which is not finite if a body's speed is not.
   double advance(double dt) { return stepper_.step(state_, wrenches_, dt); }
-  /// Forces take over what the step has changed: damage, slip, energies. Collective.
+  /// Lets forces take over the history of the step: damage, slip, energies. Collective.
   void commit(double dt) {
     for (const auto& force : model_.forces()) {
       if (auto* role = force->roles().commits) role->commit(state_, dt);
     }
   }
-  /// Bodies whose beam broke in this step may touch from the next evaluation on. Collective.
+  /// Makes pairs whose beam broke in this step eligible for contact from the next evaluation on.
+  /// Collective.
   void release() {
     if (model_.fracture() == nullptr) return;
     const auto pairs = model_.fracture()->released();
@@ -52,9 +54,11 @@ class ExplicitStep {
     }
   }
 
-  /// This rank's kinetic energy and the boundaries' work on its bodies so far, at t_n [J].
+  /// Kinetic energy of this rank's bodies, and the boundaries' work on them since the start, at t_n
+  /// [J].
   Energies energies(double dt) const { return stepper_.energies(state_, wrenches_, dt); }
-  /// Linear momentum, and angular momentum about the origin, at t_n; this rank's share.
+  /// Linear momentum [kg m/s] and angular momentum about the origin [kg m^2/s] of this rank's
+  /// bodies at t_n.
   std::array<double, 6> momentum(double dt) const {
     return stepper_.momentum(state_, wrenches_, dt);
   }

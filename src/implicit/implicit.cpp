@@ -1,5 +1,5 @@
-// Implicit dynamics by the TS type liealpha: what PETSc calls, when a factorisation is kept, the
-// books of a step, and where steps end.
+// Implicit dynamics by the TS type liealpha: callbacks of PETSc, reuse of factorisations, energies
+// of a step, ends of steps.
 #include "implicit/implicit.h"
 #include "base/collectives.h"
 
@@ -83,7 +83,7 @@ class ImplicitRun final : public DynamicRun<Space> {
     if (!is_like_a_sheet(static_cast<double>(part.global_bodies),
                          static_cast<double>(part.global_beams)))
       return;
-    // Two iterations a step, and a factorisation now and then.
+    // A step takes two iterations, and a factorisation now and then.
     plan.seconds_a_step = 3 * cost_.solve_seconds + 0.2 * cost_.seconds;
     plan.measured = sheets_like_it;
   }
@@ -124,8 +124,8 @@ class ImplicitRun final : public DynamicRun<Space> {
   }
   static PetscErrorCode in_domain(TS ts, PetscReal, Vec, PetscBool* good) noexcept;
 
-  /// A factorisation costs a dozen solves. It serves on, over steps, while the step is the same and
-  /// each iteration takes a digit off the residual.
+  /// Whether to keep the factorisation, since a new one costs a dozen solves: it is kept, over
+  /// steps, while the step is the same and each iteration takes a digit off the residual.
   bool keeps_factorisation(double by_acceleration) const {
     constexpr double a_digit = 0.1, same = 1e-6;
     const double last = equations_.by_acceleration();
@@ -140,11 +140,14 @@ class ImplicitRun final : public DynamicRun<Space> {
   const FactorisationCost cost_ = factorisation_cost(unknowns_, size(this->model().part().comm));
   Handle<Vec> x_, v_, x_before_, v_before_, expected_;
   Handle<TS> ts_;
-  bool adaptive_ = true;  // whether we decide on factorisations (not if the user set a lag)
-  bool fixed_ = false;    // whether the step is given
-  double last_norm_ = 0, contraction_ = 0;  // of the residual, over the last iteration
+  bool adaptive_ =
+      true;             // whether this class decides on factorisations (not if the user set a lag)
+  bool fixed_ = false;  // whether the step is fixed
+  double last_norm_ = 0,
+         contraction_ =
+             0;  // norm of the residual [N], and its ratio to that of the iteration before
   typename Equations::Forces forces_, forces_before_;
-  double kinetic_ = 0, boundary_work_ = 0, numerical_loss_ = 0;  // this rank's [J]
+  double kinetic_ = 0, boundary_work_ = 0, numerical_loss_ = 0;  // of this rank [J]
   std::int64_t newton_before_ = 0;                               // iterations before the restart
 };
 
@@ -160,16 +163,17 @@ void ImplicitRun<Space>::set_up_ts() {
   check(TSSetApplicationContext(ts_, this));
   check(TSSetPostStep(ts_, post_step));
   check(TSSetFunctionDomainError(ts_, in_domain));
-  check(TSSetMaxSNESFailures(ts_, -1));  // the step is cut; -ts_max_reject ends that
-  // Of a step's error, rms over all unknowns: relative to the motion (expected at the least, or so
-  // far), and in beam lengths: no more than rounding, or small loads would have no say.
+  check(TSSetMaxSNESFailures(ts_, -1));  // the step is cut; -ts_max_reject limits how often
+  // Tolerances of a step's error, rms over all unknowns: relative to the motion (the expected one
+  // at least), and absolute in beam lengths. The absolute one is at the level of rounding, or small
+  // loads would have no effect on steps.
   check(TSSetTolerances(ts_, 1e-13 * model().length_scale(), nullptr, 1e-3, nullptr));
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts_, &adapt));
   check(TSAdaptSetType(adapt, options().dt > 0 ? TSADAPTNONE : TSADAPTBASIC));
 }
 
-/// Defaults that PETSc's own options override.
+/// Sets defaults that PETSc's own options override.
 template <class Space>
 void ImplicitRun<Space>::set_up_newton() {
   SNES snes = nullptr;
@@ -195,12 +199,14 @@ void ImplicitRun<Space>::read_types() {
   fixed_ = name == TSADAPTNONE;
   if (fixed_ && !(options().dt > 0) && options().checkpoint.restart.empty())
     throw InputError("ts_adapt_type: none needs a step: give time: dt");
-  this->set_adaptive(true);  // a step can be cut in any case: time decides, not their number
+  this->set_adaptive(
+      true);  // a step can be cut in any case: time ends the run, not the number of steps
 }
 
-/// While loads and boundaries come in slowly, an error relative to the motion so far would be
-/// relative to next to nothing, and steps tiny. So the motion of the ramps' whole time counts: what
-/// boundaries will have moved, and where one linear step with the loads' full forces leads to.
+/// Computes the motion to which errors are relative while loads and boundaries rise slowly:
+/// relative to the motion so far, which is almost zero, steps would be tiny. The motion over the
+/// longest ramp counts instead: boundaries at the ramp's end, and the displacements of one linear
+/// step with the loads' full forces.
 template <class Space>
 void ImplicitRun<Space>::expect_motion() {
   const std::vector<double> ramps = model().ramp_ends();
@@ -227,7 +233,8 @@ template <class Space>
 bool ImplicitRun<Space>::first() {
   constexpr double rounding = 1e-12;  // of the sum of steps
   check(TSSetMaxTime(ts_, (1 - rounding) * options().end));
-  check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));  // land() sees to it
+  check(TSSetExactFinalTime(
+      ts_, TS_EXACTFINALTIME_STEPOVER));  // land() makes steps end at the run's end
   const LieAlphaHistory memory = liealpha_memory(ts_);
   if (done() == 0) {
     if (!fixed_) expect_motion();
@@ -242,9 +249,10 @@ bool ImplicitRun<Space>::first() {
   return this->sample_if_due();
 }
 
-/// Energies of a step by the trapezoidal rule, as the method of radius 1 keeps them in a linear
-/// system: the bodies' inertia forces g do the work sum (g_0 + g_1).dX/2, which is the forces' and
-/// the boundaries'. What of it is not in the kinetic energy is the method's own loss.
+/// Computes the energies of a step by the trapezoidal rule, which the method of radius 1 conserves
+/// in a linear system: the inertia forces g of the bodies do the work sum (g_0 + g_1).dX/2, which
+/// is the work of forces and boundaries. The part of it that is not in the kinetic energy is the
+/// method's numerical loss.
 template <class Space>
 void ImplicitRun<Space>::keep_books(double h) {
   const LieAlphaHistory memory = liealpha_memory(ts_);
@@ -260,7 +268,7 @@ void ImplicitRun<Space>::keep_books(double h) {
   numerical_loss_ += work(forces_before_.inertia, forces_.inertia) - (kinetic - kinetic_);
   boundary_work_ += work(forces_before_.reaction, forces_.reaction);
   kinetic_ = kinetic;
-  // A prescribed velocity may jump; whoever prescribes it pays for the kinetic energy.
+  // Where a prescribed velocity jumps, the boundary does the work for the kinetic energy.
   for (const std::size_t k : equations_.held()) {
     if (!equations_.is_displacement(k)) continue;
     const double now = (*v)[k], before = (*v_before)[k];
@@ -281,7 +289,7 @@ void ImplicitRun<Space>::keep_books(double h) {
   std::swap(forces_, forces_before_);
 }
 
-/// After an accepted step: the books, samples, the next step.
+/// Work after an accepted step: energies, samples, the next step. False: the run ends here.
 template <class Space>
 bool ImplicitRun<Space>::stepped() {
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
@@ -303,7 +311,7 @@ bool ImplicitRun<Space>::stepped() {
   check(VecCopy(v_, v_before_));
   result().dt = h;
   if (!this->moved(now, equations_.largest_speed2())) return false;
-  // The last state is the run's to sample.
+  // The run samples the last state itself.
   if (!this->is_last(reason) && !this->sample_if_due()) return false;
   double allowed = 0;
   check(TSGetTimeStep(ts_, &allowed));
@@ -359,13 +367,14 @@ PetscErrorCode ImplicitRun<Space>::converged(SNES snes, PetscInt it, PetscReal, 
     *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
     return 0;
   }
-  // What Newton starts from is not good enough by being near: small forces would never act.
+  // Never accept the initial guess by tolerance alone, or small forces would never act.
   const double tolerance = run.equations_.tolerance(it > 0 ? rtol : 0.0, it > 0 ? atol : 0.0);
   if (norm <= tolerance) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   return 0;
 }
 
-/// A state in which beams have folded over is no solution (model.md section 7).
+/// Refuses a state in which beams have folded over: it is no solution (model.md, "Static
+/// solution").
 template <class Space>
 PetscErrorCode ImplicitRun<Space>::in_domain(TS ts, PetscReal, Vec, PetscBool* good) noexcept {
   ImplicitRun& run = of(ts);
