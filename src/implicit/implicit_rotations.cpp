@@ -30,10 +30,11 @@ Matrix matrix_of(const Quat<double>& q) {
   return r;
 }
 
-/// T(theta): the spin, in the frame in which a rotation exp(theta) starts, of a change of theta.
+/// T(theta): maps a change of theta to the spin, in the frame in which a rotation exp(theta)
+/// starts.
 Matrix tangent_map(const Vector& theta) {
   const double angle2 = theta.squaredNorm(), angle = std::sqrt(angle2);
-  // Below 0.01 rad the series' next terms are under 1e-15.
+  // Below 0.01 rad the next terms of the series are below 1e-15.
   const bool small = angle < 1e-2;
   const double first = small ? 0.5 - angle2 / 24 + angle2 * angle2 / 720
                              : (1 - std::cos(angle)) / angle2,
@@ -128,7 +129,7 @@ Vector ImplicitRotations<Spatial>::to_world(std::size_t b, const double* record,
   return matrix_of(rotation_of(record)) * frame;
 }
 
-/// J in the frame.
+/// J in the frame of the body's unknowns.
 Matrix ImplicitRotations<Spatial>::inertia(std::size_t b, const double* record) const {
   if (frames_[b] != Frame::world) return at_rest_[b];
   const Matrix r = matrix_of(rotation_of(record));

@@ -1,11 +1,12 @@
 /// \file
-/// What of PETSc's options of TS implicit dynamics takes.
+/// PETSc options of TS that implicit dynamics takes.
 #pragma once
 
 namespace floe {
 
-/// \throws InputError for an -ts_type other than `liealpha` and for options of TS that would upset
-/// samples and checkpoints, naming the option and the reason
+/// Checks the options of TS.
+/// \throws InputError for a -ts_type other than `liealpha` and for options of TS that would upset
+///   samples and checkpoints, naming the option and the reason
 void check_implicit_options();
 
 }  // namespace floe

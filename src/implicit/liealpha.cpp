@@ -23,7 +23,7 @@ Parameters parameters_of(double radius) {
   return {alpha_m, alpha_f, gamma, 0.25 * (gamma + 0.5) * (gamma + 0.5)};
 }
 
-/// PETSc allocates and zeroes it. 0: at t_n, 1: at t_n + h.
+/// Data of a TS of this type; PETSc allocates and zeroes them. Index 0: at t_n, 1: at t_n + h.
 struct LieAlpha {
   const LieAlphaProblem* problem;
   double radius, hold;
@@ -32,8 +32,8 @@ struct LieAlpha {
   std::int64_t iterations;
   Vec x0, v0, a0, own0;
   Vec x1, v1, a1, own1;
-  Vec start;      ///< the method's own acceleration at t_n as the present h wants it
-  Vec increment;  ///< X1 - X0, the unknown: accelerations come from it without cancellation
+  Vec start;      ///< the method's own acceleration at t_n, scaled for the present h
+  Vec increment;  ///< X1 - X0, the unknown: accelerations follow from it without cancellation
   Vec error;
 
   std::array<Vec*, 11> vectors() {
@@ -43,7 +43,7 @@ struct LieAlpha {
 
 LieAlpha& of(TS ts) { return *static_cast<LieAlpha*>(ts->data); }
 
-/// The stage at t_n + h that an increment leads to.
+/// Sets the stage at t_n + h from an increment.
 PetscErrorCode put_stage(TS ts, Vec increment) {
   LieAlpha& me = of(ts);
   const auto [alpha_m, alpha_f, gamma, beta] = parameters_of(me.radius);
@@ -66,23 +66,25 @@ PetscErrorCode put_stage(TS ts, Vec increment) {
   PetscFunctionReturn(0);
 }
 
-/// Norm of F at an increment.
+/// Sets the increment by_velocity * V0 and its stage; returns the norm of F there unless `norm` is
+/// null.
 PetscErrorCode try_increment(TS ts, double by_velocity, PetscReal* norm) {
   LieAlpha& me = of(ts);
   PetscFunctionBegin;
   PetscCall(VecCopy(me.v0, me.increment));
   PetscCall(VecScale(me.increment, by_velocity));
   PetscCall(put_stage(ts, me.increment));
-  PetscCall(VecWAXPY(me.increment, -1.0, me.x0, me.x1));  // prescribed components included
+  PetscCall(VecWAXPY(me.increment, -1.0, me.x0, me.x1));  // with prescribed components
   if (norm == nullptr) PetscFunctionReturn(0);
   PetscCall(TSComputeI2Function(ts, ts->ptime + me.h, me.x1, me.v1, me.a1, me.error));
   PetscCall(VecNorm(me.error, NORM_2, norm));
   PetscFunctionReturn(0);
 }
 
-/// The own acceleration for this h: A + (own - A) h/h_last, as own - A is proportional to the step.
-/// And what Newton starts from: X0 + h V0 or X0, whichever leaves less of F. The former suits a
-/// smooth motion, and is off by many times the motion where V holds what h does not resolve.
+/// Scales the own acceleration to this h: A + (own - A) h/h_last, as own - A is proportional to the
+/// step. Chooses Newton's initial guess: X0 + h V0 or X0, the one with the smaller F. The first
+/// suits smooth motions; where V has vibrations that h does not resolve, it is wrong by many times
+/// the motion.
 PetscErrorCode predict(TS ts) {
   LieAlpha& me = of(ts);
   const double h = me.h;
@@ -128,7 +130,8 @@ PetscErrorCode solve_stage(TS ts, PetscBool* good) {
   constexpr PetscInt most = std::numeric_limits<PetscInt>::max();
   ts->snes_its += std::min(newton, most - ts->snes_its);
   ts->ksp_its += std::min(linear, most - ts->ksp_its);
-  PetscCall(put_stage(ts, me.increment));  // a line search may have looked elsewhere last
+  PetscCall(
+      put_stage(ts, me.increment));  // a line search may have evaluated another increment last
   PetscCall(TSPostStage(ts, time, 0, &me.x1));
   PetscCall(TSAdaptCheckStage(ts->adapt, ts, time, me.x1, good));
   PetscFunctionReturn(0);
@@ -153,7 +156,8 @@ PetscErrorCode step(TS ts) noexcept {
         std::swap(me.own0, me.own1);
         me.last_step = me.h;
         ts->ptime += me.h;
-        // An accepted step asks for 0.9 of itself at the least; every other step is another matrix.
+        // TSAdapt proposes at least 0.9 of an accepted step. Each change of the step needs another
+        // matrix.
         const bool stays = next >= 0.89 * me.h && next < me.hold * me.h;
         ts->time_step = stays ? me.h : next;
         PetscFunctionReturn(0);
@@ -169,9 +173,9 @@ PetscErrorCode step(TS ts) noexcept {
   PetscFunctionReturn(0);
 }
 
-/// Local error of X: (beta + (alpha_m - alpha_f)/2 - 1/6) h^2 (a1 - a0), of the third order, since
-/// own accelerations lead A by (alpha_m - alpha_f) h. Judged as a whole, its norm against that of
-/// X: next to a bent sheet's deflection the noise of its other unknowns has no say.
+/// Local error of X: (beta + (alpha_m - alpha_f)/2 - 1/6) h^2 (a1 - a0), of third order, since own
+/// accelerations lead A by (alpha_m - alpha_f) h. The norm of the whole error is compared with that
+/// of X, so that the noise of a bent sheet's other unknowns does not count beside its deflection.
 PetscErrorCode local_error(TS ts, NormType norm, PetscInt* order, PetscReal* weighted) noexcept {
   LieAlpha& me = of(ts);
   const auto [alpha_m, alpha_f, gamma, beta] = parameters_of(me.radius);

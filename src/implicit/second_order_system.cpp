@@ -47,7 +47,7 @@ Handle<Vec> SecondOrderSystem<Space>::make_vector() const {
   return vector;
 }
 
-/// Rotation unknowns of a body, in rad and its derivatives.
+/// Rotation unknowns of a body in rad, or their rates in rad/s and rad/s^2.
 template <class Space>
 auto SecondOrderSystem<Space>::turn_of(std::span<const double> vector, std::size_t body) const
     -> TurnVector {
@@ -68,7 +68,7 @@ void SecondOrderSystem<Space>::begin(Vec x, Vec v) {
     const Numbers rates(v);
     for (std::size_t b = 0; b < owned_; ++b) {
       double* to = &(*rates)[b * unknowns];
-      // At rest all frames are the world's.
+      // At rest all frames are those of the world.
       for (std::size_t k = 0; k < unknowns; ++k) to[k] = 0;
       if (!all.velocity.empty()) std::copy_n(all.velocity[b].data(), moves, to);
       if (!all.angular_velocity.empty()) {
@@ -104,7 +104,7 @@ void SecondOrderSystem<Space>::prescribe(double time, const LieAlphaStage& stage
   model_.prescribe(time, values_);
   model_.prescribe_rates(time, rates_);
   model_.prescribe_accelerations(time, accelerations_);
-  // By all ranks, also by those that hold none: see Numbers.
+  // All ranks must make these views, also those that hold no unknown: see Numbers.
   const Numbers x(stage.x), v(stage.v), a(stage.a), own(stage.own);
   for (const std::size_t k : held_) {
     const double scale = is_displacement(k) ? 1.0 : length_;
@@ -174,7 +174,7 @@ double SecondOrderSystem<Space>::tolerance(double relative, double absolute) con
   return std::max({relative * std::sqrt(all[0]), rounding * std::sqrt(all[1]), absolute});
 }
 
-/// Frames of all local bodies, for derivatives to places and to velocities.
+/// Sets the frames of all local bodies, for derivatives to places and to velocities. Collective.
 template <class Space>
 void SecondOrderSystem<Space>::set_frames(std::span<const double> x, double by_velocity) {
   const auto local = static_cast<std::size_t>(part_.local);
@@ -301,7 +301,8 @@ double SecondOrderSystem<Space>::kinetic(Vec v) const {
 
 template <class Space>
 double SecondOrderSystem<Space>::largest_speed2() const {
-  double largest = 0, sum = 0;  // a maximum would lose what is not a number
+  // The sum keeps numbers that are not finite, which a maximum would lose.
+  double largest = 0, sum = 0;
   for (std::size_t b = 0; b < owned_; ++b) {
     double speed2 = 0;
     for (std::size_t k = 0; k < moves; ++k) {

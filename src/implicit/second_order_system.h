@@ -1,11 +1,11 @@
 /// \file
 /// Newton's and Euler's equations of the bodies as one system F(t, X, V, A) = 0 of second order,
-/// for implicit integrators (model.md section 9).
+/// for implicit integrators (model.md, "Implicit dynamics").
 ///
-/// Vectors hold a block of n numbers per body in the tangent's rows: X displacement [m] and the
-/// running sum of rotation increments times the length scale (ImplicitRotations), V and A their
-/// rates. F is the inertia forces less the wrenches, moments divided by the length scale [N]; 0 for
-/// prescribed unknowns, which prescribe() sets.
+/// Vectors hold a block of n numbers per body in the tangent's rows: X is the displacement [m] and
+/// the running sum of rotation increments times the length scale (ImplicitRotations), V and A are
+/// the rates of X. F is the inertia forces less the wrenches, moments divided by the length scale
+/// [N]; it is 0 for prescribed unknowns, which prescribe() sets.
 #pragma once
 
 #include <span>
@@ -18,56 +18,64 @@
 
 namespace floe {
 
+/// The system of second order on this rank's owned bodies.
 template <class Space>
 class SecondOrderSystem {
  public:
   static constexpr int n = Space::unknowns;
 
-  /// \param state  of the model's bodies, which these equations set; both must outlive this
+  /// \param state  state of the model's bodies, which these equations set
+  /// \param model, state  must outlive this object
   SecondOrderSystem(Model<Space>& model, State<Space>& state);
 
   Mat matrix() const { return tangent_.matrix(); }
-  /// A vector of the unknowns.
+  /// Creates a vector of the unknowns.
   Handle<Vec> make_vector() const;
 
-  /// X and V at the state's time: at rest, with the bodies' first velocities; prescribed unknowns
-  /// as prescribed.
+  /// Sets X and V at the state's time: at rest, with the bodies' initial velocities, prescribed
+  /// unknowns at their prescribed values.
   void begin(Vec x, Vec v);
-  /// A of F(t, x, v, A) = 0.
+  /// Solves F(t, x, v, A) = 0 for A.
   void acceleration(double time, Vec x, Vec v, Vec a);
-  /// Prescribed unknowns of a stage.
+  /// Sets the prescribed unknowns of a stage.
   void prescribe(double time, const LieAlphaStage& stage) const;
-  /// The state of X and V, ghosts included.
+  /// Sets the state from X and V and updates the ghosts. Collective.
   void take(double time, Vec x, Vec v);
-  /// Moves the rotations' reference to the state, which is that of X.
+  /// Moves the rotations' reference to the state, which must be that of X.
   void rebase(Vec x);
 
+  /// Computes F into f. Collective.
   void residual(double time, Vec x, Vec v, Vec a, Vec f);
-  /// dF/dX as V and A go with X by their factors, into the matrix.
+  /// Assembles dF/dX into the matrix, where V and A change with X by their factors. Collective.
   void assemble(double time, Vec x, Vec v, Vec a, double by_velocity, double by_acceleration);
-  /// The factor of A in the matrix as it stands; 0 before the first.
+  /// Factor of A in the assembled matrix; 0 before the first assembly.
   double by_acceleration() const { return assembled_.by_acceleration; }
-  /// What the matrix was assembled from: after loading it stands again as it was, to the last bit.
+  /// Saves or loads the data of the last assembly. After loading the matrix is the same to the last
+  /// bit.
   void persist(Archive& archive);
 
-  /// What the residual must fall below: `relative` times the size of the forces in the last
-  /// residual (external ones together, so that a sheet's weight on water has no say; reactions,
-  /// inertia), never below the rounding in it. Collective. [N]
+  /// Returns the tolerance of the residual [N]: `relative` times the size of the forces in the last
+  /// residual, at least the rounding in it and `absolute`. External forces count by their sum, so
+  /// that weight and buoyancy of a sheet cancel; reactions and inertia forces are added.
+  /// Collective.
   double tolerance(double relative, double absolute) const;
 
-  /// What a step's books need at the state, whose V and A these are, n per owned body, moments in
-  /// the unknowns' frames and divided by the length scale: inertia forces, what boundaries exert,
-  /// what velocities take.
+  /// Forces that the energies of a step need: inertia forces, reactions of boundaries, and losses
+  /// by velocities; n per owned body, moments in the unknowns' frames and divided by the length
+  /// scale [N].
   struct Forces {
     std::vector<double> inertia, reaction;
-    std::vector<std::vector<double>> losses;  ///< of each force that has any, in their order
+    std::vector<std::vector<double>>
+        losses;  ///< of each force that has losses, in the order of forces
   };
+  /// Computes these forces at the state, whose V and A are given.
   void forces(Vec v, Vec a, const Wrenches<Space>& wrenches, Forces& all) const;
-  /// This rank's kinetic energy [J], and the square of its bodies' largest speed [m^2/s^2] (not
-  /// finite if one is not).
+  /// Kinetic energy of this rank's bodies [J], and the square of their largest speed [m^2/s^2],
+  /// which is not finite if a body's speed is not.
   double kinetic(Vec v) const;
   double largest_speed2() const;
-  /// Prescribed displacements of owned bodies (not rotations), and what resists them.
+  /// Prescribed unknowns of owned bodies; whether an unknown is a displacement, and the mass of its
+  /// body [kg].
   const std::vector<std::size_t>& held() const { return held_; }
   bool is_displacement(std::size_t k) const { return k % unknowns < moves; }
   double mass_of(std::size_t k) const { return model_.inertial_mass()[k / unknowns]; }
@@ -99,15 +107,15 @@ class SecondOrderSystem {
   double length_;
   std::vector<std::size_t> held_;   ///< prescribed unknowns of owned bodies
   std::vector<double> stiffness_;   ///< bound per owned body [N/m]
-  std::vector<double> increments_;  ///< of rotations, per local body: what frames need (work space)
+  std::vector<double> increments_;  ///< of rotations, per local body, for the frames (work space)
   std::vector<TurnFrame> frames_, velocity_frames_;
   mutable std::vector<double> values_, rates_, accelerations_;  ///< prescribed (work space)
-  double sizes2_ = 0, rounding2_ = 0;  ///< of the last residual, this rank [N^2]
+  double sizes2_ = 0, rounding2_ = 0;  ///< of the last residual, on this rank [N^2]
   struct {
     double time = 0, by_velocity = 0, by_acceleration = 0;
     Handle<Vec> x, v, a;
     std::vector<double> references;
-  } assembled_;  ///< what the matrix was made of
+  } assembled_;  ///< state and factors of the last assembly
 };
 
 }  // namespace floe

@@ -18,8 +18,9 @@ double StepPlan::begin(bool fixed, double given) {
 }
 
 void StepPlan::made(double h, double allowed) {
-  const bool cut = h < (1 - rounding) * last_;                   // by a failure or an error
-  const bool shortened = !cut && h < (1 - rounding) * planned_;  // for what was due
+  const bool cut = h < (1 - rounding) * last_;  // by a failure or an error
+  const bool shortened =
+      !cut && h < (1 - rounding) * planned_;  // to end at a sample, a ramp's end or the run's end
   if (fixed_) {
     if (!shortened) planned_ = std::min(given_, cut ? h : 2 * planned_);
   } else {
@@ -29,7 +30,8 @@ void StepPlan::made(double h, double allowed) {
   last_ = h;
 }
 
-/// When samples were asked for at times of their own, steps end there; and at the end.
+/// Next time at which a step must end: a sample with an interval of its own, the end of a ramp
+/// (adaptive steps only), or the end of the run.
 double StepPlan::next_due(double time) const {
   constexpr double nearly = 1e-9;
   double due = options_.end;
@@ -43,8 +45,8 @@ double StepPlan::next_due(double time) const {
   return due;
 }
 
-/// Equal steps up to what is due; the last one again if it divides what is left and is not much
-/// shorter, for its matrix is factorised.
+/// Chooses equal steps up to the next due time. The last step is used again if it divides the
+/// remaining time and is not much shorter, since its matrix is factorised.
 double StepPlan::next(double time) {
   constexpr double much = 1.5;
   const double left = next_due(time) - time;

@@ -1,6 +1,6 @@
 /// \file
-/// How long the steps of an implicit run are: the given one, or the one that errors allow, made to
-/// end where a step must: at samples, at the end, and where a ramp ends if steps adapt.
+/// Lengths of the steps of an implicit run: the given step, or the one that errors allow, adjusted
+/// to end at samples, at the end of the run, and at ends of ramps if steps adapt.
 #pragma once
 
 #include <vector>
@@ -9,24 +9,29 @@
 
 namespace floe {
 
+/// Chooses the steps of an implicit run.
 class StepPlan {
  public:
+  /// \param options  must outlive this object
   /// \param ramps  ends of ramps [s], ascending
   StepPlan(const DynamicOptions& options, std::vector<double> ramps)
       : options_(options), ramps_(std::move(ramps)) {}
 
-  /// The first step: a given one made to divide the run, otherwise a small part of the run or of
-  /// the first ramp.
-  /// \param given  the run's step throughout (else that of an adaptive run to begin with), 0: none
+  /// Returns the first step: the given one, shortened to divide the run, otherwise a small part of
+  /// the run or of the first ramp.
+  /// \param fixed  whether the step is kept throughout
+  /// \param given  the given step [s], 0 for none; with adaptive steps the first one
   double begin(bool fixed, double given);
-  /// After a step. \param h  its length   \param allowed  what its error allows next (adaptive)
+  /// Updates the plan after a step.
+  /// \param h  length of the step [s]
+  /// \param allowed  next step that its error allows [s] (adaptive steps)
   void made(double h, double allowed);
-  /// The step from a time on [s].
+  /// Returns the step to make from a time on [s].
   double next(double time);
-  /// What the next step would be if nothing was due, and the given one [s].
+  /// The next step if no time were due, and the given one [s].
   double planned() const { return planned_; }
   double given() const { return given_; }
-  /// Whether Newton has cut a given step to next to nothing.
+  /// Whether failures of Newton have cut a given step to a negligible part.
   bool is_hopeless() const;
   void persist(Archive& archive);
 

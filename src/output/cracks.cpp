@@ -15,7 +15,7 @@ constexpr std::size_t width = 9;
 
 }  // namespace
 
-/// All broken beams on rank 0, in the order of (time, beam).
+/// Returns all broken beams on rank 0, in the order of (time, beam).
 std::vector<Break> CrackLog::gather() const {
   std::vector<double> mine, all;
   for (const Break& b : fracture_.breaks())
@@ -57,7 +57,7 @@ double CrackLog::update() {
   return fragments;
 }
 
-/// Pieces joined by unbroken beams, the heaviest first.
+/// Finds the pieces that unbroken beams connect, the heaviest first.
 void CrackLog::find_fragments(const std::vector<Break>& breaks) {
   const auto n = lattice_.bodies.position.size();
   std::vector<std::uint8_t> broken(lattice_.beams.bodies.size(), 0);

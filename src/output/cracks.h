@@ -1,5 +1,5 @@
 /// \file
-/// breaks.h5: the log of broken beams, and the fragments that the sheet has fallen into.
+/// breaks.h5: the log of broken beams, and the fragments into which the sheet has broken.
 ///
 ///     /time [s], /beam, /bodies (k x 2), /place (k x 3) [m], /mode_mix, /energy, /nominal_energy
 ///     [J], /brittle (0 or 1)       per broken beam, in the order of (time, beam)
@@ -14,15 +14,16 @@
 
 namespace floe {
 
-/// Collective throughout. The file is written anew, as a whole, when beams have broken since it was
-/// last written: it is never older than the last row of history.csv.
+/// Writes breaks.h5. All calls are collective. The whole file is written anew when beams have
+/// broken since it was last written, so it is never older than the last row of history.csv.
 class CrackLog {
  public:
-  /// \param lattice  rank 0 keeps a reference   \param fracture, part  must outlive this
+  /// \param lattice  rank 0 keeps a reference
+  /// \param fracture, part  must outlive this object
   CrackLog(std::string dir, const Lattice& lattice, const Fracture& fracture, const Part& part)
       : dir_(std::move(dir)), lattice_(lattice), fracture_(fracture), part_(part) {}
 
-  /// Looks for new breaks. Returns the number of fragments, on all ranks.
+  /// Writes the file if there are new breaks. Returns the number of fragments, on all ranks.
   double update();
 
  private:
@@ -34,7 +35,7 @@ class CrackLog {
   const Lattice& lattice_;
   const Fracture& fracture_;
   const Part& part_;
-  std::int64_t written_ = -1;  ///< breaks on file; -1: no file yet
+  std::int64_t written_ = -1;  ///< number of breaks on file; -1: no file yet
   std::vector<std::int32_t> fragment_of_, bodies_;
   std::vector<double> mass_;
 };

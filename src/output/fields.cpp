@@ -24,7 +24,7 @@ std::string group_of(std::size_t frame) { return "/t" + number(frame); }
 std::string segment_file(std::size_t first) { return "fields/" + number(first) + ".h5"; }
 std::string segment_xmf(std::size_t first) { return "fields/" + number(first) + ".xmf"; }
 
-/// The number in a name NNNNNN.ENDING; nothing if it is none.
+/// Returns the number of a name NNNNNN.ENDING, nothing for other names.
 std::optional<std::size_t> number_in(const std::string& name, std::string_view ending) {
   constexpr std::size_t least = 6, most = 18;
   const std::size_t digits = name.find_first_not_of("0123456789");
@@ -34,7 +34,7 @@ std::optional<std::size_t> number_in(const std::string& name, std::string_view e
   return std::stoull(name.substr(0, digits));
 }
 
-/// Names of the files in a folder; none if it is not there.
+/// Returns the names of the files in a folder, none if there is no folder.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -44,7 +44,7 @@ std::vector<std::string> names_in(const std::string& folder) {
   return names;
 }
 
-/// First frames of the segments in a folder, in order.
+/// Returns the first frames of the segments in a folder, in order.
 std::vector<std::size_t> segments_in(const std::string& folder) {
   std::vector<std::size_t> segments;
   for (const std::string& name : names_in(folder)) {
@@ -117,7 +117,8 @@ void Fields::begin() {
   write_index();
 }
 
-/// What an earlier run left, those names first that tell of the others. Who reads them keeps them.
+/// Removes the files of an earlier run, those first that name the others. A process that reads an
+/// open file keeps it.
 void Fields::remove_earlier() const {
   for (const char* name : {"fields.xmf", "fields.h5"}) remove(path(name));
   for (const std::string& name : names_in(path("fields"))) {
@@ -127,10 +128,10 @@ void Fields::remove_earlier() const {
   }
 }
 
-/// Frames that come after those to keep go; first their names, so that a process killed in between
-/// leaves no name of a frame that is gone.
+/// Removes frames after those to keep, names first, so that a process killed in between leaves no
+/// name of a missing frame.
 void Fields::cut_back() {
-  write_xmf();  // a run killed before its last frame's name was written has none yet
+  write_xmf();  // a run killed before it named its last frame has no name of it yet
   write_index();
   if (!segments_.empty()) {
     const std::string file = path(segment_file(segments_.back()));
@@ -149,7 +150,7 @@ void Fields::cut_back() {
   }
 }
 
-/// Values of a frame [bytes], of which HDF5 makes somewhat more.
+/// Size of a frame's values [bytes]; HDF5 needs somewhat more.
 std::size_t Fields::bytes(const Kept& frame) const {
   const GridSizes& s = writer_.sizes();
   return 24 * (s.points + 3 * s.bodies + s.faces) + 80 * s.beams +
@@ -172,7 +173,8 @@ void Fields::write(const Frame& frame) {
     const std::string full = path(segment_xmf(segments_.back()));
     write_whole(full, xdmf_document(grids_of_last()));
     not_on_disk_.push_back(full);
-    not_on_disk_.push_back(path(segment_file(segments_.back())));  // its last frames
+    not_on_disk_.push_back(
+        path(segment_file(segments_.back())));  // the last frames of the full segment
   }
   segment.close(Place::swapped);
   if (is_new) {
@@ -182,12 +184,13 @@ void Fields::write(const Frame& frame) {
   }
   last_.push_back({frame.time, cracks, !frame.damage.empty()});
   ++count_;
-  write_xmf();                      // after the frame is there: it never names one that is not
-  constexpr std::size_t part = 16;  // links are written anew so seldom that they cost no time
+  write_xmf();  // after the frame is on file, so that every named frame exists
+  // Links are rewritten after every sixteenth of the frames: so seldom that it costs no time.
+  constexpr std::size_t part = 16;
   if (count_ - linked_ > linked_ / part) write_index();
 }
 
-/// The grids of the last segment's frames.
+/// XDMF grids of the last segment's frames.
 std::string Fields::grids_of_last() const {
   std::string grids;
   for (std::size_t k = 0; k < last_.size(); ++k)

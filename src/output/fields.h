@@ -1,13 +1,14 @@
 /// \file
 /// The frames of a run, for ParaView and for plots: fields.h5, fields.xmf and the folder fields/.
 ///
-/// fields/NNNNNN.h5 are segments: frames from the number in the name on, each a group /tNNNNNN (see
-/// output/frame.h). The last segment grows by being replaced, as a whole and at once, until it has
-/// segment_frames or segment_bytes; so every file is whole at any time, whoever reads it, and a
-/// run killed or stopped by a full disk loses the frame that it was writing and no other.
-/// fields/mesh.h5 has what all frames share. fields.xmf names every frame: those of full segments
-/// by including fields/NNNNNN.xmf. fields.h5 has links to the mesh and to the frames; those to the
-/// last ones (a sixteenth of all) may come later, at the end of a run at the latest.
+/// The files fields/NNNNNN.h5 are segments: frames from the number in the name on, each a group
+/// /tNNNNNN (see output/frame.h). The last segment grows by being replaced as a whole, in one
+/// rename, until it has segment_frames or segment_bytes. Every file is therefore whole at any time
+/// for any reader, and a run that is killed or stopped by a full disk loses only the frame that it
+/// was writing. fields/mesh.h5 has the data that all frames share. fields.xmf names every frame; it
+/// includes fields/NNNNNN.xmf for the frames of full segments. fields.h5 has links to the mesh and
+/// to the frames; links to the last frames (a sixteenth of all) may come later, at the end of a run
+/// at the latest.
 #pragma once
 
 #include <cstdint>
@@ -18,23 +19,27 @@
 
 namespace floe {
 
-/// Lives on rank 0. What is written raises FileError, and is as it was before the call then.
+/// Writes the frames; lives on rank 0. A write that raises FileError leaves the file as it was
+/// before the call.
 class Fields {
  public:
   static constexpr std::size_t segment_frames = 100;
   static constexpr std::size_t segment_bytes = 1 << 19;  ///< of values, without HDF5's own
 
-  /// Makes the files, or cuts those of an earlier run back. \param lattice  must outlive this
-  /// \param keep  number of its frames to go on after; -1: a new run
+  /// Creates the files, or cuts those of an earlier run back.
+  /// \param lattice  must outlive this object
+  /// \param keep  number of frames of the earlier run to keep; -1: a new run
   /// \throws InputError as require() does
   Fields(std::string dir, const Lattice& lattice, std::int64_t keep = -1);
-  /// Touches nothing. \throws InputError if a folder has fewer frames, or they cannot be read
+  /// Checks a folder without changing it. \throws InputError if it has fewer frames, or if they
+  /// cannot be read
   static void require(const std::string& dir, std::int64_t frames);
 
+  /// Appends a frame. \throws FileError
   void write(const Frame& frame);
-  /// All frames so far outlive a crash of the machine.
+  /// Syncs all frames to the disk, so that they survive a crash of the machine.
   void sync();
-  /// All frames so far are in fields.h5 too.
+  /// Completes the links in fields.h5.
   void finish();
 
  private:
@@ -44,7 +49,7 @@ class Fields {
     bool breakable;
   };
 
-  /// The first frames of an earlier run.
+  /// The frames to keep of an earlier run.
   struct Earlier {
     std::vector<std::size_t> segments;
     std::vector<Kept> last;
@@ -63,9 +68,9 @@ class Fields {
 
   std::string dir_;
   FrameWriter writer_;
-  std::size_t count_ = 0;                 ///< frames
-  std::size_t linked_ = 0;                ///< frames that fields.h5 has
-  std::vector<std::size_t> segments_;     ///< first frame of each
+  std::size_t count_ = 0;                 ///< number of frames
+  std::size_t linked_ = 0;                ///< number of frames that fields.h5 links to
+  std::vector<std::size_t> segments_;     ///< first frame of each segment
   std::vector<Kept> last_;                ///< frames of the last segment
   std::vector<std::string> not_on_disk_;  ///< files written since sync()
 };

@@ -37,7 +37,8 @@ std::size_t FrameWriter::write(Hdf5File& file, const std::string& group, const F
 
 void FrameWriter::write_mesh(Hdf5File& file) const {
   const Shapes& s = lattice_.shapes;
-  // What comes next: corner `corner` of face `face`, after the face's code and number of corners.
+  // State of the loop: the next value is corner `corner` of face `face`; -2 and -1 stand for the
+  // face's code and its number of corners.
   std::size_t face = 0;
   std::int32_t corner = -2;
   file.write_blocks<std::int32_t>(
@@ -68,7 +69,7 @@ void FrameWriter::write_mesh(Hdf5File& file) const {
                2);
 }
 
-/// \param from  a body whose faces begin at `face` or before
+/// Returns the body of a face. \param from  a body whose faces begin at `face` or before
 std::int32_t FrameWriter::body_of_face(std::int64_t face, std::int32_t from) const {
   if (lattice_.shapes.empty()) return static_cast<std::int32_t>(face);
   while (face >= lattice_.shapes.face_of[static_cast<std::size_t>(from) + 1]) ++from;
@@ -131,12 +132,13 @@ void FrameWriter::write_on_faces(Hdf5File& file, const std::string& name,
                            });
 }
 
-/// Stresses of the section (model.md section 9): sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),
-/// and tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides. Without sides: N/A and |Q|/A.
+/// Writes forces, moments and stresses of the section (model.md, "Files"): sigma = N/A + |M_2| h/(2
+/// I_y) + |M_3| w/(2 I_z), and tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2) with a >= b the sides.
+/// Without sides: N/A and |Q|/A.
 void FrameWriter::write_beams(Hdf5File& file, const std::string& group, const Frame& frame) const {
   const Beams& beams = lattice_.beams;
   const auto m = static_cast<std::int64_t>(beams.size());
-  // \param value  of component k of beam m
+  // \param value  function that returns component k of beam m
   const auto write = [&](const char* name, std::size_t columns, auto value) {
     file.write_blocks<double>(group + name, m, static_cast<int>(columns),
                               [&](std::int64_t first, std::span<double> values) {
@@ -169,8 +171,8 @@ void FrameWriter::write_beams(Hdf5File& file, const std::string& group, const Fr
   write("/shear_stress", 1, [&](std::size_t b, std::size_t) { return shear(b); });
 }
 
-/// A broken section lay halfway between its bodies' centroids; each body has carried its side
-/// along.
+/// Writes the two faces of each broken section. The section lay halfway between its bodies'
+/// centroids; each body has carried its face along.
 std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
                                       const Frame& frame) const {
   const Beams& beams = lattice_.beams;

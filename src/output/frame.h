@@ -1,5 +1,5 @@
 /// \file
-/// What a frame of the fields is made of, in HDF5.
+/// The contents of a frame of the fields, in HDF5.
 ///
 /// The mesh: /mesh/topology (XDMF mixed: 3, number of corners, corners ... per face; one point per
 /// body if the lattice has no shapes), /mesh/body (body of each face), /mesh/beams (m x 2). A frame
@@ -23,30 +23,31 @@
 
 namespace floe {
 
-/// One state in global order.
+/// A state in global order.
 struct Frame {
   double time = 0;
   std::vector<Point3> displacement;
-  std::vector<std::array<double, 4>> rotation;  ///< from rest
+  std::vector<std::array<double, 4>> rotation;  ///< quaternions from rest
   std::vector<Point3> rotation_vector;
   std::vector<BeamSection> sections;
-  std::vector<double> damage;  ///< empty if nothing can break
+  std::vector<double> damage;  ///< empty if no beam can break
 };
 
+/// Writes frames and the mesh that they share.
 class FrameWriter {
  public:
-  /// \param lattice  must outlive this
+  /// \param lattice  must outlive this object
   explicit FrameWriter(const Lattice& lattice);
   const GridSizes& sizes() const { return sizes_; }
   void write_mesh(Hdf5File& file) const;
-  /// Returns the number of faces of cracks. \param group  a new one
+  /// Writes a frame and returns its number of faces of cracks. \param group  a new one
   std::size_t write(Hdf5File& file, const std::string& group, const Frame& frame) const;
 
  private:
   std::int32_t body_of_face(std::int64_t face, std::int32_t from) const;
-  /// A body's principal axes in the world.
+  /// Returns a body's principal axes in the world.
   Triad<double> axes_of(std::size_t body, const Frame& frame) const;
-  /// A vector of each body, to each of its faces.
+  /// Writes a vector of each body for each of the body's faces.
   void write_on_faces(Hdf5File& file, const std::string& name,
                       const std::vector<Point3>& of_bodies) const;
   void write_bodies(Hdf5File& file, const std::string& group, const Frame& frame) const;

@@ -1,5 +1,5 @@
 /// \file
-/// Rows of per-body or per-beam values from all ranks, in global order on rank 0.
+/// Collects rows of per-body or per-beam values from all ranks, in global order on rank 0.
 #pragma once
 
 #include <mpi.h>
@@ -10,13 +10,16 @@
 
 namespace floe {
 
+/// Collects rows from all ranks on rank 0.
 class Gather {
  public:
-  /// \param global  global index of each of this rank's rows   \param total  rows over all ranks
+  /// Collective.
+  /// \param global  global index of each of this rank's rows
+  /// \param total  number of rows over all ranks
   Gather(MPI_Comm comm, std::span<const std::int32_t> global, std::int64_t total);
 
-  /// All rows on rank 0, empty elsewhere. Collective. \param rows  this rank's; of numbers or of
-  /// arrays of them
+  /// Returns all rows on rank 0, an empty vector elsewhere. Collective.
+  /// \param rows  this rank's rows, of numbers or of arrays of numbers
   template <class Row>
   std::vector<Row> operator()(std::vector<Row> rows) const {
     if (in_place_) return rows;
@@ -35,8 +38,8 @@ class Gather {
   MPI_Comm comm_;
   std::int64_t total_;
   std::vector<int> counts_;
-  std::vector<std::int32_t> global_;  ///< rank 0: of all rows, rank after rank
-  bool in_place_ = false;             ///< a single rank has them all, in order
+  std::vector<std::int32_t> global_;  ///< rank 0: global indices of all rows, rank after rank
+  bool in_place_ = false;             ///< a single rank has all rows, in order
 };
 
 }  // namespace floe

@@ -18,8 +18,9 @@ HistoryStart history_start(const std::string& path, std::int64_t keep) {
   if (keep <= 0) return start;
   std::ifstream old(path);
   std::string line;
-  std::int64_t rows = -1;                                         // the first line is not a row
-  while (rows < keep && std::getline(old, line) && !old.eof()) {  // eof: no newline, torn
+  std::int64_t rows = -1;  // the first line is no row
+  while (rows < keep && std::getline(old, line) &&
+         !old.eof()) {  // eof: the line has no newline, it is torn
     if (line.find('\0') != std::string::npos)
       throw InputError("checkpoint: restart: '" + path + "' is damaged: line " +
                        std::to_string(rows + 2) + " has bytes that are no text");
@@ -38,7 +39,7 @@ History::History(const std::string& path, std::int64_t keep) : path_(path) {
   const HistoryStart start = history_start(path, keep);
   size_ = start.size;
   header_ = start.header;
-  // At the end, wherever that is: if somebody empties the file, no hole is left in front.
+  // Appends wherever the end is: if another process empties the file, no hole is left in front.
   file_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file_ < 0 || ::ftruncate(file_, size_) != 0) throw_file_error("write", path, errno);
 }
@@ -61,7 +62,7 @@ void History::sync() { sync_to_disk(path_); }
 void History::write(const std::string& line) {
   const auto wanted = static_cast<::ssize_t>(line.size());
   ::ssize_t done = ::write(file_, line.data(), line.size());
-  if (done >= 0 && done < wanted) {  // the disk is full: what is left over says so
+  if (done >= 0 && done < wanted) {  // the disk is full: writing the rest gives the error
     const ::ssize_t rest =
         ::write(file_, line.data() + done, line.size() - static_cast<std::size_t>(done));
     done = rest < 0 ? -1 : done + rest;
