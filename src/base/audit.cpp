@@ -38,7 +38,7 @@ void audit(MPI_Comm comm, const char* where, std::span<const PetscObject> object
     if (object != nullptr) check(PetscObjectStateGet(object, &state));
     mine.push_back(state);
   }
-  for (const double number : numbers)  // one bit pattern for all that is not a number
+  for (const double number : numbers)  // one bit pattern for every NaN
     mine.push_back(std::bit_cast<std::int64_t>(
         std::isnan(number) ? std::numeric_limits<double>::quiet_NaN() : number));
   std::vector<std::int64_t> least(mine.size()), most(mine.size());

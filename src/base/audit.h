@@ -1,7 +1,7 @@
 /// \file
-/// What must be alike on all ranks. PETSc keeps norms by an object's state: where only some ranks
-/// opened a vector for writing, those take part in the next norm's sum and the others do not, and
-/// the run hangs. An audit finds that where it happens.
+/// A comparison over ranks of data that must be alike on all ranks. PETSc caches norms by an
+/// object's state: if only some ranks opened a vector for writing, these take part in the sum of
+/// the next norm, the others do not, and the run hangs. The audit finds the error where it happens.
 #pragma once
 
 #include <petsc.h>
@@ -10,14 +10,15 @@
 
 namespace floe {
 
-/// Whether ranks are compared: in builds with FLOE_AUDIT (the preset `audit`) and where tests
-/// switch it on. Costs messages at every step.
+/// Whether ranks are compared: in builds with FLOE_AUDIT (the preset `audit`) and in tests that
+/// switch the comparison on. A comparison costs messages in every step.
 bool auditing();
 void set_auditing(bool on);
 
-/// Compares on all ranks the states of objects (null ones too) and numbers, to the last bit, if
-/// auditing(). Collective then. \param where  for the message
-/// \throws std::logic_error on all ranks, naming the first that differs
+/// Compares the states of objects (null pointers included) and numbers over all ranks, to the last
+/// bit, if auditing(). Collective if auditing().
+/// \param where  name of the place, for the message
+/// \throws std::logic_error on all ranks, naming the first object or number that differs
 void audit(MPI_Comm comm, const char* where, std::span<const PetscObject> objects,
            std::span<const double> numbers = {});
 

@@ -11,7 +11,7 @@
 namespace floe {
 namespace {
 
-/// One of the process, as PETSc's table of options.
+/// One object per process, like PETSc's table of options.
 struct Suspects {
   bool good = true;
   GivenOptions given;
@@ -22,7 +22,7 @@ Suspects& suspects() {
   return all;
 }
 
-/// Whether `part` is in a text, not as a part of a longer word.
+/// Whether `part` occurs in a text as a whole word.
 bool has_word(std::string_view text, std::string_view part) {
   const auto ends = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-';
@@ -39,7 +39,7 @@ std::string as_given(const GivenOptions::value_type& option) {
   return name + (given.value.empty() ? "" : " " + shown(given.value)) + in_brackets(given.place);
 }
 
-/// Those whose names are in a text; if none is, those whose values are.
+/// Returns the options whose names occur in a text; if there are none, those whose values occur.
 std::vector<std::string> named_in(const std::string& text) {
   std::vector<std::string> names, values;
   for (const auto& option : suspects().given) {

@@ -1,5 +1,5 @@
 /// \file
-/// Which of the options of PETSc's that a run was given an error of PETSc's is about.
+/// The assignment of an error of PETSc to the option that caused the error.
 #pragma once
 
 #include <string>
@@ -8,21 +8,22 @@
 
 namespace floe {
 
-/// The options of PETSc's that a run was given. Until they have proved good, an error of PETSc's is
-/// taken to be theirs (see fail()).
+/// Sets the options of PETSc that the run was given. Until they are known to be good, an error of
+/// PETSc is attributed to them (see fail()).
 void set_solver_options(GivenOptions given);
-/// A first solve has used them all.
+/// Marks the options as good: a first solve has used all of them.
 void solver_options_are_good();
-/// Whether an error of PETSc's at present is likely to be about an option.
+/// Whether a present error of PETSc is probably caused by an option.
 bool solver_options_are_doubtful();
 
-/// The option that an error names, or whose value it names, or all that were given, and PETSc's
-/// words, in one line.
+/// Returns one line with PETSc's message, preceded by the option that the message names, or whose
+/// value the message names, or by all given options.
 std::string blame_solver_options(const std::string& petsc_says);
-/// The option that an error names, as "-NAME VALUE"; empty if it names none.
+/// Returns the option that PETSc's message names, as "-NAME VALUE"; empty if there is none.
 std::string solver_option_named(const std::string& petsc_says);
 
-/// What to say of a crash while options are doubtful; empty: they are not. Takes no memory.
+/// Returns the message for a crash while options are doubtful; empty if no option is doubtful.
+/// Allocates no memory.
 const char* blame_for_a_crash();
 
 }  // namespace floe

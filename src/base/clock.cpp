@@ -6,7 +6,7 @@ namespace floe {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// As near to the beginning as a library can be.
+/// The start of the process, as closely as a library can know it.
 const Clock::time_point began = Clock::now();
 
 }  // namespace

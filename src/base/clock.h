@@ -1,10 +1,10 @@
 /// \file
-/// How long this process has been running.
+/// The running time of this process.
 #pragma once
 
 namespace floe {
 
-/// Time by the clock since the process began [s].
+/// Returns the wall time since the process began [s].
 double seconds_of_process();
 
 }  // namespace floe

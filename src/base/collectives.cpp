@@ -5,7 +5,7 @@
 namespace floe {
 namespace {
 
-/// MPI counts in int.
+/// Broadcasts in pieces, because MPI counts in int.
 template <class T>
 void broadcast_pieces(T* values, std::int64_t count, MPI_Comm comm, int root) {
   constexpr std::int64_t piece = 1 << 28;

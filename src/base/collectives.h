@@ -1,6 +1,6 @@
 /// \file
-/// Numbers and texts that ranks share: sums, largest values, verdicts, rows of all ranks. All are
-/// collective, and every rank gets the same result.
+/// Reductions, broadcasts and gathers of numbers and texts. All functions are collective, and every
+/// rank gets the same result.
 #pragma once
 
 #include <mpi.h>
@@ -16,7 +16,7 @@
 
 namespace floe {
 
-/// MPI's name of a number's type.
+/// Returns MPI's data type of a number.
 template <class T>
 MPI_Datatype mpi_type() {
   if constexpr (std::is_same_v<T, double>) {
@@ -31,7 +31,7 @@ MPI_Datatype mpi_type() {
   }
 }
 
-/// Replaces each number by its sum over the ranks.
+/// Replace each number by its sum over the ranks.
 template <class T>
 void sum_over_ranks(std::span<T> values, MPI_Comm comm) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), mpi_type<T>(),
@@ -48,9 +48,8 @@ std::array<T, n> sum_over_ranks(std::array<T, n> mine, MPI_Comm comm) {
   return mine;
 }
 
-/// Replaces each number by the largest over the ranks. What is not a number counts as infinity: MPI
-/// may lose it or give each rank another answer, and ranks that decide differently wait for each
-/// other.
+/// Replace each number by the maximum over the ranks. NaN counts as infinity: MPI may lose a NaN or
+/// give each rank another result, and ranks that then decide differently wait for each other.
 inline void largest_over_ranks(std::span<double> values, MPI_Comm comm) {
   for (double& value : values) {
     if (std::isnan(value)) value = std::numeric_limits<double>::infinity();
@@ -63,7 +62,8 @@ inline double largest_over_ranks(double mine, MPI_Comm comm) {
   return mine;
 }
 
-/// Whether it is true on some rank; on every rank.
+/// Whether `mine` is true on any rank (on_any_rank) or on all ranks (on_all_ranks); same result on
+/// every rank.
 inline bool on_any_rank(bool mine, MPI_Comm comm) {
   int any = mine ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm);
@@ -71,12 +71,13 @@ inline bool on_any_rank(bool mine, MPI_Comm comm) {
 }
 inline bool on_all_ranks(bool mine, MPI_Comm comm) { return !on_any_rank(!mine, comm); }
 
-/// A rank's number, and a whole number that belongs to it: the rank, or the index of a body.
+/// A number of a rank with an integer label: the rank, or the index of a body.
 struct RankedValue {
   double value = 0;
   int index = 0;
 };
-/// The one with the largest (least) value of all ranks; of equal ones that of the least index.
+/// Return the RankedValue with the largest (least) value of all ranks; of equal values, the one
+/// with the least index.
 inline RankedValue largest_of_ranks(const RankedValue& mine, MPI_Comm comm) {
   RankedValue all;
   MPI_Allreduce(&mine, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
@@ -88,7 +89,7 @@ inline RankedValue least_of_ranks(const RankedValue& mine, MPI_Comm comm) {
   return all;
 }
 
-/// Gives all ranks the value, the numbers or the text of rank `root`.
+/// Give all ranks the value, the numbers or the text of rank `root`.
 template <class T>
 requires std::is_arithmetic_v<T>
 void broadcast(T& value, MPI_Comm comm, int root = 0) {
@@ -106,8 +107,8 @@ inline void broadcast(bool& value, MPI_Comm comm, int root = 0) {
 void broadcast(std::string& text, MPI_Comm comm, int root = 0);
 void broadcast(std::vector<double>& values, MPI_Comm comm, int root = 0);
 
-/// All ranks' numbers one after the other. \param[out] counts  each rank's number of them, if
-/// wanted
+/// Concatenates the numbers of all ranks, in order of the ranks.
+/// \param[out] counts  how many numbers each rank gave, unless null
 template <class T>
 std::vector<T> all_gathered(const std::vector<T>& mine, MPI_Comm comm,
                             std::vector<int>* counts = nullptr) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t longest_option = 120;
 
-/// PETSc wants true or false for these, or aborts.
+/// Options for which PETSc aborts unless the value is true or false.
 constexpr std::array<std::string_view, 4> flags_of_petsc{
     "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci"};
 
@@ -42,7 +42,8 @@ bool looks_like_a_scene(std::string_view word) {
   return word.ends_with(".yaml") || word.ends_with(".yml");
 }
 
-/// Of a command line that begins with an option: the same with its scene in front.
+/// Refuses a command line that begins with an option; the message shows the command line with its
+/// scene in front.
 [[noreturn]] void refuse_option_first(int argc, const char* const* argv) {
   const std::string begin = std::string("the scene's file comes first, options after it; ") +
                             shown(argv[1]) + " is an option";

@@ -1,4 +1,4 @@
-// A crash ends a run with one line, not with a page of traces.
+// A crash ends a run with one line instead of a page of traces.
 #include <signal.h>
 #include <unistd.h>
 
@@ -57,9 +57,9 @@ RunPlace& run_place() {
 }
 
 void end_crashed(const char* what) noexcept {
-  // A second crash, on the way from here, ends the process as the system does.
+  // A second crash inside this function ends the process by the system's default action.
   for (const int signal : crashes) ::signal(signal, SIG_DFL);
-  // The memory that crashed may be that of the allocator: what comes after the line may hang.
+  // The crash may have been in the allocator, so the code after the printed line may hang.
   constexpr unsigned patience = 10;  // [s]
   ::signal(SIGALRM, when_words_hang);
   ::alarm(patience);
@@ -98,7 +98,7 @@ void leave_crashes_to_the_system() {
 void report_crashes() {
   if (sanitized) return;
   constexpr std::size_t room = 1U << 18;
-  static std::array<char, room> stack;  // the crash may be that of the stack
+  static std::array<char, room> stack;  // the crash may be a stack overflow
   stack_t other{};
   other.ss_sp = stack.data();
   other.ss_size = stack.size();

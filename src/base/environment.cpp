@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t largest_file = 1U << 20;
 
-/// Words separated by blanks; one that begins with a quote ends at the next of its kind.
+/// Splits at blanks. A word that begins with a quote ends at the next quote of the same kind.
 std::vector<std::string> split(std::string_view text) {
   const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
   std::vector<std::string> words;
@@ -40,7 +40,7 @@ std::vector<std::string> split(std::string_view text) {
 
 std::string name_of(const std::string& word) { return petsc_name(word.substr(1)); }
 
-/// The text of a file; empty if there is none that can be read.
+/// Returns the text of a file; empty if there is no readable regular file of at most 1 MiB.
 std::string text_of(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
@@ -51,7 +51,7 @@ std::string text_of(const std::string& path) {
   return text.str();
 }
 
-/// Rank 0's text on all ranks.
+/// Returns rank 0's text on all ranks. Collective.
 std::string shared(std::string text, MPI_Comm comm) {
   broadcast(text, comm);
   return text;

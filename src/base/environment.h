@@ -1,7 +1,7 @@
 /// \file
-/// Options for PETSc that lie around: in the variable PETSC_OPTIONS and in the files ~/.petscrc,
-/// ./.petscrc and ./petscrc. PETSc would read them before anybody can look at them, and would let
-/// them change keys of a scene; so it is told not to, and they are read here.
+/// Options for PETSc from the environment: the variable PETSC_OPTIONS and the files ~/.petscrc,
+/// ./.petscrc and ./petscrc. PETSc would read them without a check and let them change keys of a
+/// scene. Session therefore switches that off, and this file reads them.
 #pragma once
 
 #include "floe/base/given.h"
@@ -9,16 +9,17 @@
 
 namespace floe {
 
-/// Everything that the environment gives, whether floe takes it or not (Options says which); rank
-/// 0's for all ranks. Collective. Lines that are no options are left out.
-/// \param petscrc  whether the files are read, beside the variable
+/// Reads all options of the environment on rank 0 for all ranks, whether or not floe takes them
+/// (Options decides). Collective. Lines that are not options are left out.
+/// \param petscrc  whether to read the files as well as the variable
 GivenOptions read_environment(bool petscrc, MPI_Comm comm = MPI_COMM_WORLD);
 
-/// The options of one petscrc file's text: one a line, "-name value", "#" begins a comment.
+/// Reads the text of one petscrc file: one option per line, "-name value"; "#" begins a comment.
+/// \param place  name of the file, for messages
 GivenOptions parse_petscrc(const std::string& text, const std::string& place);
 
-/// The options of a text like the one of PETSC_OPTIONS: "-name value -name ...", values in quotes
-/// may hold blanks.
+/// Reads a text such as PETSC_OPTIONS: "-name value -name ..."; quoted values may hold blanks.
+/// \param place  source of the text, for messages
 GivenOptions parse_petsc_options(const std::string& text, const std::string& place);
 
 }  // namespace floe

@@ -25,11 +25,11 @@ std::function<void(const std::string&)>& last_words() {
   return words;
 }
 
-/// For failures alone, so that no other collective call can be taken for one here; null on one
-/// rank.
+/// A communicator for failures only, so that no other collective call can match the barrier in
+/// all_ranks_are_here(); null on one rank.
 MPI_Comm failures = MPI_COMM_NULL;  // NOLINT: as MPI_COMM_WORLD
 
-/// Given back when memory has run out, so that there is some to say so with.
+/// Freed when memory has run out, so that the message can still be built.
 std::unique_ptr<char[]>& reserve() {     // NOLINT: bytes
   static std::unique_ptr<char[]> bytes;  // NOLINT
   return bytes;
@@ -61,7 +61,7 @@ void say_last_words(const std::string& why) noexcept {
   if (!words) return;
   try {
     words(why);
-  } catch (...) {  // NOLINT: nothing is left that could be done
+  } catch (...) {  // NOLINT: a failure here has no remedy
   }
 }
 
@@ -71,14 +71,14 @@ void end_at_once(int code) {
   MPI_Initialized(&running);
   MPI_Finalized(&ended);
   if (running != 0 && ended == 0) MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  // MPI_Abort prints eight lines of its own; one process has nobody to tell.
+  // MPI_Abort prints eight lines, and with one process there is no other rank to end.
   if (ranks > 1) MPI_Abort(MPI_COMM_WORLD, code);
   std::_Exit(code);
 }
 
 void leave(const std::string& line, int code) {
   if (rank_of_world() > 0) {
-    ::signal(SIGTERM, SIG_DFL);  // by which the launcher ends this rank when the first has spoken
+    ::signal(SIGTERM, SIG_DFL);  // the launcher's signal once rank 0 has aborted
     ::sleep(2);
   }
   print_error("floe: " + line + "\n");
@@ -107,7 +107,7 @@ void report_uncaught() {
     leave(out_of_memory_text(), exit_failed);
   } catch (const FileError& e) {
     leave(e.what(), exit_failed);
-  } catch (const InputError& e) {  // from within what PETSc calls
+  } catch (const InputError& e) {  // from a callback of PETSc
     leave(e.what(), exit_bad_input);
   } catch (const RunFailed& e) {
     leave(e.what(), exit_failed);

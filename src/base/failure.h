@@ -1,5 +1,5 @@
 /// \file
-/// How a process ends on what nobody catches: one line, what the run's folder should say, and an
+/// The end of a process after an uncaught error: one line, the entry in the run's folder, and an
 /// exit code.
 #pragma once
 
@@ -11,46 +11,48 @@ namespace floe {
 
 constexpr int exit_failed = 1, exit_bad_input = 2;
 
-/// Archive that PETSc or a solver behind it asked for and did not get.
+/// PETSc, or a solver behind PETSc, could not allocate memory.
 class OutOfMemory : public std::bad_alloc {};
 
-/// What PETSc says of an option after the first solve.
+/// An error of PETSc, after the first solve, that names an option.
 class OptionFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// One line on standard error and in the log, the last words, and the end of all ranks. A rank that
-/// is not the first waits: what all ranks have met is rank 0's to say, and it ends the others.
+/// Prints one line on standard error and in the log, calls the last words, and ends all ranks.
+/// Ranks other than 0 wait 2 s first: an error common to all ranks is printed by rank 0, which then
+/// ends the others.
 [[noreturn]] void leave(const std::string& line, int code);
 
-/// The end of all ranks without a word.
+/// Ends all ranks without a message.
 [[noreturn]] void end_at_once(int code);
 
-/// The terminate handler: tells what is in flight, and leaves.
+/// The terminate handler: reports the exception in flight and leaves.
 [[noreturn]] void report_uncaught();
 
-/// What the last words have been set to, if anything.
+/// Calls the function set by set_last_words(), if any, once.
 void say_last_words(const std::string& why) noexcept;
 
-/// Errors of MPI's own end the process with one line; after MPI_Init.
+/// Makes errors of MPI end the process with one line. Call after MPI_Init.
 void report_mpi_errors();
-/// Before MPI_Finalize.
+/// Frees the communicator for failures. Call before MPI_Finalize.
 void forget_mpi();
 
-/// Whether all ranks come here too: an error that all have met can be raised on all. A rank that is
-/// a good deal later is taken not to come.
+/// Whether all ranks reach this call within 10 s. An error that all ranks met can be raised on all
+/// of them; a rank that is later counts as one that did not meet the error.
 bool all_ranks_are_here();
 
-/// "out of memory", with how much the process holds and what limits it.
+/// Returns "out of memory", with the peak memory of the process and its limit.
 std::string out_of_memory_text();
 
-/// Signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) end the process with one line, the
-/// last words, and exit code 1 (2 if an option of PETSc's is to blame). Not with sanitizers, which
-/// say more.
+/// Makes the signals of a crash (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT) end the process with one
+/// line, the last words, and exit code 1 (2 if an option of PETSc is to blame). Does nothing with
+/// sanitizers, whose reports say more.
 void report_crashes();
 void leave_crashes_to_the_system();
-/// What report_crashes() does at a crash; `what` is "segmentation fault".
+/// Ends the process after a crash, as report_crashes() describes.
+/// \param what  name of the crash, for example "segmentation fault"
 [[noreturn]] void end_crashed(const char* what) noexcept;
 
 }  // namespace floe

@@ -28,7 +28,7 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return file_; }
-  /// What close() says: a full network disk may say it only here.
+  /// Closes and checks the result: a full network disk may be reported only here.
   bool close() { return ::close(std::exchange(file_, -1)) == 0; }
 
  private:
@@ -92,7 +92,7 @@ std::string date_and_time() {
 }
 
 void put_in_place(const std::string& temporary, const std::string& path, Place place) {
-  // ext4 writes a file out when it is renamed over another one, but not when the two are exchanged.
+  // ext4 writes a file to disk when it is renamed over another one, but not in an exchange.
   if (place == Place::swapped &&
       ::renameat2(AT_FDCWD, temporary.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE) == 0) {
     ::unlink(temporary.c_str());
@@ -109,7 +109,7 @@ void give_second_name(const std::string& path, const std::string& second) {
   ::unlink(temporary.c_str());
   if (::link(path.c_str(), temporary.c_str()) == 0) {
     put_in_place(temporary, second);
-    ::unlink(temporary.c_str());  // two names of one file are not renamed
+    ::unlink(temporary.c_str());  // rename() does nothing with two names of one file
     return;
   }
   const int why = errno;
@@ -133,7 +133,7 @@ void write_whole(const std::string& path, std::string_view text, Place place) {
 
 void sync_to_disk(const std::string& path) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  // Some file systems cannot, and say so by EINVAL.
+  // Some file systems cannot sync and report EINVAL.
   if (file.get() < 0 || (::fsync(file.get()) != 0 && errno != EINVAL))
     throw_file_error("write", path, errno);
 }

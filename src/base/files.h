@@ -1,6 +1,6 @@
 /// \file
-/// Files that are written whole: under a temporary name first, then put in their place at once, so
-/// that nobody ever sees a part of one.
+/// Files that are replaced as a whole: they are written under a temporary name and then renamed in
+/// one step, so that no reader ever sees a part of a file.
 #pragma once
 
 #include <string>
@@ -8,47 +8,49 @@
 
 namespace floe {
 
-/// What temporary names end in.
+/// The ending of temporary names.
 inline constexpr std::string_view temporary_ending = ".part";
 
-/// The name under which this process writes `path`: several runs, on several machines, may make the
-/// same file.
+/// Returns the temporary name under which this process writes `path`. The name holds host and
+/// process, because several runs on several machines may write the same file.
 std::string temporary_name(const std::string& path);
 
-/// Removes what processes of this machine that are gone have left beside `path` under temporary
-/// names. Never fails.
+/// Removes the temporary files beside `path` that ended processes of this machine left. Never
+/// fails.
 void remove_left_over(const std::string& path);
 
-/// How a finished file takes its place.
+/// How a finished file replaces the old one.
 enum class Place {
-  renamed,  ///< some file systems bring what is renamed to the disk first: safe, and slow
-  swapped,  ///< for what changes often; sync_to_disk() brings it to the disk
+  renamed,  ///< some file systems first write a renamed file to disk: safe, and slow
+  swapped,  ///< for files that change often; sync_to_disk() writes them to disk
 };
 
-/// Puts a finished temporary file in the place of `path`; who has the old one open keeps it.
-/// Without success neither the temporary file nor a change of `path` is left. \throws FileError
+/// Replaces `path` by a finished temporary file. A process that has the old file open keeps it.
+/// After a failure `path` is unchanged and the temporary file is removed.
+/// \throws FileError
 void put_in_place(const std::string& temporary, const std::string& path,
                   Place place = Place::renamed);
 
-/// The file `path` gets a second name, in the place of what has that name; at any instant each of
-/// the two names a whole file. Where the file system has no second names it loses the first.
-/// Nothing if there is no such file. \throws FileError
+/// Gives the file `path` a second name and replaces the file of that name. At any instant each of
+/// the two names refers to a whole file. On a file system without hard links the file loses its
+/// first name. Does nothing if `path` does not exist.
+/// \throws FileError
 void give_second_name(const std::string& path, const std::string& second);
 
-/// Writes a text whole. \throws FileError
+/// Writes a text and replaces `path` as a whole. \throws FileError
 void write_whole(const std::string& path, std::string_view text, Place place = Place::renamed);
 
-/// What has been written to a file, or what a folder holds, outlives a crash of the machine from
-/// here on. \throws FileError
+/// Flushes a file, or the entries of a folder, to disk, so that they survive a crash of the
+/// machine. \throws FileError
 void sync_to_disk(const std::string& path);
 
-/// The name of this machine.
+/// Returns the name of this machine.
 std::string host_name();
 
-/// The time by the clock on the wall, as 2025-01-31T12:30:05+01:00.
+/// Returns the local date and time, as in 2025-01-31T12:30:05+01:00.
 std::string date_and_time();
 
-/// "cannot DO PATH: why", as `error` (errno) says.
+/// Throws FileError "cannot WHAT PATH: reason", with the reason of `error` (errno; 0: none).
 [[noreturn]] void throw_file_error(std::string_view what, const std::string& path, int error);
 
 }  // namespace floe

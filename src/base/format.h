@@ -1,5 +1,5 @@
 /// \file
-/// Numbers in messages.
+/// Numbers as text for messages.
 #pragma once
 
 #include <sstream>
@@ -7,7 +7,7 @@
 
 namespace floe {
 
-/// A number as messages show it.
+/// Returns a number with six significant digits.
 inline std::string text(double value) {
   std::ostringstream out;
   out << value;

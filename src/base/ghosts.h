@@ -1,5 +1,5 @@
 /// \file
-/// Copies of other ranks' body records, kept up to date by a PetscSF.
+/// Copies of other ranks' body records, filled by a PetscSF.
 #pragma once
 
 #include <petscsf.h>
@@ -12,25 +12,29 @@
 
 namespace floe {
 
-/// Local arrays hold `owned` records of this rank and then its ghosts, in the order given here.
+/// Local arrays hold `owned` records of this rank, then the ghosts in the order of the
+/// constructor's arguments.
 class Ghosts {
  public:
   Ghosts() = default;
-  /// Collective. \param owner, remote  for each ghost: the rank that owns it and its local index
-  /// there
+  /// Collective.
+  /// \param owned  number of records that this rank owns
+  /// \param owner, remote  per ghost: the rank that owns it, and its local index on that rank
   Ghosts(MPI_Comm comm, std::int32_t owned, std::span<const std::int32_t> owner,
          std::span<const std::int32_t> remote);
   Ghosts(Ghosts&&) noexcept;
   Ghosts& operator=(Ghosts&&) noexcept;
   ~Ghosts();
 
-  /// Fills the ghosts' records from their owners'. Collective.
+  /// Fills the ghosts' records from their owners. Collective.
   /// \param records  (owned + ghosts) x width, row-major
+  /// \param width  doubles per record
   void update(std::span<double> records, int width) const {
     begin(records, width);
     end(records, width);
   }
-  /// The same in two parts, between which neither owned records nor ghosts are touched.
+  /// update() in two parts. Between begin() and end() neither owned records nor ghosts may be
+  /// accessed. Collective.
   void begin(std::span<double> records, int width) const;
   void end(std::span<double> records, int width) const;
 

@@ -28,16 +28,16 @@ hid_t native<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
 
-/// HDF5 keeps what the system said in errno.
+/// Throws FileError if HDF5 failed; errno holds the error of the system.
 void require(bool good, const std::string& path) {
   if (good) return;
   const int why = errno;
   hdf5_has_failed = true;
-  give_up_on_mpi();  // HDF5 closes everything when MPI ends
+  give_up_on_mpi();  // HDF5 closes all files when MPI ends
   throw_file_error("write", path, why);
 }
 
-/// Copies a file. Returns what the system says (errno), 0 if all went well.
+/// Copies a file. Returns errno after a failure, else 0.
 int copy_file(const std::string& from, const std::string& to) {
   const int in = ::open(from.c_str(), O_RDONLY | O_CLOEXEC);
   const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -58,7 +58,8 @@ int copy_file(const std::string& from, const std::string& to) {
   return error;
 }
 
-/// Nobody else writes under a temporary name: no lock, which some file systems do not have.
+/// Returns access without a lock: no other process writes under a temporary name, and some file
+/// systems have no locks.
 Hdf5Id unlocked() {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_file_locking(access, false, true);
@@ -159,7 +160,7 @@ void Hdf5File::write_any(const std::string& name, const void* values, std::int64
 template <class T>
 void Hdf5File::write_blocks(const std::string& name, std::int64_t rows, int columns,
                             const std::function<void(std::int64_t, std::span<T>)>& make) {
-  constexpr std::int64_t block = 1 << 14;  // rows: stays in the cache
+  constexpr std::int64_t block = 1 << 14;  // rows; one block stays in the cache
   const std::int64_t type = native<T>();
   const Hdf5Id data(create_dataset(name, rows, columns, type), H5Dclose);
   const Hdf5Id file(H5Dget_space(data), H5Sclose);

@@ -1,13 +1,13 @@
 /// \file
-/// What both halves of hdf5.cpp need: identifiers that close themselves.
+/// Identifiers that close themselves, for hdf5.cpp and hdf5_read.cpp.
 #pragma once
 
 #include <hdf5.h>
 
 namespace floe {
 
-/// Whether HDF5 could not write something. It may crash where what is left of that is closed: from
-/// then on nothing is closed any more, as the run is at its end.
+/// Whether HDF5 has failed to write. HDF5 may crash when it closes the remains of such a write, so
+/// from then on no identifier is closed; the run ends anyway.
 inline bool hdf5_has_failed = false;  // NOLINT: state of the library
 
 /// Closes an HDF5 identifier of any kind at the end of a scope.
@@ -26,8 +26,8 @@ class Hdf5Id {
   herr_t (*close_)(hid_t);
 };
 
-/// Before the first call of HDF5: it prints nothing, and leaves files that it could not write alone
-/// when the process ends.
+/// Silences HDF5's own messages and keeps HDF5 from closing files at the end of the process, where
+/// it would crash on files that it could not write. Call before any other function of HDF5.
 inline void quiet_hdf5() {
   static const bool once = H5dont_atexit() >= 0;
   (void)once;

@@ -18,7 +18,7 @@
 namespace floe {
 namespace {
 
-/// What keeps the system from reading a file; empty if nothing does. A FIFO is not waited for.
+/// Returns why the system cannot read a file; empty if it can. Does not wait for a FIFO.
 std::string system_problem(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (file < 0)
@@ -33,17 +33,17 @@ std::string system_problem(const std::string& path) {
   return status.st_size == 0 ? "is empty, must be an HDF5 file" : "";
 }
 
-/// Bytes that a file takes on its disk, where holes of a sparse file take none.
+/// Returns the bytes that a file occupies on disk; the holes of a sparse file occupy none.
 double bytes_on_disk(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return 0;
-  constexpr double block = 512;  // of st_blocks; some file systems do not count
+  constexpr double block = 512;  // unit of st_blocks; some file systems report 0 blocks
   const auto size = static_cast<double>(status.st_size);
   return status.st_blocks > 0 ? std::min(size, block * static_cast<double>(status.st_blocks))
                               : size;
 }
 
-/// Number of values, which may be more than an integer holds.
+/// Returns the number of values as a double, because it may exceed an integer.
 double values_in(hid_t space) {
   if (H5Sget_simple_extent_type(space) == H5S_NULL) return 0;
   std::array<hsize_t, H5S_MAX_RANK> extent{};
@@ -54,8 +54,8 @@ double values_in(hid_t space) {
   return values;
 }
 
-/// Whether a dataset that fills `bytes` of memory may lie in its file: every part of it has been
-/// written, and no compression makes a thousandth of it.
+/// Whether a dataset that fills `bytes` of memory may lie in its file: every chunk has been
+/// written, and the file is no smaller than compression could make it.
 bool is_stored(hid_t data, hid_t plan, hid_t space, double bytes, double on_disk) {
   constexpr double least_compressed = 1100;  // deflate: at most 1032
   if (bytes > least_compressed * on_disk) return false;
@@ -71,7 +71,8 @@ bool is_stored(hid_t data, hid_t plan, hid_t space, double bytes, double on_disk
   return H5Dget_num_chunks(data, space, &there) >= 0 && static_cast<double>(there) >= needed;
 }
 
-/// Whether a program has the file locked for writing. HDF5 1.14 does not leave this in errno.
+/// Whether another program has locked the file for writing. HDF5 1.14 does not report this in
+/// errno.
 bool is_locked(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return false;
@@ -103,7 +104,7 @@ std::string Hdf5File::where(const std::string& name) const {
 bool Hdf5File::has(const std::string& name) const {
   std::string path;
   std::size_t start = 0;
-  while (start < name.size()) {  // H5Lexists wants every parent to exist
+  while (start < name.size()) {  // H5Lexists requires every parent to exist
     const std::size_t slash = name.find('/', start);
     path += "/" + name.substr(start, slash - start);
     if (path != "/") {

@@ -1,11 +1,11 @@
 /// \file
-/// What Open MPI is told before it begins.
+/// Settings of Open MPI that must precede MPI_Init.
 #pragma once
 
 namespace floe {
 
-/// Tells Open MPI what one process does without; what the user has set stands, but for the
-/// yielding. Before MPI_Init.
+/// Switches off the parts of Open MPI that one process does not need. Settings of the user are
+/// kept, except for yielding when idle. Call before MPI_Init.
 void prepare_one_process();
 
 }  // namespace floe

@@ -15,7 +15,8 @@
 namespace floe {
 namespace {
 
-// Progress: nothing before, and at least between two lines of a terminal's bar or of other output.
+// Progress: time before the first line, and least times between updates of a terminal's bar and
+// between other lines [s].
 constexpr double quiet_seconds = 1, bar_seconds = 0.2, line_seconds = 5;
 
 constexpr int number_of_events = static_cast<int>(Event::count);
@@ -75,7 +76,7 @@ Progress::Progress(std::string_view what, double total)
 }
 
 void warn(const std::string& text) {
-  // A progress bar may stand in the line.
+  // Erases a progress bar in the present line.
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
   print_error("floe: warning: " + text + "\n");
 }
@@ -128,7 +129,7 @@ void Progress::print(double done, std::string_view note, double now) {
   drawn = "\r\033[K" + drawn + std::string(note);
   std::fputs(terminal_ ? drawn.c_str() : plain.c_str(), stderr);
   std::fflush(stderr);
-  constexpr double seldom = 60;  // [s]: weeks of lines are of no use in a log
+  constexpr double seldom = 60;  // [s], to keep the log of a run of weeks short
   if (now - last_logged_ < seldom) return;
   last_logged_ = now;
   put_into_log(plain);

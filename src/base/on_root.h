@@ -1,5 +1,5 @@
 /// \file
-/// Work of rank 0 whose failure all ranks share.
+/// Work of rank 0 whose failure is raised on all ranks.
 #pragma once
 
 #include <string>
@@ -8,16 +8,17 @@
 
 namespace floe {
 
-/// How a rank's work ended.
+/// The outcome of work on one rank.
 struct Outcome {
   enum Kind : int { good, bad_input, failed } kind = good;
   std::string why;
 };
 
-/// Raises rank 0's outcome alike on all ranks: InputError or RunFailed. Collective.
+/// Raises rank 0's outcome on all ranks: InputError or RunFailed, or nothing if it is good.
+/// Collective.
 void share_outcome(Outcome outcome, MPI_Comm comm);
 
-/// What work came to that may raise InputError or FileError.
+/// Returns the outcome of work that may raise InputError or FileError.
 template <class Work>
 Outcome outcome_of(Work&& work) {
   try {
@@ -30,7 +31,8 @@ Outcome outcome_of(Work&& work) {
   return {};
 }
 
-/// Lets rank 0 do such work; what it raises is raised on all ranks. Collective.
+/// Runs `work` on rank 0 and raises its InputError, or its FileError as RunFailed, on all ranks.
+/// Collective.
 template <class Work>
 void on_root(MPI_Comm comm, Work&& work) {
   share_outcome(rank(comm) == 0 ? outcome_of(work) : Outcome{}, comm);

@@ -10,10 +10,11 @@
 namespace floe {
 namespace {
 
-/// First words of PETSc's options, as far as a solver run can use them; names that end in "_" are
-/// prefixes. Inner solvers have prefixes of their own. They are the names of PETSc's classes, which
-/// last: those of all releases since 3.18 are here, and test_petsc_options.cpp asks the installed
-/// one for its options. What that release does not know of a family is found after the first solve.
+/// First words of the options of PETSc that a solver run can use; names that end in "_" are
+/// prefixes. Inner solvers have prefixes of their own. The words are the names of PETSc's classes,
+/// which change little: the list has those of all releases since 3.18, and test_petsc_options.cpp
+/// queries the installed release for its options. An option of a family that the installed release
+/// does not have is found after the first solve.
 constexpr std::array petsc_families{
     // solvers and algebra
     "snes_", "ksp_", "pc_", "mat_", "vec_", "ts_", "tao_", "is_", "sf_", "dm_", "ao_", "matptap_",
@@ -33,7 +34,7 @@ constexpr std::array petsc_families{
     "device_", "use_gpu_aware_mpi", "petsc_ci", "checkfunctionlist", "checkstack", "python",
     "python_", "dll_"};
 
-/// The names people misspell most, for a better hint than a family alone.
+/// Names that users often misspell, for a better hint than the family alone.
 constexpr std::array petsc_names{"snes_type",
                                  "snes_rtol",
                                  "snes_atol",
@@ -60,9 +61,10 @@ bool belongs(std::string_view name, std::string_view family) {
   return family.ends_with('_') ? name.starts_with(family) : name == family;
 }
 
-/// How far `name` is from a key: its spelling, or the right word in the wrong section.
+/// Returns the distance of `name` from a key: by spelling, or as the right word in the wrong
+/// section.
 int distance_to_key(std::string_view name, std::string_view key) {
-  // A part of a named section has a name of its own, which is not misspelt: take it over.
+  // The NAME of a named section is the user's own, so it is copied into the key, not compared.
   std::string known = option_name(key);
   if (const auto at = known.find("NAME"); at != std::string::npos) {
     const auto first = name.find('_');
@@ -103,7 +105,7 @@ bool reads_from_elsewhere(std::string_view name) {
 bool is_environment_option(std::string_view name) {
   if (!is_petsc_option(name) || reads_from_elsewhere(name) || name.size() > longest_petsc_option)
     return false;
-  if (name == "version" || name == "skip_petscrc") return false;  // they ask for another run
+  if (name == "version" || name == "skip_petscrc") return false;  // options for another kind of run
   return !name.starts_with("ts_") || name.starts_with("ts_monitor") || name == "ts_view";
 }
 
@@ -124,7 +126,7 @@ std::string nearest_petsc_option(std::string_view name) {
 std::string nearest_option(std::string_view option, std::span<const OptionSpec> table) {
   const std::string name = lower(option);
   std::string nearest;
-  int best = std::max(2, static_cast<int>(name.size()) / 3) + 1;  // farther is no help
+  int best = std::max(2, static_cast<int>(name.size()) / 3) + 1;  // a farther name is no help
   const auto take = [&](std::string candidate, int far) {
     if (far < best) {
       best = far;
@@ -142,7 +144,7 @@ std::string nearest_option(std::string_view option, std::span<const OptionSpec> 
   if (cut == std::string::npos) return nearest;
   const std::string first = name.substr(0, cut + 1), rest = name.substr(cut + 1);
   for (const std::string_view family : petsc_families) {
-    // Nothing vouches for the rest of the name, so the first word must be nearly right.
+    // The rest of the name is not checked, so the first word must be nearly right.
     constexpr int misspelt = 2;
     const int far = spelling_distance(first, family);
     if (family.ends_with('_') && far > 0 && far <= misspelt) take(std::string(family) + rest, far);

@@ -1,5 +1,5 @@
 /// \file
-/// Which names an option may have: PETSc's families, and the known name nearest to a misspelt one.
+/// The permitted names of options: PETSc's families, and the known name nearest to a misspelt one.
 #pragma once
 
 #include <span>
@@ -10,32 +10,34 @@
 
 namespace floe {
 
-/// PETSc cuts longer names (PETSC_MAX_OPTION_NAME) in silence.
+/// Longest name of an option of PETSc; PETSc silently cuts longer ones (PETSC_MAX_OPTION_NAME).
 inline constexpr std::size_t longest_petsc_option = 60;
 
 /// Whether a word of a command line is an option: a dash and a letter (-0.5, -inf and - are
 /// values).
 bool is_option_word(std::string_view word);
 
-/// PETSc does not tell upper from lower case: the name in lower case if it is then one of PETSc's.
+/// Returns the name in lower case if that is an option of PETSc, which ignores case; else the name
+/// itself.
 std::string petsc_name(std::string_view name);
 
-/// Whether an option of the environment is taken: one of PETSc's families, but not one that reads
-/// further options, and of stepping in time (-ts_*) only what prints. What a scene computes is
-/// written in the scene.
+/// Whether an option of the environment is taken: one of PETSc's families, except options that read
+/// further options, and except options of time stepping (-ts_*) that do more than print. A scene
+/// alone must determine its results.
 bool is_environment_option(std::string_view name);
 
-/// Options by which PETSc would read further options before anybody can look at them.
+/// Whether PETSc would read further options by this one, without a check by floe.
 bool reads_from_elsewhere(std::string_view name);
 
-/// Whether PETSc or one of the packages under it could ask for an option of this name.
+/// Whether PETSc, or a package under PETSc, may query an option of this name.
 bool is_petsc_option(std::string_view name);
 
-/// The known name nearest to `name` (joined with "_"): a key of the table as in YAML, or, if that
-/// is nearer, one of PETSc's families with the rest of the name. Empty if nothing is near.
+/// Returns the known name nearest to `name` (joined with "_"): a key of the table as in YAML, or,
+/// if nearer, a family of PETSc with the rest of the name. Empty if no name is near.
 std::string nearest_option(std::string_view name, std::span<const OptionSpec> table);
 
-/// The well-known option of the same PETSc family that `name` may be a misspelling of, or nothing.
+/// Returns the well-known option of the same family of PETSc that `name` may misspell; empty if
+/// there is none.
 std::string nearest_petsc_option(std::string_view name);
 
 }  // namespace floe

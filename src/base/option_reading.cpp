@@ -1,4 +1,4 @@
-// The values of options, each read once.
+// The readers of the values of options. Each value is read once.
 #include <algorithm>
 #include <charconv>
 #include <set>
@@ -50,7 +50,7 @@ bool Options::flag(std::string_view key, std::string_view name) {
 }
 
 constexpr std::string_view automatic =
-    "(auto)";  // default of numbers that the word auto stands for
+    "(auto)";  // default of a number for which "auto" may be given
 
 double Options::number(std::string_view key, std::string_view name,
                        std::optional<double> otherwise) {
@@ -135,7 +135,7 @@ int Options::read_choice(std::string_view key, std::string_view name) {
   const std::string text = reading.value.value_or("");
   const auto known = choices_of(reading.spec.allowed);
   auto chosen = std::find(known.begin(), known.end(), text);
-  // Where true and false are words of the choice, their other spellings are too.
+  // A choice with the words true and false takes their other spellings too.
   const auto truth = to_flag(text);
   if (chosen == known.end() && truth && !text.empty())
     chosen = std::find(known.begin(), known.end(), *truth ? "true" : "false");

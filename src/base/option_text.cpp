@@ -1,5 +1,5 @@
-// The table of options as help, as Markdown, as part of a man page, and the options of a run as
-// YAML.
+// Output of the table of options as help, Markdown and part of a man page, and of the options of a
+// run as YAML.
 #include <algorithm>
 #include <cctype>
 #include <iterator>
@@ -10,7 +10,7 @@
 namespace floe {
 namespace {
 
-/// A YAML scalar: plain where that is safe, else in double quotes.
+/// Returns a YAML scalar: plain if that is safe, else in double quotes.
 std::string quoted(std::string_view value) {
   const auto safe = [](unsigned char c) {
     return std::isalnum(c) ||
@@ -35,7 +35,7 @@ std::string yaml_value(Kind kind, const std::string& value) {
   return "[" + list + "]";
 }
 
-/// The default as people read it.
+/// Returns the default for readers of the help.
 std::string fallback_text(const OptionSpec& line) {
   return line.fallback == "(required)" ? "required" : std::string(line.fallback);
 }
@@ -63,7 +63,7 @@ std::string Options::yaml() const {
       put(*line, {});
       continue;
     }
-    // All lines of one named section at once: they stand together in the table.
+    // The lines of one named section stand together in the table; they are written name by name.
     const auto end = std::find_if(line, table_.end(), [&](const OptionSpec& other) {
       return !has_name(other.key) || section_of(other.key) != section_of(line->key);
     });
@@ -92,7 +92,7 @@ std::string help_topic(std::span<const OptionSpec> table, std::string_view topic
   std::string wanted(topic.substr(topic.starts_with('-') ? 1 : 0));
   while (wanted.ends_with(':')) wanted.pop_back();
   wanted = option_name(wanted);
-  // NAME may be filled in: "obstacle_leg_shape".
+  // The topic may have a name in the place of NAME: "obstacle_leg_shape".
   const auto fits = [&](const OptionSpec& line, std::string_view option) {
     const std::string name = option_name(line.key);
     if (name == option || name.starts_with(std::string(option) + "_")) return true;

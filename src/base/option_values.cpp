@@ -19,7 +19,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// from_chars takes no plus sign, people write one.
+/// Parses a number. from_chars refuses a plus sign, which users write.
 template <class Number>
 std::optional<Number> parse(std::string_view text) {
   text = trimmed(text);
@@ -86,7 +86,7 @@ std::optional<std::int64_t> to_integer(std::string_view text) { return parse<std
 
 namespace {
 
-/// "01:30:00", "1-12:00:00".
+/// Parses "01:30:00" and "1-12:00:00" [s].
 std::optional<double> of_a_clock(std::string_view text) {
   constexpr double day = 86400;
   double seconds = 0;

@@ -1,4 +1,5 @@
-// What was given: which line of the table it belongs to, and whether it has an effect.
+// The assignment of given options to the lines of the table, and the check that they have an
+// effect.
 #include "floe/base/options.h"
 #include "base/collectives.h"
 
@@ -41,7 +42,7 @@ void Options::index_table() {
   }
 }
 
-/// The line of the table that an option is of; none if there is no such line.
+/// Returns the line of the table to which an option belongs; null if there is none.
 Options::Match Options::match(std::string_view option) const {
   if (const auto plain = by_option_.find(option); plain != by_option_.end())
     return {plain->second, {}};
@@ -58,7 +59,8 @@ Options::Match Options::match(std::string_view option) const {
   return {};
 }
 
-/// Ours into given_, PETSc's into petsc_. What is neither and has no value may be an empty section.
+/// Puts options of floe into given_ and options of PETSc into petsc_. An unknown name without a
+/// value may be an empty section.
 void Options::sort_given(const GivenOptions& all) {
   for (const auto& [name, given] : all) {
     if (given.source == Source::environment) {
@@ -89,7 +91,7 @@ void Options::refuse_unknown(const std::string& option, const Given& given) cons
                    in_brackets(given.place));
 }
 
-/// "sheet", "boundary", "boundary_a".
+/// Whether a name is that of a section: "sheet", "boundary", "boundary_a".
 bool Options::is_section(std::string_view option) const {
   const auto cut = option.find('_');
   const std::string_view section = option.substr(0, cut);
@@ -104,7 +106,7 @@ void Options::read_names() {
     const Reading reading = read(line.key, {});
     const std::string value = reading.value.value_or("");
     const auto list = to_list(value);
-    std::set<std::string> small;  // two names that differ in case only would be mistaken
+    std::set<std::string> small;  // two names that differ only in case would be confused
     for (const std::string& name : list.value_or(std::vector<std::string>{}))
       small.insert(lower(name));
     const bool distinct = list && small.size() == list->size();
@@ -117,7 +119,7 @@ void Options::read_names() {
   }
 }
 
-/// An option of a named section must belong to a listed name.
+/// Checks that an option of a named section belongs to a listed name.
 void Options::check_name_of(const std::string& option, const Given& given) {
   const auto [line, name] = match(option);
   if (name.empty()) return;
@@ -125,7 +127,7 @@ void Options::check_name_of(const std::string& option, const Given& given) {
   if (known_names_.at(section).contains(name)) return;
   const std::string label = section + ": " + std::string(name);
   if (!idle_.empty() && idle_.back().label == label) {
-    idle_options_.insert(option);  // said already
+    idle_options_.insert(option);  // one message per name is enough
     return;
   }
   keep_idle(option, given, label,
@@ -216,7 +218,8 @@ void Options::refuse(std::string_view key, std::string_view why) {
     if (!has_name(line->key)) refuse_one(line->key, {}, why);
   }
   if (!named_.contains(key)) return;
-  // Of a section with names only these are told: "obstacle: names".
+  // Of a section with names, idle() lists only the key "obstacle: names", not the options of each
+  // name.
   const std::string front = std::string(key) + "_";
   for (auto at = given_.lower_bound(front); at != given_.end() && at->first.starts_with(front);
        ++at) {

@@ -1,4 +1,4 @@
-// PETSc's options in a run: where they come from, and which of them nothing has asked for.
+// PETSc's options in a run: their sources, and the options that were never queried.
 #include <algorithm>
 #include <array>
 #include <set>
@@ -14,7 +14,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-/// Options that nothing has asked for so far, without their dash.
+/// Returns the options that were never queried so far, without their dash.
 Pairs unused_options() {
   PetscInt n = 0;
   char **names = nullptr, **values = nullptr;
@@ -25,7 +25,7 @@ Pairs unused_options() {
   return options;
 }
 
-/// What PETSc asks for only while it ends.
+/// Whether PETSc queries the option only in PetscFinalize.
 bool is_asked_for_at_the_end(std::string_view name) {
   constexpr std::array late{"citations", "get_total_flops", "mpidump", "objects_dump",
                             "stack_view"};
@@ -33,7 +33,7 @@ bool is_asked_for_at_the_end(std::string_view name) {
          name.starts_with("malloc_");
 }
 
-/// Viewers may be asked for at any time.
+/// Whether the option is of a viewer, which PETSc may query at any time.
 bool is_viewer(std::string_view name) {
   return name.find("_view") != std::string_view::npos || name.starts_with("viewer_");
 }
@@ -96,7 +96,7 @@ void reject_unused_options(const std::set<std::string>& exempt) {
               (near.empty() ? "" : "; is it '" + near + "'?");
     break;
   }
-  throw_verdict(verdict, PETSC_COMM_WORLD);  // a rank may have asked for less than rank 0
+  throw_verdict(verdict, PETSC_COMM_WORLD);  // a rank may have queried fewer options than rank 0
   solver_options_are_good();
 }
 

@@ -22,15 +22,13 @@
 namespace floe {
 namespace {
 
-/// PETSc's own words for the last error, kept for fail(); PETSc's default handler would print a
-/// page.
-std::string
-    last_message;  // NOLINT: written by PETSc's error handler, which has no other place to put it
+/// PETSc's message for the last error, kept for fail(); PETSc's default handler would print a page.
+std::string last_message;  // NOLINT: PETSc's error handler has no other place for its message
 
 PetscErrorCode remember_error(MPI_Comm, int, const char* function, const char*, PetscErrorCode code,
                               PetscErrorType type, const char* message, void*) {
-  // Of memory that it does not get PETSc 3.18 gives the caller's line in place of the error's code
-  // (in PetscMallocAlign).
+  // For memory that it could not allocate, PETSc 3.18 (PetscMallocAlign) passes the caller's line
+  // in place of the error's code.
   if (function != nullptr && std::string_view(function) == "PetscMallocAlign") code = PETSC_ERR_MEM;
   if (type == PETSC_ERROR_INITIAL) last_message = message ? message : "";
   return code;
@@ -41,7 +39,7 @@ bool& gave_up() {
   return yes;
 }
 
-/// PETSc's words for the last error, in one line.
+/// Returns PETSc's message for the last error, in one line, and clears it.
 std::string take_last_message(int ierr) {
   const char* generic = nullptr;
   PetscErrorMessage(ierr, &generic, nullptr);
@@ -54,7 +52,8 @@ std::string take_last_message(int ierr) {
   return text;
 }
 
-/// MUMPS says so by a number (INFOG(1), its users' guide).
+/// Whether an error means that memory ran out. MUMPS reports this by a number (INFOG(1), see the
+/// users' guide of MUMPS).
 bool is_out_of_memory(int ierr, const std::string& text) {
   return ierr == PETSC_ERR_MEM || text.find("INFOG(1)=-13") != std::string::npos ||
          text.find("Cannot allocate required memory") != std::string::npos;
@@ -86,7 +85,7 @@ Mpi::Mpi(int& argc, char**& argv) {
   prepare_one_process();
   report_crashes();
   MPI_Init(&argc, &argv);
-  report_crashes();  // MPI has handlers of its own
+  report_crashes();  // MPI_Init has installed handlers of its own
   report_mpi_errors();
 }
 
@@ -100,7 +99,7 @@ Mpi::~Mpi() {
 
 namespace {
 
-/// A variable of the environment that is not there during this object's life.
+/// Removes a variable of the environment during this object's life.
 class Without {
  public:
   explicit Without(const char* name) : name_(name) {
@@ -118,10 +117,12 @@ class Without {
   std::optional<std::string> value_;
 };
 
-/// Puts PETSc's options into its table, before PetscInitialize, which acts on some of them.
-/// \return  those
+/// Puts PETSc's options into PETSc's table. Call before PetscInitialize, which acts on some of
+/// them.
+/// \return the options in the table
+/// \throws InputError for more than 400 options or a refused value
 GivenOptions put_petsc_options(const UserOptions& user) {
-  constexpr std::size_t most = 400;  // PETSc 3.18 has room for 512
+  constexpr std::size_t most = 400;  // PETSc 3.18 holds at most 512
   GivenOptions put;
   std::string problem;
   for (const auto& [name, given] : user.merged()) {
@@ -139,7 +140,7 @@ GivenOptions put_petsc_options(const UserOptions& user) {
   return put;
 }
 
-/// Whoever looks for an error in a debugger or in PETSc's traces asks PETSc itself.
+/// Whether the options request a debugger or PETSc's traces, for which PETSc must handle errors.
 bool wants_petsc_handlers(const GivenOptions& options) {
   return std::any_of(options.begin(), options.end(), [](const auto& option) {
     const std::string& name = option.first;
@@ -148,9 +149,9 @@ bool wants_petsc_handlers(const GivenOptions& options) {
   });
 }
 
-decltype(PetscVFPrintf) print_by_petsc = nullptr;  // NOLINT: as PETSc's own pointer
+decltype(PetscVFPrintf) print_by_petsc = nullptr;  // NOLINT: like PETSc's own pointer
 
-/// What PETSc prints on the terminal is in the log too.
+/// Copies to the log what PETSc prints on standard output and error.
 PetscErrorCode print_for_petsc(std::FILE* file, const char* format, std::va_list words) noexcept {
   if (file == stdout || file == stderr) {
     std::array<char, 8192> text{};
@@ -176,10 +177,10 @@ Session::Session(const char* program, const UserOptions& user) : program_(progra
   word_ = words_.data();
   int count = 1;
   if (by_petsc || by_system) leave_crashes_to_the_system();
-  // Before PETSc begins: it reads options then, and its own handler prints a page.
+  // Before PetscInitialize, which reads options and whose own handler prints a page.
   if (!by_petsc) check(PetscPushErrorHandler(remember_error, nullptr));
   check(PetscInitialize(&count, &word_, nullptr, nullptr));
-  if (!by_petsc && !by_system) report_crashes();  // PETSc has put handlers of its own there
+  if (!by_petsc && !by_system) report_crashes();  // PETSc has installed handlers of its own
   if (print_by_petsc == nullptr) {
     print_by_petsc = PetscVFPrintf;
     PetscVFPrintf = print_for_petsc;
@@ -187,8 +188,8 @@ Session::Session(const char* program, const UserOptions& user) : program_(progra
 }
 
 Session::~Session() {
-  // PETSc lists options that nothing has asked for (from 3.19 on unasked), also where a run has
-  // been refused. warn_unused_options() says so where it matters.
+  // PETSc would list options that were never queried (since 3.19 by default), even after a run was
+  // refused. warn_unused_options() reports them where they matter.
   PetscBool given = PETSC_FALSE;
   (void)PetscOptionsHasName(nullptr, nullptr, "-options_left", &given);
   if (given == PETSC_FALSE) (void)PetscOptionsSetValue(nullptr, "-options_left", "no");

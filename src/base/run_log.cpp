@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::size_t most_kept = 1U << 20;
 
-/// Of the process, as its standard output is.
+/// The log of this process; one per process, like standard output.
 struct Log {
   int file = -1;
-  bool keeps = false;  ///< not open yet
+  bool keeps = false;  ///< the log is not open yet and its text is kept
   std::string heading, kept;
 };
 Log& log() {
@@ -50,7 +50,7 @@ void print(std::string_view text) {
 
 void print_error(std::string_view text) {
   put_into_log(text);
-  std::fflush(stdout);  // in one file, both are in order
+  std::fflush(stdout);  // keeps the order if both streams go to one file
   put_on(stderr, text);
 }
 
@@ -71,7 +71,7 @@ void keep_log(std::string heading) {
 void open_log(const std::string& path, bool goes_on) {
   Log& me = log();
   if (!me.keeps) return;
-  // Who reads the log of an earlier run keeps it.
+  // A program that reads the log of an earlier run keeps that file.
   if (!goes_on && ::unlink(path.c_str()) != 0 && errno != ENOENT)
     throw_file_error("remove", path, errno);
   me.file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -97,7 +97,7 @@ void close_log(std::string_view last_line) noexcept {
 void open_closed_streams() {
   for (int file = 0; file <= 2; ++file) {
     if (::fcntl(file, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number, which is this one.
+    // open() takes the lowest free number, that is `file`.
     (void)::open("/dev/null", file == 0 ? O_RDONLY : O_WRONLY);
   }
 }

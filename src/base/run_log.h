@@ -1,5 +1,5 @@
 /// \file
-/// What a run says: on the terminal, and in the log file of its output folder alike.
+/// Output of a run to the terminal and, alike, to the log file of its output folder.
 #pragma once
 
 #include <string>
@@ -7,28 +7,30 @@
 
 namespace floe {
 
-/// Prints on standard output, or error, and in the log. Called on rank 0.
+/// Print on standard output or standard error, and in the log. Call on rank 0 only.
 void print(std::string_view text);
 void print_error(std::string_view text);
 
-/// Into the log alone. Takes no memory once the log is open, so that a handler of a signal may call
-/// it. Never fails: a log that cannot be written any more ends there, and one warning says so.
+/// Appends to the log only. Allocates no memory once the log is open, so that a signal handler may
+/// call it. Never fails: if the log cannot be written, it ends there with one warning.
 void put_into_log(std::string_view text) noexcept;
 
-/// From here on what is printed is kept for the log that open_log() begins; without this nothing
-/// is. For rank 0. \param heading  what the log begins with
+/// Starts to keep printed text for the log that open_log() will begin; without this call no text is
+/// kept. Call on rank 0 only.
+/// \param heading  first text of the log
 void keep_log(std::string heading);
 
-/// Begins the log, or goes on with an earlier one after a line that says so, with the heading and
-/// with what has been printed so far. Does nothing without keep_log(). \throws FileError
+/// Begins a log with the heading and the text printed so far. With `goes_on` an existing log is
+/// continued, after a line that marks the restart. Does nothing without keep_log().
+/// \throws FileError
 void open_log(const std::string& path, bool goes_on);
 
-/// Ends the log with a last line; nothing is kept for it any more.
+/// Ends the log with a last line; no further text is kept.
 void close_log(std::string_view last_line) noexcept;
 
-/// Standard input, output and error that whoever started the process has closed lead to nowhere
-/// from here on. Otherwise the next files that are opened would take their numbers, and what is
-/// printed would go into these. To be called before anything else.
+/// Opens /dev/null for standard input, output and error if the parent process has closed them.
+/// Otherwise files opened later would take the numbers of these streams, and printed text would go
+/// into those files. Call before anything else.
 void open_closed_streams();
 
 }  // namespace floe

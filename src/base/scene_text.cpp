@@ -20,7 +20,7 @@
 namespace floe {
 namespace {
 
-constexpr int deepest_key = 8;  // those of floe have three words, those of PETSc may have more
+constexpr int deepest_key = 8;  // keys of floe have three words; PETSc's may have more
 constexpr std::size_t longest_key = 120;
 constexpr std::size_t largest_scene = 16U << 20;
 
@@ -30,7 +30,7 @@ bool has_control_character(std::string_view text) {
   return std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; });
 }
 
-/// Options that are for the command line only.
+/// Options that only the command line may give.
 constexpr std::array<std::string_view, 6> command_line_only{
     "help", "options_monitor", "options_monitor_cancel", "skip_petscrc", "petsc_ci", "version"};
 
@@ -39,7 +39,7 @@ bool is_command_line_only(std::string_view word) {
          command_line_only.end();
 }
 
-/// One event of libyaml, deleted with its life.
+/// One event of libyaml; deletes it on destruction.
 class Event {
  public:
   explicit Event(yaml_parser_t& parser) : whole_(yaml_parser_parse(&parser, &event_) != 0) {}
@@ -66,7 +66,7 @@ class Event {
                                               : nullptr;
     return name ? reinterpret_cast<const char*>(name) : "";
   }
-  /// A tag of the scene's own; those of YAML itself (!!str) say nothing new.
+  /// Returns a tag that is not one of YAML's own; tags such as !!str carry no information here.
   std::string foreign_tag() const {
     const yaml_char_t* tag = type() == YAML_SCALAR_EVENT           ? event_.data.scalar.tag
                              : type() == YAML_SEQUENCE_START_EVENT ? event_.data.sequence_start.tag
@@ -87,7 +87,8 @@ class Event {
   bool whole_;
 };
 
-/// The scene as libyaml tells it, event by event: nothing is held that is deeper than a key may be.
+/// Reads a scene event by event; nesting deeper than a key may be is refused, so no deeper
+/// structure is kept.
 class SceneParser {
  public:
   SceneParser(std::string path, const std::string& text, Source source)
@@ -105,7 +106,8 @@ class SceneParser {
     {
       const Event event(parser_);
       check_whole(event);
-      if (event.type() == YAML_STREAM_END_EVENT) return {};  // what is missing will be named
+      // an empty scene; missing keys are reported later
+      if (event.type() == YAML_STREAM_END_EVENT) return {};
     }
     {
       const Event event(parser_);
@@ -208,7 +210,8 @@ class SceneParser {
     }
   }
 
-  /// The text of a value, which goes into lines and paths: breaks of lines and tabs are blanks.
+  /// Returns the text of a value, with blanks for line breaks and tabs, because the text goes into
+  /// lines and paths.
   std::string checked_text(const Event& event, const std::string& key) {
     std::string text = event.text();
     std::replace_if(
@@ -219,7 +222,7 @@ class SceneParser {
     return text;
   }
 
-  /// A scalar, a list or an alias of one.
+  /// Returns a scalar, a list, or the value of an alias.
   Value read_value(const Event& event, const std::string& key) {
     if (event.type() == YAML_ALIAS_EVENT) return value_of_alias(event);
     Value value;
@@ -262,9 +265,9 @@ class SceneParser {
   Source source_;
   yaml_parser_t parser_{};
   GivenOptions options_;
-  std::map<std::string, std::size_t> lines_;  ///< where each joined key was first given
+  std::map<std::string, std::size_t> lines_;  ///< line in which each joined key was first given
   std::map<std::string, Value> anchors_;
-  std::size_t expanded_ = 0;  ///< bytes that aliases have stood for
+  std::size_t expanded_ = 0;  ///< bytes that aliases have expanded to
 };
 
 using NearTo = std::function<std::string(const std::string&)>;
@@ -304,7 +307,7 @@ void check_text(const std::string& path, const std::string& text) {
 
 std::string text_problem(std::string_view value) {
   if (has_control_character(value)) return unprintable;
-  // libyaml reads a comment as it reads all of a scene: as printable UTF-8, or not at all.
+  // libyaml checks a comment as it checks a whole scene: the bytes must be printable UTF-8.
   const std::string comment = "# " + std::string(value);
   yaml_parser_t parser{};
   yaml_token_t token{};

@@ -20,11 +20,12 @@ namespace {
 constexpr std::string_view first_line = "floe checkpoint\n";
 
 struct Facts {
-  unsigned long long size = 0;  ///< of the file
-  unsigned long sum = 0;        ///< CRC-32 of what follows the seal
+  unsigned long long size = 0;  ///< of the file, with the seal
+  unsigned long sum = 0;        ///< CRC-32 of the bytes after the seal
 };
 
-/// The seal itself: what it says can be said in one way only, so that its own bits count too.
+/// Returns the seal. Each pair of facts has one text only, so a change of any bit of the seal is
+/// detected.
 std::string text_of(const Facts& facts) {
   std::array<char, 80> line{};
   std::snprintf(line.data(), line.size(), "size %llu\ncrc32 %08lx\n", facts.size, facts.sum);
@@ -33,7 +34,7 @@ std::string text_of(const Facts& facts) {
   return text;
 }
 
-/// A file that is closed at the end of a scope.
+/// A file descriptor, closed at the end of a scope.
 class Opened {
  public:
   Opened(const std::string& path, int how)
@@ -49,7 +50,7 @@ class Opened {
   int file_;
 };
 
-/// False if the file cannot be read.
+/// Computes size and checksum of a file; false if it cannot be read.
 bool look_at(int file, Facts& facts) {
   std::vector<unsigned char> block(1 << 18);
   facts = {seal_size, ::crc32(0, nullptr, 0)};

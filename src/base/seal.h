@@ -1,6 +1,6 @@
 /// \file
-/// A seal on a file: its first 512 bytes say how long it is and the checksum of what follows, so
-/// that no bit of it can change unseen.
+/// A seal on a file: its first 512 bytes hold the length of the file and the checksum of all later
+/// bytes, so that a change of any bit is detected.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace floe {
 
-/// Bytes that a seal takes at the beginning of a file (HDF5 calls them its user block).
+/// Size of a seal at the beginning of a file [bytes] (HDF5 calls this space the user block).
 inline constexpr std::size_t seal_size = 512;
 
-/// Writes the seal of a file that has the room for it. \throws FileError
+/// Writes the seal of a file whose first seal_size bytes are reserved for it. \throws FileError
 void seal(const std::string& path);
 
-/// What is wrong with a sealed file, as in "is damaged: it has 10 bytes of 20"; empty if it is as
-/// it was sealed. Of what is no regular file, or cannot be read, nothing is said: whoever opens it
-/// will see.
+/// Returns the damage of a sealed file, as in "is damaged: it has 10 bytes, not 20"; empty if the
+/// file is unchanged. Also empty for a file that is not regular or cannot be opened: the reader
+/// that opens it reports that.
 std::string seal_problem(const std::string& path);
 
 }  // namespace floe

@@ -8,7 +8,7 @@
 namespace floe {
 namespace {
 
-volatile std::sig_atomic_t signal_came = 0;  // NOLINT: a handler can reach nothing else
+volatile std::sig_atomic_t signal_came = 0;  // NOLINT: a handler can reach no other object
 
 void note_signal(int) { signal_came = 1; }
 

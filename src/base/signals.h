@@ -1,5 +1,5 @@
 /// \file
-/// Requests to stop that come from outside.
+/// Requests of users and batch systems to stop a run.
 #pragma once
 
 #include <mpi.h>
@@ -8,33 +8,34 @@
 
 namespace floe {
 
-/// A run was asked to stop where it has nothing to keep yet. Raised alike on all ranks.
+/// A run was stopped before it had a state worth keeping. Raised on all ranks alike.
 class Stopped : public Verdict {
  public:
   using Verdict::Verdict;
 };
 
-/// While this lives, signals ask for a stop instead of ending the process: those that users and
-/// batch systems send before they use force (SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU),
-/// however often they come. One that was ignored when the process began (nohup, a shell's
-/// background job) still is. A closed pipe and a file size limit are errors of the write; a closed
-/// standard output is nothing that a run minds.
+/// While an object of this class lives, signals request a stop instead of ending the process:
+/// SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU, which users and batch systems send before
+/// they use force, however often they come. A signal that was ignored when the process began
+/// (nohup, a background job of a shell) stays ignored. SIGPIPE and SIGXFSZ are ignored: a closed
+/// pipe and a file size limit are reported as errors of the write, and a run goes on when its
+/// standard output is closed.
 class StopSignals {
  public:
   StopSignals();
   ~StopSignals();
-  /// Again, after PETSc has begun and installed handlers of its own.
+  /// Installs the handlers again, after PetscInitialize has installed its own.
   void arm();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
-  /// Whether one came on this rank.
+  /// Whether a signal has come on this rank.
   static bool came();
-  /// Whether one came on any rank. Collective.
+  /// Whether a signal has come on any rank. Collective.
   static bool came(MPI_Comm comm);
 };
 
-/// \throws Stopped if a signal has come on any rank. Collective; for what happens before the first
-/// state.
+/// Throws if a signal has come before the first state. Collective.
+/// \throws Stopped if a signal has come on any rank
 void stop_if_asked(MPI_Comm comm);
 
 }  // namespace floe

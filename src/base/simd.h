@@ -1,10 +1,9 @@
 /// \file
-/// Lanes of doubles: as many as a register of the processor holds that the code is compiled for,
-/// and the transposes between records of bodies and lanes. No type here is wider than that
-/// register: a wider one would travel through memory, and be passed in different ways by different
-/// levels.
+/// Lanes of doubles: one vector register of the processor for which the code is compiled, and the
+/// transposes between body records and lanes. No type here is wider than that register: a wider
+/// type would be passed through memory, and differently at different levels.
 ///
-/// Nothing of this is in a public header: programs that are compiled for another level must see the
+/// No public header includes this file, because programs compiled for another level must see the
 /// same types.
 #pragma once
 
@@ -30,7 +29,7 @@ static_assert(sizeof(Lanes) == lanes * sizeof(double), "a register holds all lan
 
 inline Lanes load(const double* aligned) { return {aligned, std::experimental::vector_aligned}; }
 
-/// 1 or -1 with the sign of x.
+/// Returns 1 or -1 with the sign of x.
 inline Lanes sign_of(const Lanes& x) {
   Lanes one(1.0);
   where(x < 0.0, one) = -1.0;
@@ -41,7 +40,7 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
-/// Asks for all cache lines of something that is read soon.
+/// Prefetches all cache lines of an object that is read soon.
 template <class T>
 void prefetch(const T& what) {
   constexpr std::size_t line = 64;
@@ -51,7 +50,7 @@ void prefetch(const T& what) {
 
 namespace detail {
 
-/// From memory of any alignment.
+/// Loads a vector from memory of any alignment.
 template <class V>
 V load_vector(const double* p) {
   V v;
@@ -61,7 +60,7 @@ V load_vector(const double* p) {
 
 using Two [[gnu::vector_size(16)]] = double;
 
-/// Entries 0 and 1 of a and of b side by side.
+/// Return the even (odd) entries of a and b, alternating.
 inline Two evens(Two a, Two b) { return __builtin_shufflevector(a, b, 0, 2); }
 inline Two odds(Two a, Two b) { return __builtin_shufflevector(a, b, 1, 3); }
 
@@ -77,7 +76,7 @@ inline Four odds(Four a, Four b) { return __builtin_shufflevector(a, b, 1, 5, 3,
 
 using Eight [[gnu::vector_size(64)]] = double;
 
-/// Entries 0, 2, 4, 6 of a and b in turn; entries 1, 3, 5, 7.
+/// evens: entries 0, 2, 4, 6 of a and b, alternating; odds: entries 1, 3, 5, 7.
 inline Eight evens(Eight a, Eight b) {
   return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
 }
@@ -89,13 +88,13 @@ inline Eight odds(Eight a, Eight b) {
 
 }  // namespace detail
 
-/// Four doubles of one record.
+/// Four consecutive doubles of a record.
 #if defined(__AVX__)
 using Row = detail::Four;
 
 inline Row load_row(const double* p) { return detail::load_vector<Row>(p); }
 inline void store_row(double* p, const Row& row) { __builtin_memcpy(p, &row, sizeof row); }
-/// The sum of entries 0 and 1 in both their places, of 2 and 3 in theirs.
+/// Returns the sum of entries 0 and 1 in places 0 and 1, that of entries 2 and 3 in places 2 and 3.
 inline Row pair_sums(const Row& r) { return r + __builtin_shufflevector(r, r, 1, 0, 3, 2); }
 inline Row larger(const Row& a, const Row& b) { return a > b ? a : b; }
 #else
@@ -121,7 +120,7 @@ inline Row larger(const Row& a, const Row& b) {
 }
 #endif
 
-/// Adds four doubles to memory, takes them away; takes two away.
+/// Add four doubles to memory, subtract four, subtract two.
 inline void add_row(double* p, const Row& row) { store_row(p, load_row(p) + row); }
 inline void subtract_row(double* p, const Row& row) { store_row(p, load_row(p) - row); }
 inline void subtract_pair(double* p, detail::Two pair) {
@@ -129,13 +128,14 @@ inline void subtract_pair(double* p, detail::Two pair) {
   __builtin_memcpy(p, &pair, sizeof pair);
 }
 
-/// Four consecutive doubles of each of `lanes` records, one record per lane.
-/// \param at  where lane k's four doubles stand
+/// Returns four consecutive doubles of each of `lanes` records as four vectors, one record per
+/// lane.
+/// \param at  function from the lane to the address of its four doubles
 template <class At>
 std::array<Lanes, 4> gather_four(At at) {
   using namespace detail;
 #if defined(__AVX512F__)
-  // Pairs of records side by side, chosen so that lanes come out in order.
+  // Puts pairs of records side by side, so that the lanes come out in order.
   const auto pair = [&](std::size_t low, std::size_t high) {
     return __builtin_shufflevector(load_row(at(low)), load_row(at(high)), 0, 1, 2, 3, 4, 5, 6, 7);
   };
@@ -150,8 +150,8 @@ std::array<Lanes, 4> gather_four(At at) {
   };
   return {low(ab_even, cd_even), low(ab_odd, cd_odd), high(ab_even, cd_even), high(ab_odd, cd_odd)};
 #elif defined(__AVX__)
-  // Halves of records 0 and 2, of 1 and 3, side by side: loads put them there, and one shuffle per
-  // result is left.
+  // Halves of records 0 and 2, and of 1 and 3, side by side: the loads build these, so that one
+  // shuffle per result is left.
   const auto pair = [&](std::size_t low, std::size_t high, std::size_t half) {
     return __builtin_shufflevector(load_vector<Two>(at(low) + half),
                                    load_vector<Two>(at(high) + half), 0, 1, 2, 3);
@@ -166,8 +166,8 @@ std::array<Lanes, 4> gather_four(At at) {
 #endif
 }
 
-/// Numbers of a lane side by side, as the way back to records begins: (a, b) of lane k is pair k /
-/// 2 of the even lanes' register, or of the odd ones'.
+/// Two numbers per lane side by side, the first step of the transpose from lanes to records: the
+/// pair (a, b) of lane k is pair k / 2 of the register `even` or `odd`.
 struct Pairs {
   Lanes even, odd;
   Pairs(const Lanes& a, const Lanes& b)
@@ -188,14 +188,14 @@ struct Pairs {
   }
 };
 
-/// The pair of a lane.
+/// Returns the pair of a lane.
 template <std::size_t lane>
 detail::Two pair_of(const Pairs& p) {
   constexpr int k = lane / 2 * 2;
   return __builtin_shufflevector(p.of<lane>(), p.of<lane>(), k, k + 1);
 }
 
-/// The two pairs of a lane in a row.
+/// Returns the two pairs of a lane as a row.
 template <std::size_t lane>
 Row row_of(const Pairs& first, const Pairs& second) {
 #if defined(__AVX__)
@@ -206,7 +206,8 @@ Row row_of(const Pairs& first, const Pairs& second) {
 #endif
 }
 
-/// The way back: four doubles per lane, row by row. \param rows  lanes x 4, filled
+/// Transposes four vectors of lanes to four doubles per record. \param rows  one row per lane,
+/// filled
 inline void scatter_four(const std::array<Lanes, 4>& in, std::array<Row, lanes>& rows) {
   using namespace detail;
 #if defined(__AVX512F__)

@@ -1,5 +1,5 @@
 /// \file
-/// Sine and cosine of an angle together, on any scalar.
+/// Sine and cosine of one angle, on any scalar.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ SineCosine<T> sine_cosine(const T& angle) {
 
 namespace detail {
 
-/// For angles within pi/4 to 1.5 units in the last place: the minimax polynomials of fdlibm (Sun
+/// For |x| <= pi/4, to 1.5 units in the last place: the minimax polynomials of fdlibm (Sun
 /// Microsystems 1993, k_sin.c and k_cos.c).
 inline SineCosine<Lanes> sine_cosine_in_quadrant(const Lanes& x) {
   const Lanes z = x * x;
@@ -39,11 +39,12 @@ inline SineCosine<Lanes> sine_cosine_in_quadrant(const Lanes& x) {
   return {x + (x * z) * p, 1.0 - (0.5 * z - (z * z) * q)};
 }
 
-/// Any angle: less the nearest multiple of pi/2, which three numbers of 33 bits make up (Cody &
-/// Waite 1980); one by one where that ends.
+/// For any angle: subtracts the nearest multiple of pi/2, whose value is split into three numbers
+/// of 33 bits (Cody & Waite 1980). Beyond 1e6 rad the products are not exact, and the standard
+/// functions are called lane by lane.
 [[gnu::noinline, gnu::cold]] inline SineCosine<Lanes> sine_cosine_reduced(const Lanes& angle) {
   constexpr double end = 1e6;
-  // Adding 1.5 * 2^52 and taking it away rounds to a whole number.
+  // Adding and subtracting 1.5 * 2^52 rounds to a whole number.
   constexpr double whole = 6755399441055744.0;
   const Lanes quarters = (angle * 0.63661977236758138243 + whole) - whole;
   Lanes x = angle - quarters * 1.57079632673412561417e+00;
@@ -67,9 +68,9 @@ inline SineCosine<Lanes> sine_cosine_in_quadrant(const Lanes& x) {
 
 }  // namespace detail
 
-/// The same for a lane whatever stands in the others. Few bodies turn by more than pi/4.
+/// The result of a lane does not depend on the other lanes. Few bodies turn by more than pi/4.
 inline SineCosine<Lanes> sine_cosine(const Lanes& angle) {
-  constexpr double small = 0.785;  // below pi/4, so that the reduction would take nothing away
+  constexpr double small = 0.785;  // below pi/4, where the reduction subtracts 0
   if (all_of(angle >= -small && angle <= small)) [[likely]]
     return detail::sine_cosine_in_quadrant(angle);
   return detail::sine_cosine_reduced(angle);

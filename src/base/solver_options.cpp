@@ -18,8 +18,8 @@ namespace {
 
 using enum Kind;
 
-/// What floe relies on, beside what PETSc asks of itself (3.18 to 3.22); of some, PETSc asks only
-/// after it has begun to compute, or not at all. Without a prefix of its solver's.
+/// The ranges on which floe relies, beyond PETSc's own checks (3.18 to 3.22). PETSc checks some
+/// options only after it has begun to compute, or never. Names are without the prefix of a solver.
 constexpr std::array table{
     // time steps
     OptionSpec{"ts_dt", number, "", "s", "> 0", ""},
@@ -95,7 +95,7 @@ constexpr std::array table{
     OptionSpec{"pc_gamg_agg_nsmooths", integer, "", "", ">= 0, <= 1", ""},
     OptionSpec{"pc_gamg_square_graph", integer, "", "", ">= 0", ""},
     OptionSpec{"pc_gamg_aggressive_coarsening", integer, "", "", ">= 0", ""},
-    // matrices and MUMPS (the numbers of its users' guide; PETSc sets those that are not here)
+    // matrices and MUMPS (numbers of the users' guide; PETSc itself sets the missing ones)
     OptionSpec{"mat_type", choice, "", "",
                "sbaij | seqsbaij | mpisbaij | baij | seqbaij | mpibaij | aij | seqaij | mpiaij",
                ""},
@@ -140,7 +140,7 @@ struct Useless {
 };
 constexpr auto no_mesh = "needs a mesh of PETSc's own, which floe has none of";
 constexpr auto no_adjoint = "floe solves no adjoint equations";
-/// PETSc would crash or make files that nobody reads.
+/// Options with which PETSc would crash or write files that nothing reads.
 constexpr std::array useless{Useless{"ksp_view_diagonal_scale", "PETSc crashes on it"},
                              Useless{"snes_convergence_estimate", no_mesh},
                              Useless{"ts_convergence_estimate", no_mesh},
@@ -158,7 +158,7 @@ bool is_called(std::string_view name, std::string_view known) {
                            name[name.size() - known.size() - 1] == '_');
 }
 
-/// Of a range like "> 0, <= 1".
+/// Whether a value lies in a range such as "> 0, <= 1".
 bool within(double value, std::string_view allowed) {
   while (!allowed.empty()) {
     const auto comma = allowed.find(", ");
@@ -181,7 +181,7 @@ std::string refused(std::string_view name, std::string_view value, const std::st
          " must be " + allowed;
 }
 
-/// Whether PETSc's 32-bit numbers hold it; -ts_max_steps is floe's own.
+/// Whether PETSc's integers hold the value; -ts_max_steps is read by floe itself.
 bool fits(std::string_view name, double value) {
   return name == "ts_max_steps" || std::abs(value) <= std::numeric_limits<PetscInt>::max();
 }
@@ -215,7 +215,7 @@ std::string lag_problem(std::string_view name, std::string_view value) {
   return refused(name, value, "an integer >= 1, or -2 (only once)");
 }
 
-/// nan and infinities in any spelling that C's readers know.
+/// Whether a word is nan or infinity in any spelling that C's readers accept.
 bool is_no_number(std::string_view word) {
   std::string text;
   for (const char c : word) {
@@ -225,7 +225,7 @@ bool is_no_number(std::string_view word) {
   return text == "inf" || text == "infinity" || text == "nan" || text.starts_with("nan(");
 }
 
-/// Why a file cannot be written, or nothing.
+/// Returns why a file cannot be written; empty if it can.
 std::string file_problem(std::string_view name, const std::string& file) {
   std::error_code error;
   const std::filesystem::path path(file);
@@ -239,7 +239,7 @@ std::string file_problem(std::string_view name, const std::string& file) {
   return {};
 }
 
-/// Of a viewer's value, TYPE:FILE:FORMAT:MODE, or FILE:... of a log.
+/// Checks the file in a viewer's value, TYPE:FILE:FORMAT:MODE, or in a log's value, FILE:...
 std::string viewer_problem(std::string_view name, std::string_view value) {
   const auto has = [&](std::string_view word) { return name.find(word) != std::string_view::npos; };
   const auto colon = value.find(':');
@@ -247,7 +247,7 @@ std::string viewer_problem(std::string_view name, std::string_view value) {
     const std::string file(value.substr(0, colon));
     return file.empty() || to_flag(file) ? "" : file_problem(name, file);
   }
-  // PETSc looks at these at the end of a run.
+  // PETSc reads the values of these options at the end of a run.
   const bool is_late = is_called(name, "ts_view") || is_called(name, "ts_view_solution") ||
                        is_called(name, "log_view");
   if (value.empty() || (colon == std::string_view::npos && !is_late)) return {};

@@ -1,5 +1,5 @@
 /// \file
-/// PETSc's own options: what floe asks of their values.
+/// Checks of the values of PETSc's own options.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace floe {
 
-/// Why a value of an option of PETSc's is refused, in one line; empty if there is nothing against
-/// it. A table says what numbers and words floe relies on; no number may be nan or infinite, and
-/// the folder of a viewer's file must be there. What PETSc itself refuses later is not known here.
-/// \param name  without its dash; any prefix (sub_, mg_levels_) is passed over
+/// Returns why a value of an option of PETSc is refused, in one line; empty if it is accepted. A
+/// table holds the ranges and words on which floe relies; no number may be nan or infinite, and the
+/// folder of a viewer's file must exist. PETSc itself may still refuse an accepted value later.
+/// \param name  without its dash; any prefix (sub_, mg_levels_) is ignored
 std::string solver_option_problem(std::string_view name, std::string_view value);
 
-/// For `-help snes` or `-help snes_rtol`: the options of PETSc's whose names begin with the topic
-/// and of which floe asks more than PETSc, a line each, and where PETSc explains its options.
-/// Empty if the topic is none of PETSc's families.
+/// Returns the help for `-help snes` or `-help snes_rtol`: a line for each option of PETSc whose
+/// name begins with the topic and whose range floe checks, and the address of PETSc's manual. Empty
+/// if the topic is not one of PETSc's families.
 std::string solver_options_help(std::string_view topic);
 
 }  // namespace floe

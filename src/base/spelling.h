@@ -1,5 +1,5 @@
 /// \file
-/// How far two words are from each other, for messages that name the nearest known one.
+/// Distances between words, for messages that name the nearest known word.
 #pragma once
 
 #include <span>
@@ -8,10 +8,11 @@
 
 namespace floe {
 
-/// Levenshtein's distance, a swap of neighbours counting as one.
+/// Returns the Levenshtein distance, with a swap of neighbours as one edit.
 int spelling_distance(std::string_view a, std::string_view b);
 
-/// The known word nearest to `word`, or nothing if all are farther than a third of its letters.
+/// Returns the known word nearest to `word`; empty if all are farther than max(2, a third of its
+/// letters).
 std::string nearest_word(std::string_view word, std::span<const std::string_view> known);
 
 }  // namespace floe

@@ -28,7 +28,7 @@ class UnionFind {
     a = find(a), b = find(b);
     parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
-  /// The lowest member of each index's set.
+  /// Returns the lowest member of each index's set.
   std::vector<std::int32_t> representatives() {
     for (std::size_t k = 0; k < parent_.size(); ++k)
       parent_[k] = find(static_cast<std::int32_t>(k));

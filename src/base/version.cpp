@@ -26,7 +26,7 @@ std::string petsc() {
          std::to_string(8 * sizeof(PetscInt)) + " bits)";
 }
 
-/// Libraries of MPI describe themselves in a sentence or more: its first part has the version.
+/// Returns the first part of MPI's description of itself, which has the version.
 std::string mpi() {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
   int length = 0;
@@ -41,7 +41,7 @@ std::string hdf5() {
   return "HDF5 " + numbers(major, minor, patch);
 }
 
-/// By what the compiler may use (the levels of the x86-64 psABI).
+/// Returns the level of the x86-64 psABI by the instructions that the compiler may use.
 constexpr std::string_view level() {
 #if defined(__AVX512F__) && defined(__AVX512BW__) && defined(__AVX512CD__) && \
     defined(__AVX512DQ__) && defined(__AVX512VL__)

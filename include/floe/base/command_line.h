@@ -8,26 +8,28 @@
 
 namespace floe {
 
-/// What the command line asks to be printed instead of a run.
+/// The help text that a command line requests instead of a run.
 struct Help {
   enum Kind { none, text, markdown };
   Kind kind = none;
-  std::string topic;  ///< "floe -help sheet": one section or key only; empty: all
+  std::string topic;  ///< "floe -help sheet": the section or key to print; empty: all options
 };
 
-/// Looks for -help and -help_markdown anywhere on the command line; needs no scene.
-/// The word after it, if it is no option, is the topic.
+/// Searches the whole command line for -help and -help_markdown; a scene is not needed. The word
+/// after -help is the topic unless it is an option.
 Help wants_help(int argc, const char* const* argv);
 
-/// What the words of a command line say.
+/// The contents of a parsed command line.
 struct CommandLine {
-  std::string scene;     ///< path: the first word; empty: -checkpoint_restart says it
-  GivenOptions options;  ///< of several values for one name the last
-  bool petscrc = true;   ///< petscrc files are read; not with -skip_petscrc
+  std::string scene;     ///< path, the first word; empty if -checkpoint_restart names the run
+  GivenOptions options;  ///< options by name; the last value of a repeated name is kept
+  bool petscrc = true;   ///< whether petscrc files are read; -skip_petscrc sets false
 };
 
-/// \throws InputError if the scene is missing and no -checkpoint_restart is given, or for stray
-/// words, --key, -key=value, and what PETSc would take from elsewhere (-options_file and its kin).
+/// Parses the command line.
+/// \throws InputError if the scene is missing and no -checkpoint_restart is given, and for stray
+/// words, --key, -key=value, and options with which PETSc would read further options from a file or
+/// a string (-options_file and similar).
 CommandLine read_command_line(int argc, const char* const* argv);
 
 }  // namespace floe

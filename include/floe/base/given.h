@@ -1,6 +1,6 @@
 /// \file
-/// The options that a user gave, as text, before anybody has looked at what they mean: those of
-/// floe and of PETSc alike, by the name that they have on the command line.
+/// The options that a user gave, as uninterpreted text: the options of floe and of PETSc alike, by
+/// their names on the command line.
 #pragma once
 
 #include <functional>
@@ -9,31 +9,31 @@
 
 namespace floe {
 
-/// Where an option was given; what stands further down wins.
+/// The source of an option. A later enumerator overrides an earlier one.
 enum class Source {
-  environment,   ///< PETSC_OPTIONS or a petscrc file: options of PETSc's only
-  checkpoint,    ///< what the run had that goes on from a checkpoint
-  scene,         ///< the scene's file
-  command_line,  ///< the words after it
+  environment,   ///< PETSC_OPTIONS or a petscrc file; for options of PETSc only
+  checkpoint,    ///< the options of the run that a checkpoint continues
+  scene,         ///< the file of the scene
+  command_line,  ///< the words after the scene's path
 };
 
-/// One option as it was given.
+/// One option as given.
 struct Given {
-  std::string value;  ///< empty: the bare name; items of a list are joined by commas
+  std::string value;  ///< empty for a bare name; items of a list are joined by commas
   Source source = Source::command_line;
   std::string place;     ///< for messages: "story.yaml, line 3", ".petscrc"; empty: none
-  bool is_list = false;  ///< given as a YAML list
+  bool is_list = false;  ///< whether the value is a YAML list
 };
 
-/// By name, without a dash, as in "sheet_length".
+/// Options by name without a dash, for example "sheet_length".
 using GivenOptions = std::map<std::string, Given, std::less<>>;
 
-/// All options of one run. Nothing of it is global: a process may hold several.
+/// All options of one run. The options are not global: a process may hold several sets.
 struct UserOptions {
   GivenOptions environment, scene, command_line;
-  GivenOptions checkpoint = {};  ///< of a run that goes on: all that it had
+  GivenOptions checkpoint = {};  ///< all options of the interrupted run, if this run continues one
 
-  /// One value per name, the winner's.
+  /// Returns one value per name, from the strongest source.
   GivenOptions merged() const;
 };
 

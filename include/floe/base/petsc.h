@@ -1,5 +1,6 @@
 /// \file
-/// What floe needs around PETSc: a checked call, an owning handle, and the life of a session.
+/// The layer between floe and PETSc: a checked call, an owning handle, and the lifetimes of MPI and
+/// PETSc.
 #pragma once
 
 #include <petsc.h>
@@ -15,36 +16,36 @@
 
 namespace floe {
 
-/// What ends a run with one line and an exit code. Always raised alike on all ranks, before any
-/// collective call that some rank would miss. Nothing else is caught by main.
+/// An exception that ends a run with one line and an exit code. All ranks raise it alike, before
+/// any collective call that some rank would miss. main catches no other exception.
 class Verdict : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What the user can put right: a scene, an option, a file (exit code 2). The text is one line that
-/// names the key, the value and what is allowed.
+/// An error that the user can correct: a scene, an option, a file (exit code 2). The text is one
+/// line that names the key, the value and the allowed values.
 class InputError : public Verdict {
  public:
   using Verdict::Verdict;
 };
 
-/// A run cannot go on (exit code 1).
+/// The run cannot continue (exit code 1).
 class RunFailed : public Verdict {
  public:
   using Verdict::Verdict;
 };
 
-/// A file of the results cannot be written (a full disk, no permission). May be raised on one rank
-/// alone; on_root() makes a RunFailed of it.
+/// A result file cannot be written (a full disk, no permission). One rank alone may raise it;
+/// on_root() turns it into a RunFailed.
 class FileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws if a PETSc (or MPI) call failed: InputError if the user asked for what PETSc does not
-/// have, otherwise std::runtime_error, which nobody catches: the terminate handler prints it and
-/// aborts all ranks (unwinding on one rank would run collective destructors and hang).
+/// Throws after a failed PETSc or MPI call: InputError if the user asked for something that PETSc
+/// lacks, otherwise std::runtime_error. Nothing catches the latter: the terminate handler prints it
+/// and aborts all ranks, because unwinding on one rank would run collective destructors and hang.
 [[noreturn]] void fail(int ierr, const std::source_location& where);
 
 inline void check(int ierr, const std::source_location& where = std::source_location::current()) {
@@ -64,8 +65,8 @@ inline PetscErrorCode destroy(MatNullSpace* n) { return MatNullSpaceDestroy(n); 
 inline PetscErrorCode destroy(PetscViewer* v) { return PetscViewerDestroy(v); }
 }  // namespace detail
 
-/// Owner of one PETSc object; move-only. Destruction is not checked (and is collective, as PETSc's
-/// is).
+/// Owner of one PETSc object; move-only. The result of the destruction is not checked. The
+/// destruction is collective, as in PETSc.
 template <class T>
 class Handle {
  public:
@@ -82,10 +83,10 @@ class Handle {
     if (object_) (void)detail::destroy(&object_);
   }
 
-  /// The object, borrowed.
+  /// Returns the object; the handle keeps the ownership.
   operator T() const { return object_; }  // NOLINT: PETSc calls take the bare object
   T get() const { return object_; }
-  /// Where a PETSc Create call puts a new object; what was held is given up first.
+  /// Returns the address that a PETSc Create call fills. Destroys the object held so far.
   T* put() {
     if (object_) (void)detail::destroy(&object_);
     object_ = nullptr;
@@ -96,16 +97,16 @@ class Handle {
   T object_ = nullptr;
 };
 
-/// What a rank does last when it ends on an error that nobody catches, beside printing it: told
-/// the line that was printed. Must not fail, nor wait for other ranks. Empty: nothing.
+/// Sets the function that a rank calls last, with the printed line, when it ends on an uncaught
+/// error. The function must neither fail nor wait for other ranks. An empty function removes it.
 void set_last_words(std::function<void(const std::string&)> last_words);
 
-/// MPI cannot end in order any more: a library that it would call has failed. The process then ends
-/// where Mpi would, with exit code 1.
+/// Marks MPI as unable to finalise, because a library that MPI_Finalize calls has failed. ~Mpi then
+/// ends the process with exit code 1.
 void give_up_on_mpi();
 
-/// MPI from construction to destruction; installs the terminate handler (print, last words,
-/// MPI_Abort).
+/// Holds MPI from construction to destruction, and installs the terminate handler (print, last
+/// words, MPI_Abort).
 class Mpi {
  public:
   Mpi(int& argc, char**& argv);
@@ -114,9 +115,9 @@ class Mpi {
   Mpi& operator=(const Mpi&) = delete;
 };
 
-/// PETSc from construction to destruction, with the options of PETSc's families among `user`; it
-/// reads no other: neither petscrc files nor PETSC_OPTIONS (read_environment does).
-/// \param program  the program's name, argv[0]
+/// Holds PETSc from construction to destruction, with the options of PETSc's families among `user`.
+/// PETSc reads no other options: neither petscrc files nor PETSC_OPTIONS (see read_environment).
+/// \param program  name of the program, argv[0]
 class Session {
  public:
   explicit Session(const char* program, const UserOptions& user = {});
@@ -131,7 +132,7 @@ class Session {
   char** word_ = nullptr;
 };
 
-/// This process's rank and the number of ranks.
+/// Return the rank of this process and the number of ranks.
 inline int rank(MPI_Comm comm = PETSC_COMM_WORLD) {
   int r = 0;
   MPI_Comm_rank(comm, &r);

@@ -4,21 +4,21 @@
 
 namespace floe {
 
-/// Linear rise from 0 to 1 over `seconds`, 1 from then on (0 s: 1 at once).
+/// A linear rise from 0 to 1 over `seconds`, constant at 1 afterwards (0 s: a jump at time 0).
 struct Ramp {
   double seconds = 0;
 
-  /// Factor at `time`.
+  /// Returns the factor at `time` [s].
   double value(double time) const {
     if (time >= seconds) return 1;
     return time > 0 ? time / seconds : 0;
   }
-  /// Its integral from 0 to `time` [s].
+  /// Returns the integral of the factor from 0 to `time` [s].
   double integral(double time) const {
     if (time <= 0) return 0;
     return time >= seconds ? time - 0.5 * seconds : 0.5 * time * time / seconds;
   }
-  /// Its rate [1/s], from the right; 0 if it rises at once.
+  /// Returns the rate of the factor at `time` [1/s], from the right; 0 for a jump.
   double slope(double time) const { return time >= 0 && time < seconds ? 1.0 / seconds : 0.0; }
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// Vectors and unit quaternions on any scalar: double, a lane of doubles, or one that carries
+/// Vectors and unit quaternions on any scalar: double, a vector of lanes, or a scalar that carries
 /// derivatives.
 ///
 /// Notation: quaternions are (w, x, y, z); q rotates body to world, v_world = q v_body q*; products
@@ -48,7 +48,8 @@ struct Quat {
   T w, x, y, z;
 };
 
-/// a b: first b, then a. The scalars may differ (a derivative type times constants).
+/// Returns the quaternion product a b: first the rotation b, then a. The scalars may differ (a
+/// derivative type times constants).
 template <class S, class T>
 auto product(const Quat<S>& a, const Quat<T>& b) {
   using P = std::conditional_t<std::is_arithmetic_v<S>, T, S>;
@@ -62,13 +63,13 @@ Quat<T> conjugate(const Quat<T>& q) {
   return {q.w, T(-q.x), T(-q.y), T(-q.z)};
 }
 
-/// Columns of the rotation matrix of a unit quaternion: where it takes the axes.
+/// The columns of the rotation matrix of a unit quaternion: the images of the three axes.
 template <class T>
 struct Triad {
   Vec3<T> e1, e2, e3;
-  /// Components of a world vector in the triad.
+  /// Returns the components in the triad of a world vector.
   Vec3<T> to_local(const Vec3<T>& v) const { return {dot(e1, v), dot(e2, v), dot(e3, v)}; }
-  /// World vector of local components.
+  /// Returns the world vector with the given components in the triad.
   Vec3<T> to_world(const Vec3<T>& v) const { return T(v.x) * e1 + T(v.y) * e2 + T(v.z) * e3; }
 };
 template <class T>
@@ -84,16 +85,16 @@ inline Vec3<double> rotate(const Quat<double>& q, const Vec3<double>& v) {
   return triad(q).to_world(v);
 }
 
-/// Unit quaternion of the rotation by |t| about t; exact to rounding for any t.
+/// Returns the unit quaternion of the rotation by |t| about t, to rounding for any t.
 inline Quat<double> exp_rotation(const Vec3<double>& t) {
   const double angle2 = dot(t, t);
   const double angle = std::sqrt(angle2);
-  // sin(a/2)/a: the series' next term is a^4/3840, below rounding for a < 1e-3.
+  // sin(a/2)/a as a series: the next term is a^4/3840, below rounding for a < 1e-3.
   const double s = angle < 1e-3 ? 0.5 - angle2 / 48.0 : std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), s * t.x, s * t.y, s * t.z};
 }
 
-/// Rotation vector of a unit quaternion, |t| <= pi.
+/// Returns the rotation vector t of a unit quaternion, |t| <= pi.
 inline Vec3<double> log_rotation(const Quat<double>& q) {
   const double sign = q.w < 0 ? -1.0 : 1.0;
   const double s = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
@@ -106,8 +107,8 @@ inline Quat<double> normalised(const Quat<double>& q) {
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 
-/// Unit quaternion of a right-handed orthonormal triad (Shepperd's choice of the largest
-/// component).
+/// Returns the unit quaternion of a right-handed orthonormal triad (Shepperd's choice of the
+/// largest component).
 inline Quat<double> quaternion(const Triad<double>& r) {
   const double xx = r.e1.x, yy = r.e2.y, zz = r.e3.z, trace = xx + yy + zz;
   if (trace >= xx && trace >= yy && trace >= zz) {
