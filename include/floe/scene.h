@@ -1,6 +1,6 @@
 /// \file
-/// A scene: everything a user says, as plain structs with defaults. Read once, in one place, from
-/// the table of options (src/scene/keys.cpp); nothing below this layer knows a key's name.
+/// A scene: all user input, as plain structs with defaults. It is read once, in one place, from the
+/// table of options (src/scene/keys.cpp); lower layers know no names of keys.
 #pragma once
 
 #include <array>
@@ -27,7 +27,8 @@ namespace floe {
 
 enum class Integrator { quasistatic, explicit_, implicit };
 
-/// Whether a model may leave out what does not move: by itself, always (or refuse), never.
+/// Whether a run takes the planar model: where the scene allows it, always (or the scene is
+/// refused), never.
 enum class Planarity { automatic, always, never };
 
 struct Region {
@@ -38,7 +39,7 @@ struct Region {
 struct Cut {
   std::string name;
   Point2 from{}, to{};  ///< [m]
-  /// The command line changed the sheet under it, so that it may cross no beam any more.
+  /// Whether the cut may cross no beam, since the command line changed the sheet.
   bool may_miss = false;
 };
 
@@ -48,6 +49,7 @@ struct Initial {
   Point3 angular_velocity{};  ///< [rad/s]
 };
 
+/// The input of a run.
 struct Scene {
   std::string path;  ///< the scene file
   std::string name;  ///< its stem
@@ -57,9 +59,9 @@ struct Scene {
     bool beam = false, fracture = false, gravity = false, buoyancy = false, drag = false,
          contact = false;
   } forces;
-  bool has_sheet = false;  ///< a sheet is meshed; otherwise lattice_file is read
+  bool has_sheet = false;  ///< whether a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
-  std::string mesh_file;  ///< where the sheet's relaxed generators are kept; empty: nowhere
+  std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;   ///< of the sheet [m]
   Ice ice;
   double shear_factor = 5.0 / 6.0;
@@ -73,28 +75,28 @@ struct Scene {
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;
-  double added_mass = 0;  ///< of the water that a body displaces at rest
+  double added_mass = 0;  ///< relative to the mass of water that a body displaces at rest
   ContactOptions contact;
   std::vector<Obstacle> obstacles;
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {
     double end = 1;
-    double dt = 0;  ///< 0: one step, from the stable step, or from the error
+    double dt = 0;  ///< step [s]; 0: one step, from the stable step, or from the error
     double safety = 0.9;
     bool allow_unstable = false;
   } time;
   struct {
     double velocity = 1000;             ///< [m/s]
-    double energy_error = 0.1;          ///< of the energies that moved
+    double energy_error = 0.1;          ///< relative to the energies that moved
     double steps = 1e11, frames = 1e5;  ///< a run that needs more is refused
     double disk = 1000;                 ///< [GB]
-    double memory = 0;                  ///< [GB]; 0: by what is free
+    double memory = 0;                  ///< [GB]; 0: by free memory
   } limit;
   std::vector<Initial> initials;
   struct {
     bool tension = false, bending = false;
-    bool may_go = false;  ///< asked for by the file, under a command line that may prevent it
+    bool may_go = false;  ///< the file asks for a report that the command line may prevent
   } report;
   struct {
     std::string dir;         ///< default out/NAME
@@ -104,32 +106,33 @@ struct Scene {
   } output;
   struct {
     double every = 600;   ///< wall time between two [s]
-    bool at_end = false;  ///< the scene has the section: one at the end too
-    /// Of the process, by the clock: a stop before it is over [s].
+    bool at_end = false;  ///< the scene has the section: a checkpoint at the end too
+    /// Wall time of the process [s]: the run stops before it is over.
     double wall_time = std::numeric_limits<double>::infinity();
     std::string restart;  ///< file to go on from; empty: from time 0
   } checkpoint;
   /// Key and path of each file that the scene names.
   std::vector<std::pair<std::string, std::string>> inputs;
   bool check_only = false;
-  std::string options_yaml;  ///< every option as used, PETSc's as given: what options.yaml holds
+  std::string options_yaml;  ///< contents of options.yaml: every option as used, PETSc's as given
   std::vector<std::string> remarks;      ///< for the first lines of a run
-  std::vector<std::string> warnings;     ///< numbers that look as if units were mistaken
-  std::set<std::string> unused_options;  ///< PETSc's that no error says if nothing asks for them
+  std::vector<std::string> warnings;     ///< about numbers that suggest mistaken units
+  std::set<std::string> unused_options;  ///< PETSc's, which no error reports if they are never read
 };
 
-/// Reads the scene from what the user gave. Collective.
-/// \param path  of the scene's file: its stem is the scene's name
-/// \throws InputError with one line that names the key, the value and what is allowed.
+/// Reads the scene from the user's options. Collective.
+/// \param path  path of the scene's file, whose stem is the scene's name
+/// \throws InputError with one line that names the key, the value and the allowed values
 Scene read_scene(const std::string& path, const UserOptions& user);
 
-/// The text of `floe -help`, the same table as Markdown (docs/options.md), and as part of the man
-/// page.
+/// Texts of the table of options: for `floe -help`, as Markdown (docs/options.md), and as a part of
+/// the man page (options_man()).
 std::string options_help();
 std::string options_markdown();
 
-/// Help of one section or key ("sheet", "sheet_length"); empty if there is no such thing.
+/// Returns the help of one section or key ("sheet", "sheet_length"); empty if there is none.
 std::string options_topic(const std::string& topic);
+/// Returns the table of options as a part of the man page.
 std::string options_man();
 
 }  // namespace floe

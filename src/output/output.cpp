@@ -23,11 +23,11 @@
 namespace floe {
 namespace {
 
-/// Where a load acts: local bodies and the arm at rest.
+/// Point of application of a load: local bodies and the arm at rest.
 struct LoadPoint {
   std::string name;
   std::vector<std::int32_t> bodies;
-  std::size_t count;  ///< over all ranks
+  std::size_t count;  ///< number of bodies over all ranks
   Vec3<double> arm;
 };
 
@@ -41,7 +41,8 @@ struct Output<Space>::Impl {
   Lattice lattice;  ///< rank 0
   std::vector<LoadPoint> loads;
   std::vector<std::pair<std::size_t, Point3>>
-      sets;  ///< per boundary: bodies in all, mean position at rest
+      /// Per boundary: number of bodies, mean position at rest.
+      sets;
   Gather bodies, beams;
   std::vector<std::int32_t> counted;  ///< local beams that this rank reports
   std::optional<Fields> fields;       ///< rank 0
@@ -115,16 +116,18 @@ void Output<Space>::Impl::open_files(const std::string& options_yaml, bool resta
   keep_what_frames_need();
   fields.emplace(dir, lattice, restarted ? memory.frames : -1);
   if (restarted)
-    std::filesystem::remove(dir + "/summary.json");  // it says how an earlier part ended
+    // The summary in the folder is that of an earlier part of the run.
+    std::filesystem::remove(dir + "/summary.json");
   write_whole(dir + "/options.yaml", options_yaml);
 }
 
-/// A large lattice is most of rank 0's memory.
+/// Frees the parts of the lattice that frames do not need: a large lattice is most of rank 0's
+/// memory.
 template <class Space>
 void Output<Space>::Impl::keep_what_frames_need() {
   Beams& b = lattice.beams;
   b.torsion = b.length = b.young = b.shear_modulus = b.shear_factor = b.shear_factor_y = {};
-  if (cracks) return;  // places and pieces of cracks
+  if (cracks) return;  // cracks need places and pieces
   b.axis_y = {};
   lattice.bodies.mass = {};
   lattice.bodies.inertia = lattice.bodies.velocity = lattice.bodies.angular_velocity = {};
@@ -201,7 +204,7 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
   return s;
 }
 
-/// The first line of history.csv: what the columns of a sample are.
+/// The first line of history.csv: names of a sample's columns.
 std::string header_of(const Sample& s) {
   constexpr const char* axes[] = {"x", "y", "z"};
   std::string line = "time";
@@ -246,7 +249,7 @@ void Output<Space>::Impl::write_row(const Sample& s) {
   on_root(part.comm, [&] { put_row(s); });
 }
 
-/// Rank 0.
+/// Writes a row; on rank 0.
 template <class Space>
 void Output<Space>::Impl::put_row(const Sample& s) {
   if (history->header().empty()) history->write_header(header_of(s));
@@ -286,7 +289,8 @@ void Output<Space>::Impl::write_frame(const State<Space>& state) {
               {}};
   if (model.beams() != nullptr) {
     std::vector<BeamSection> sections = model.beams()->sections(state);
-    for (std::size_t k = 0; k < counted.size(); ++k)  // counted[k] >= k
+    for (std::size_t k = 0; k < counted.size();
+         ++k)  // counted[k] >= k, so that entries can be moved in place
       sections[k] = sections[static_cast<std::size_t>(counted[k])];
     sections.resize(counted.size());
     frame.sections = beams(std::move(sections));
@@ -307,7 +311,8 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   Impl& me = *impl_;
   const double time = accepted.state.time;
   constexpr double early =
-      1e-9;  // of an interval: a sample due at a step's end is not missed by rounding
+      // Part of an interval, so that rounding does not miss a sample that is due at a step's end.
+      1e-9;
   OutputArchive& archive = me.memory;
   archive.last = me.sample(accepted);
   if (accepted.step == 0) archive.first = archive.last;

@@ -16,13 +16,15 @@
 
 namespace floe {
 
+/// Output settings of a run.
 struct OutputOptions {
   std::string dir;
   double history = 0;  ///< time between rows [s]; 0: every accepted step
   double fields = 0;   ///< time between frames [s]; 0: the first and the last state
 };
 
-/// Sums over a named boundary's bodies. Reactions are what the boundary exerts on the sheet.
+/// Sums over a named boundary's bodies. Force and moment are the reaction, which the boundary
+/// exerts on the sheet.
 struct BoundarySample {
   Point3 force{};         ///< [N]
   Point3 moment{};        ///< about the set's mean position at rest [N m]
@@ -35,43 +37,45 @@ struct Sample {
   std::map<std::string, BoundarySample> boundaries;
   std::map<std::string, Point3> loads;  ///< mean displacement of the points where loads act [m]
   std::vector<std::pair<std::string, double>>
-      forces;  ///< energies and counts, as the forces report them
+      /// Energies and counts that the forces report.
+      forces;
 };
 
-/// A sample with the columns of a run's rows and values of 0.
-/// \param names  of what forces and integrator report   \param breakable  beams may break
+/// Returns a sample with the columns of a run's rows and values of 0.
+/// \param names  columns of forces and integrator
+/// \param breakable  whether beams may break
 Sample columns_of(const std::vector<Boundary>& boundaries, const std::vector<Load>& loads,
                   const std::vector<std::string>& names, bool breakable);
 
-/// What the output of a run takes along over a restart.
+/// History of a run's output, which checkpoints keep.
 struct OutputArchive {
   Sample first, last;
   bool row_pending = false;  ///< `last` is not in history.csv
-  std::int64_t rows = 0;     ///< in history.csv, without its first line
-  std::int64_t frames = 0;   ///< in fields.h5
-  double next_history = 0;   ///< when the next row is due [s]
-  double next_fields = 0;    ///< when the next frame is due [s]
-  std::string run;           ///< what identifies the run whose files they are
+  std::int64_t rows = 0;     ///< rows in history.csv, without its first line
+  std::int64_t frames = 0;   ///< frames in fields.h5
+  double next_history = 0;   ///< time of the next row [s]
+  double next_fields = 0;    ///< time of the next frame [s]
+  std::string run;           ///< identifier of the run whose files these are
   void persist(Archive& archive);
 };
 
-/// Looks whether a folder holds the files that a restart goes on with; changes nothing. Collective.
-/// \param columns  a sample with the columns of this run's rows, whatever their values
-/// \throws InputError
+/// Checks whether a folder has the files with which a restart goes on; changes nothing. Collective.
+/// \param columns  a sample with the columns of this run's rows, with any values
+/// \throws InputError if rows or frames are missing, or columns differ
 void require_files(const std::string& dir, const OutputArchive& archive, const Sample& columns,
                    MPI_Comm comm);
 
-/// Takes every accepted state; writes on rank 0. Files of planar runs are those of spatial ones,
-/// with zeros. Collective throughout.
+/// Writes every accepted state on rank 0. Files of planar runs have the layout of spatial ones,
+/// with zeros. All calls are collective.
 template <class Space>
 class Output {
  public:
-  /// Writes lattice.h5 and options.yaml into the folder, which is there.
-  /// \param lattice  the whole lattice; rank 0 keeps a reference for the fields' geometry
-  /// \param restart  what a checkpoint says, or null: the files of that run are cut back to it and
-  /// go on
-  /// \param lattice  taken over; rank 0 keeps what frames are made of
-  /// \throws InputError if the folder does not hold the files to go on with
+  /// Writes lattice.h5 and options.yaml into the folder, which must exist.
+  /// \param lattice  the whole lattice, which is moved from; rank 0 keeps the parts that frames
+  ///   need
+  /// \param restart  history of the output from a checkpoint, or null; the files of that run are
+  ///   cut back to this history and continued
+  /// \throws InputError if the folder does not have the files to go on with
   Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
          const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
          const OutputArchive* restart = nullptr);
@@ -79,13 +83,14 @@ class Output {
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
+  /// Writes a row and a frame of the state if they are due.
   void accept(const Accepted<Space>& accepted);
   /// Writes the last accepted state if it is not on file yet.
   void finish();
-  /// Rows and frames so far outlive a crash of the machine.
+  /// Syncs rows and frames to the disk, so that they survive a crash of the machine.
   void sync();
 
-  /// What a checkpoint must know to cut the files back to this moment.
+  /// History with which a checkpoint can cut the files back to this moment.
   const OutputArchive& archive() const;
 
   const Sample& first() const;

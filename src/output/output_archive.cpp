@@ -5,7 +5,7 @@
 namespace floe {
 namespace {
 
-/// A sample as numbers, and the names of what they belong to.
+/// Converts a sample to numbers and the names of their columns.
 void flatten(const Sample& sample, std::string& names, std::vector<double>& values) {
   names.clear();
   values = {sample.time};

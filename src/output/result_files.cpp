@@ -24,7 +24,7 @@ bool may(const std::string& path, int what) {
   return ::faccessat(AT_FDCWD, path.c_str(), what, AT_EACCESS) == 0;
 }
 
-/// Why a run cannot have `path` for itself; empty: it can, or nothing is there.
+/// Returns why a run cannot have `path` for itself; empty if it can, or if there is no such path.
 std::string problem_of(const std::string& path, bool must_be_folder) {
   struct stat link {
   }, there{};

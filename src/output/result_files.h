@@ -1,5 +1,5 @@
 /// \file
-/// Whether what lies in an output folder lets a run write its results there.
+/// Check of an output folder: whether its contents let a run write its results there.
 #pragma once
 
 #include <span>
@@ -8,9 +8,10 @@
 
 namespace floe {
 
-/// \param names  of the files that a run writes; beside these there is the folder fields
-/// \throws InputError if one of the names is there as something else (a folder, a device, a pipe, a
-/// link that leads nowhere), or as a file that may not be changed. Nothing is touched.
+/// Checks the names of a run's results in a folder without changing anything.
+/// \param names  files that a run writes; the folder fields is checked too
+/// \throws InputError if one of the names exists as something else (a folder, a device, a pipe, a
+///   link that leads nowhere), or as a file that may not be changed
 void check_result_files(const std::string& dir, std::span<const std::string_view> names);
 
 }  // namespace floe

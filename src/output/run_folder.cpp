@@ -27,12 +27,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// What a run writes, beside temporary files.
+/// Files that a run writes, apart from temporary files.
 constexpr std::array<std::string_view, 10> results{
     "lattice.h5", "options.yaml", "history.csv",   "fields.h5",
     "fields.xmf", "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
     "floe.log",   "summary.json"};
-/// Removed when a run begins: what would contradict it until its own is written.
+/// Files removed when a run begins, since they would contradict it until it has written its own.
 constexpr std::array<std::string_view, 5> contradicting{
     "summary.json", "fields.xmf", "checkpoint.h5", "checkpoint_previous.h5", "breaks.h5"};
 /// Room on the disk for a summary that says that the disk is full.
@@ -50,7 +50,7 @@ fs::path whole_path(const fs::path& path) {
   return error ? fs::absolute(path, error) : whole;
 }
 
-/// Folders that no run may take: the root and the user's home.
+/// Whether a folder is one that no run may take: the root or the user's home.
 bool is_never_a_folder(const fs::path& dir) {
   const fs::path there = whole_path(dir);
   if (there == there.root_path()) return true;
@@ -65,7 +65,7 @@ bool is_folder_of_a_run(const fs::path& dir) {
                                      is_there(dir / "lattice.h5") && is_there(dir / "history.csv"));
 }
 
-/// Something in the folder that is not there to be overlooked; empty: it is as good as empty.
+/// Returns the name of an entry of the folder that must not be overlooked; empty if there is none.
 std::string first_entry(const fs::path& dir) {
   std::string first;
   std::error_code ignored;
@@ -78,7 +78,8 @@ std::string first_entry(const fs::path& dir) {
   return first;
 }
 
-/// Whether a path names a file in `dir` that a run writes, by whatever way it leads there.
+/// Returns the name of the result in `dir` to which a path leads, also through links; empty if it
+/// leads to none.
 std::string result_named(const fs::path& path, const fs::path& dir) {
   const fs::path folder = whole_path(dir);
   for (const fs::path& way :
@@ -125,7 +126,8 @@ std::string status_in(const fs::path& dir) {
   return summary["status"].get<std::string>();
 }
 
-/// How the run ended whose checkpoint is in the folder: empty if it came to its end, or left none.
+/// Describes how the run ended whose checkpoint is in the folder; empty if it is done, or if there
+/// is no checkpoint.
 std::string interrupted(const fs::path& dir) {
   if (!is_there(dir / "checkpoint.h5") && !is_there(dir / "checkpoint_previous.h5")) return {};
   const std::string status = status_in(dir);
@@ -145,7 +147,7 @@ void check_unfinished(const FolderWish& wish) {
                    " goes on with it, -output_overwrite begins anew");
 }
 
-/// All that can be seen before the lock is taken.
+/// Makes all checks that are possible before the lock is taken.
 void check_folder(const FolderWish& wish) {
   if (is_never_a_folder(wish.dir))
     throw InputError("output: dir: " + wish.dir +
@@ -167,7 +169,7 @@ std::string new_run() {
   return text.data();
 }
 
-/// Into the room that was kept for it. Only calls of the system: the disk may be full.
+/// Writes into the room that was reserved, by system calls only, since the disk may be full.
 bool write_into_reserve(const std::string& dir, const std::string& text) {
   const std::string path = dir + reserve;
   const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
@@ -261,7 +263,7 @@ void RunFolder::finish(const std::string& summary) {
 }
 
 void RunFolder::fail(const std::string& why) noexcept {
-  if (!begun_ && goes_on_) return;  // the files are those of the run that it would go on with
+  if (!begun_ && goes_on_) return;  // the files are those of the run to be continued
   try {
     if (!begun_ && impl_) begin_here({});
     const Json json{{"status", "failed"},  {"message", why},           {"time", time_},
@@ -274,7 +276,7 @@ void RunFolder::fail(const std::string& why) noexcept {
     } catch (const FileError&) {
       (void)write_into_reserve(dir_, text);
     }
-  } catch (...) {  // NOLINT: nothing is left that could be done
+  } catch (...) {  // NOLINT: nothing more can be done
   }
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// The output folder of a run, from before anything in it is touched to the summary.
+/// The output folder of a run, from the checks before anything in it changes to the summary.
 #pragma once
 
 #include <memory>
@@ -11,55 +11,57 @@
 
 namespace floe {
 
-/// What a run wants of its folder.
+/// A run's claim to its folder.
 struct FolderWish {
   std::string dir;
   std::string scene;  ///< the scene file; may be the folder's own options.yaml
   std::vector<std::pair<std::string, std::string>>
-      inputs;              ///< key and path of other files it reads
-  bool overwrite = false;  ///< what an interrupted run, or somebody else, left may be lost
-  bool goes_on = false;    ///< a restart: the folder's files are needed
+      /// Key and path of other files that the run reads.
+      inputs;
+  bool overwrite = false;  ///< results of an interrupted run or of others may be lost
+  bool goes_on = false;    ///< a restart, which needs the folder's files
 };
 
-/// The first line of the options.yaml that floe writes.
+/// Returns the first line of the options.yaml that floe writes.
 std::string options_heading();
 
-/// Takes the lock of the folder, and refuses what would lose something. Until begin() nothing is
-/// touched. Collective but for fail().
+/// Locks the folder and refuses runs that would lose data. Nothing in the folder changes before
+/// begin(), apart from the lock. All calls but fail() are collective.
 class RunFolder {
  public:
-  /// \throws InputError if the folder is the root, a home, somebody else's, in use, or holds the
-  /// checkpoint of a run that has not come to its end; or if an input would be overwritten
+  /// \throws InputError if the folder is the root, a home, not that of a run, in use, or holds the
+  ///   checkpoint of a run that is not done; or if an input would be overwritten
   RunFolder(const FolderWish& wish, MPI_Comm comm);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
-  /// What would have been thrown, as one line; empty: nothing. For a scene that is only checked.
+  /// Returns the message that the constructor would throw, as one line; empty if it would throw
+  /// none. For a scene that is only checked. Collective.
   static std::string problem(const FolderWish& wish, MPI_Comm comm);
 
-  /// How the run ended whose files are in a folder: the status in its summary.json, "unknown" where
-  /// that cannot be read; empty if there is none. On one rank.
+  /// Returns the status in the summary.json of a folder, "unknown" if it cannot be read, an empty
+  /// string if there is none. Not collective.
   static std::string status(const std::string& dir);
-  /// The time at which its summary says that it ended [s]; 0 if it does not say.
+  /// Returns the time at which that run ended, by its summary [s]; 0 if the summary has none.
   static double time(const std::string& dir);
-  /// What identifies that run; empty if nobody knows. On one rank.
+  /// Returns the identifier of that run; empty if it is not known. Not collective.
   static std::string run_in(const std::string& dir);
 
-  /// What identifies the run whose files are in the folder; empty if nobody knows. On all ranks.
+  /// Identifier of the run whose files are in the folder; empty if it is not known. On all ranks.
   const std::string& run() const { return run_; }
-  /// From here on the run writes its files; those of an earlier one are removed unless it goes on.
-  /// \param run  of a run that goes on; empty: a new one
+  /// Begins to write files; those of an earlier run are removed unless it goes on.
+  /// \param run  identifier of a run that goes on; empty: a new run
   void begin(const std::string& run = {});
   bool has_begun() const { return begun_; }
 
-  /// summary.json, whole. The run has come to an end.
+  /// Writes the whole summary.json at the end of the run.
   void finish(const std::string& summary);
-  /// Writes a summary that says failed, when and why, as well as it can: also from one rank alone
-  /// and where the disk is full. If the run has not begun yet, it begins with this, unless it is to
-  /// go on with another. Never fails.
+  /// Writes a summary with the status failed, the time and the reason, as far as possible: also on
+  /// a single rank and where the disk is full. If the run has not begun yet, it begins with this,
+  /// unless it was to go on with another. Never fails.
   void fail(const std::string& why) noexcept;
-  /// Where the run has got to, for fail().
+  /// Stores the time [s] and the step that fail() reports.
   void note(double time, long long step) { time_ = time, step_ = step; }
 
  private:

@@ -37,7 +37,7 @@ std::string contents(const std::string& path) {
   return text.str();
 }
 
-/// The line "NAME VALUE" of a lock's text.
+/// Returns VALUE of the line "NAME VALUE" in a lock's text.
 std::string value_of(const std::string& text, const std::string& name) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
@@ -73,7 +73,7 @@ bool is_missing_feature(int error) {
   return error == ENOLCK || error == ENOSYS || error == EOPNOTSUPP || error == ENOTSUP;
 }
 
-/// The first of the folders of a path that is not there yet; empty if all are.
+/// Returns the first folder of a path that does not exist yet; empty if all exist.
 std::string first_missing(const fs::path& dir) {
   std::error_code ignored;
   fs::path missing, there = fs::absolute(dir, ignored).lexically_normal();
@@ -89,7 +89,8 @@ std::string first_missing(const fs::path& dir) {
 
 RunLock::RunLock(const std::string& dir)
     : dir_(dir), path_(dir + "/.lock"), held_path_(dir + "/.lock.held"), made_(first_missing(dir)) {
-  // A run that gives up may remove the folder that it made at any moment.
+  // A run that gives up may remove the folder that it made at any moment, so making and opening are
+  // repeated.
   constexpr int enough = 100;
   for (int attempt = 0; file_ < 0; ++attempt) {
     std::error_code error;
@@ -103,7 +104,7 @@ RunLock::RunLock(const std::string& dir)
   write("floe run " + run_ + "\n" + myself());
 }
 
-/// Leaves file_ < 0 if the file went away again.
+/// Opens the lock's file; leaves file_ < 0 if the file was removed meanwhile.
 void RunLock::open() {
   file_is_new_ = false;
   file_ = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
@@ -123,7 +124,7 @@ void RunLock::open() {
 
 void RunLock::lock() {
   int why = 0;
-  // Who asks for the holder has the lock for a moment.
+  // A process that asks for the holder has the lock for a moment.
   constexpr int tries = 5;
   for (int k = 0; k < tries; ++k) {
     why = ::flock(file_, LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
@@ -146,7 +147,7 @@ void RunLock::lock() {
   if (!same) ::close(std::exchange(file_, -1));
 }
 
-/// Only one process can make a file anew, on any file system.
+/// Locks by creating a file: on any file system only one process can create it.
 void RunLock::lock_without_flock(int why) {
   warning_ = "output: dir: " + dir_ + " is on a file system without flock (" + std::strerror(why) +
              "): the file .lock.held locks it, which a run that is killed leaves behind";
@@ -174,7 +175,7 @@ void RunLock::lock_without_flock(int why) {
   cannot("lock", dir_, error);
 }
 
-/// Not being able to say who holds the lock is no reason to give it up.
+/// Writes the lock's text. If that fails the lock stays valid.
 void RunLock::write(const std::string& text) const {
   if (::ftruncate(file_, 0) == 0) (void)!::pwrite(file_, text.data(), text.size(), 0);
 }
@@ -191,7 +192,8 @@ RunLock::~RunLock() {
   if (!kept_ && file_is_new_) {
     std::remove(path_.c_str());
     std::error_code ignored;
-    // Folders that were made for this run, from the inside out, as long as they are empty.
+    // Removes the folders that were made for this run, from the innermost outwards, while they are
+    // empty.
     fs::path folder = fs::absolute(dir_, ignored).lexically_normal();
     if (folder.filename().empty()) folder = folder.parent_path();
     const auto outside = fs::path(made_).parent_path();

@@ -1,35 +1,35 @@
 /// \file
-/// One run at a time writes into a folder.
+/// The lock by which only one run at a time writes into a folder.
 #pragma once
 
 #include <string>
 
 namespace floe {
 
-/// The lock of an output folder: flock on its file .lock, which says who holds it and stays. The
-/// system frees it whatever ends the process. On file systems without flock a file .lock.held takes
-/// its place, which a process that is killed leaves behind. Lives on rank 0.
+/// The lock of an output folder: flock on its file .lock, which names the holder and stays in the
+/// folder. The system releases flock however the process ends. On file systems without flock a file
+/// .lock.held takes its place, which a killed process leaves behind. Lives on rank 0.
 class RunLock {
  public:
-  /// Makes the folder if it is not there, and takes its lock.
-  /// \throws InputError if another run holds it, or if there can be no such folder; FileError where
-  /// the disk is full
+  /// Makes the folder if it does not exist, and locks it.
+  /// \throws InputError if another run holds the lock, or if the folder cannot be made
+  /// \throws FileError if the disk is full
   explicit RunLock(const std::string& dir);
-  /// Gives the lock back. Unless keep() was called, all is as it was before.
+  /// Releases the lock. Unless keep() was called, the folder is then as it was before.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
 
-  /// What identifies the run whose files are in the folder; empty if nobody knows.
+  /// Identifier of the run whose files are in the folder; empty if it is not known.
   const std::string& run() const { return run_; }
-  /// From here on the folder holds this run's files.
+  /// Marks the folder as holding the files of this run.
   void keep(const std::string& run);
-  /// What the user should know of the lock; empty: nothing.
+  /// Warning about the lock for the user; empty if there is none.
   const std::string& warning() const { return warning_; }
 
-  /// What identifies the run whose files are in a folder; empty if nobody knows.
+  /// Returns the identifier of the run whose files are in a folder; empty if it is not known.
   static std::string run_in(const std::string& dir);
-  /// Who holds the lock of a folder, as one line; empty if nobody does. Changes nothing.
+  /// Returns the holder of a folder's lock as one line; empty if nobody holds it. Changes nothing.
   static std::string holder(const std::string& dir);
 
  private:

@@ -2,8 +2,8 @@
 
 namespace floe {
 
-/// The datasets of write_lattice(), Fields and DynamicRun::persist(), and what HDF5 takes for each
-/// of them and XDMF for each frame.
+/// Counts the datasets of write_lattice(), Fields and DynamicRun::persist(), and the overhead of
+/// HDF5 for each of them and of XDMF for each frame.
 OutputSize output_size(const Lattice& lattice, bool breakable, std::size_t boundaries,
                        std::size_t loads, std::size_t obstacles) {
   constexpr double real = 8, single = 4, index = 4;

@@ -1,5 +1,5 @@
 /// \file
-/// How large the output of a run will be, before it is made.
+/// Expected size of the output of a run, before the run is made.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,18 @@
 
 namespace floe {
 
-/// Bytes on disk, about.
+/// Approximate sizes on disk [B].
 struct OutputSize {
   double once = 0;        ///< lattice.h5 and the mesh of the frames
-  double frame = 0;       ///< of fields.h5 and fields.xmf
-  double row = 0;         ///< of history.csv
-  double checkpoint = 0;  ///< of dynamics
+  double frame = 0;       ///< a frame, in fields.h5 and fields.xmf
+  double row = 0;         ///< a row of history.csv
+  double checkpoint = 0;  ///< a checkpoint of dynamics
 };
 
-/// \param lattice  whole, nothing of it folded   \param breakable  beams may break
+/// Estimates the size of a run's output.
+/// \param lattice  whole, not packed
+/// \param breakable  whether beams may break
+/// \param boundaries, loads, obstacles  numbers of these in the scene
 OutputSize output_size(const Lattice& lattice, bool breakable, std::size_t boundaries,
                        std::size_t loads, std::size_t obstacles);
 

@@ -22,9 +22,11 @@
 namespace floe {
 namespace {
 
-constexpr std::uint8_t z_rx_ry = 0b011100;  ///< of x y z rx ry rz, those out of plane
+constexpr std::uint8_t z_rx_ry =
+    0b011100;  ///< bits of the components out of the plane, of x y z rx ry rz
 
-/// A floating sheet's mid-plane: its draft is h rho_i/rho_w; without buoyancy it lies at z = 0.
+/// Height of a sheet's mid-plane [m]: a floating sheet has the draft h rho_i/rho_w, one without
+/// buoyancy lies at z = 0.
 double mid_plane(const Scene& scene) {
   if (!scene.forces.buoyancy) return 0;
   const double relative_density = scene.ice.density / scene.water_density;
@@ -60,7 +62,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   return make_sheet(cells, section);
 }
 
-/// Bodies cut by the water surface where they lie at rest.
+/// Marks the bodies that the water surface cuts when they are at rest.
 std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
   std::vector<std::uint8_t> at(static_cast<std::size_t>(lattice.bodies.size()), 0);
   const Shapes& shapes = lattice.shapes;
@@ -171,13 +173,15 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
 
 namespace {
 
-/// A body carries what acts at a point on it or on its beams, not far away: where a lattice has no
-/// outline, a point is refused that is farther than any body of its inertia and beams may reach.
+/// Refuses a load's point that is far from its body: the body carries loads on itself or on its
+/// beams. Where a lattice has no outline, the limit is the largest distance that a body of this
+/// inertia and with these beams can reach.
 void check_point(const PlacedLoad& placed, const Lattice& lattice) {
   const auto body = static_cast<std::size_t>(placed.bodies.front());
   const Bodies& bodies = lattice.bodies;
   const auto& inertia = bodies.inertia[body];
-  constexpr double widest = 4;  // farthest point over radius of gyration: a rod has 1.7, a cone 2.5
+  // Largest distance over radius of gyration: a rod has 1.7, a cone 2.5.
+  constexpr double widest = 4;
   double reach =
       widest * std::sqrt(*std::max_element(inertia.begin(), inertia.end()) / bodies.mass[body]);
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
@@ -210,7 +214,7 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
 template <class Space>
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model) {
   const Part& part = model.part();
-  if constexpr (std::is_same_v<Space, Spatial>) {  // cracks and what acts along z
+  if constexpr (std::is_same_v<Space, Spatial>) {  // fracture, and forces along z
     if (scene.forces.fracture) {
       BreakableForce breakable = make_breakable_beams(part, scene.beam, scene.fracture);
       model.set_fracture(breakable.fracture);
@@ -248,7 +252,7 @@ bool needs_shapes(const Scene& scene) {
 
 template <class Space>
 void release_setup(const Scene& scene, Model<Space>& model) {
-  if (!scene.forces.fracture) model.release_sections();  // cracks have the width of their beams
+  if (!scene.forces.fracture) model.release_sections();  // cracks need the widths of their beams
   if (!scene.forces.buoyancy && !scene.forces.drag) model.release_shapes();
 }
 

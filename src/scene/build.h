@@ -1,5 +1,5 @@
 /// \file
-/// From a scene to what runs: sheet -> lattice -> model -> forces, and back to a summary.
+/// From a scene to a run: sheet -> lattice -> model -> forces, and back to a summary.
 #pragma once
 
 #include <functional>
@@ -15,14 +15,15 @@
 
 namespace floe {
 
-/// What a sheet's strength is, and what its beams must have for it to be the given one (model.md
-/// section 12).
+/// Strength of an uncalibrated sheet, and the factor on its beams' strengths that gives the sheet
+/// the scene's strength (model.md, "Fracture").
 struct StrengthCalibration {
-  double along_x = 1, along_y = 1;  ///< of the uncalibrated sheet at its first break, over sigma_t
-  double factor = 1;                ///< for the beams' strengths
+  double along_x = 1,
+         along_y = 1;  ///< mean stress at the first break of the uncalibrated sheet, over sigma_t
+  double factor = 1;   ///< of the beams' strengths
 };
 
-/// What mesh and calibration say of themselves.
+/// Results of mesh and calibration.
 struct MeshReport {
   double energy_ratio = 0;
   double largest_move = 0;
@@ -31,45 +32,48 @@ struct MeshReport {
   std::optional<Calibration> calibration;
   std::optional<StrengthCalibration> strength;
   std::function<void()> keep = [] {
-  };  ///< writes the mesh's file, if it is to be written. Collective
+    /// Writes the mesh's file, if one is to be written. Collective.
+  };
 };
 
-/// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. Collective;
-/// the lattice is whole and the same on every rank. \throws InputError for what a file or a scene
-/// has wrong
+/// Meshes the sheet or reads the file, makes cuts and regions, orders bodies and beams. The lattice
+/// is whole and the same on every rank. Collective.
+/// \throws InputError for errors in the file or the scene
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
 
-/// Stretches the whole, unscattered sheet along x and along y, in its plane and for small
-/// displacements, each time to where the first beam reaches its strength. Collective.
+/// Measures a sheet's strength: stretches the whole sheet, its beams without scatter, along x and
+/// along y in its plane with small displacements, each time until the first beam reaches its
+/// strength (model.md, "Fracture"). Collective.
 /// \param lattice  with the sets left, right, bottom and top
 StrengthCalibration calibrate_strength(const Scene& scene, const Lattice& lattice, MPI_Comm comm);
 
-/// Gives the beams what makes the scene's strengths the sheet's.
+/// Multiplies the strengths in the scene by the factor of the calibration.
 void strengthen(Scene& scene, const StrengthCalibration& c);
-/// One line for the user.
+/// Describes the calibration in one line for the user.
 std::string text_of(const StrengthCalibration& c);
 
 /// Sets the velocities of the scene's `initial` sections. \throws InputError for an unknown set
 void set_initial(const Scene& scene, Lattice& lattice);
 
-/// What a scene does not need, decided once.
+/// Choice of the model: the parts that a scene does not need, decided once.
 struct ModelChoice {
-  bool planar = false;      ///< nothing loads, moves or prescribes anything out of the plane
-  std::string needs_space;  ///< why it is not planar; empty if it is, or need not be
-  std::string text;         ///< one line: "planar, linear, undamped, no water, no contact"
+  bool planar = false;  ///< nothing loads, moves or prescribes anything out of the plane
+  std::string
+      needs_space;   ///< reason why it is not planar; empty if it is, or if any model would do
+  std::string text;  ///< one line: "planar, linear, undamped, no water, no contact"
 };
-/// \throws InputError if the scene says `planar: true` and cannot be
+/// Chooses the model. \throws InputError if the scene asks for `planar: true` and is not planar
 ModelChoice choose_model(const Scene& scene, const Lattice& lattice);
 
-/// Where an explicit run writes its checkpoints.
+/// Returns the path of a run's checkpoint.
 std::string checkpoint_file(const Scene& scene);
 
 /// Runs the scene's integrator. Collective.
-/// \param rest  what a planar model leaves out; null for a spatial one
-/// \param lattice_id  its fingerprint, for checkpoints
-/// \param on_plan  is told what the run will do before its first step; false: it is not made
+/// \param rest  the part that a planar model leaves out; null for a spatial model
+/// \param lattice_id  fingerprint of the lattice, for checkpoints
+/// \param on_plan  receives the plan before the first step; false: the run is not made
 /// \param prepare  as CheckpointOptions::prepare
-/// \param others  what checkpoints keep beside the integrator's state
+/// \param others  as CheckpointOptions::others
 template <class Space>
 RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
                     const std::string& lattice_id, const OnPlan& on_plan,
@@ -77,42 +81,47 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
                     const std::function<void(const std::vector<std::string>&)>& prepare,
                     const std::function<void(Archive&)>& others);
 
-/// Lines that say what a run is going to do and to take. \param memory  of all ranks, at present
-/// [bytes]   \throws InputError if it needs more than the scene's limits allow
+/// Returns the lines that describe the plan of a run and what it needs.
+/// \param memory  of all ranks, at present [bytes]
+/// \throws InputError if the run needs more than the scene's limits allow
 std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize& size,
                       double memory);
 
-/// The scene's loads on the lattice's bodies. \throws InputError for an unknown set
+/// Places the scene's loads on the lattice's bodies. \throws InputError for an unknown set or a
+/// point beside the lattice
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);
 
-/// Adds the forces that the scene names to the model, and its loads.
+/// Adds the scene's forces and loads to the model.
 /// \throws InputError if the lattice cannot carry one (buoyancy without shapes)
 template <class Space>
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model);
 
-/// Adds contacts, if the scene names them. \param lattice  whole
+/// Adds contact, if the scene names it.
+/// \param lattice  whole
 /// \throws InputError if bodies have no shapes or are not convex
 template <class Space>
 void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model);
 
-/// Whether some force looks at the bodies' shapes.
+/// Whether any force needs the bodies' shapes.
 bool needs_shapes(const Scene& scene);
 
-/// Lets go of what only making the forces needed. Beside that a large sheet's steps are small.
+/// Frees data that only the set-up of forces needed: beside these data the steps of a large sheet
+/// need little memory.
 template <class Space>
 void release_setup(const Scene& scene, Model<Space>& model);
 
-/// Takes free rigid motions out of a static problem.
-/// \throws InputError if a load pushes one of them: the scene has no equilibrium
+/// Pins the free rigid motions of a static problem. Collective.
+/// \throws InputError if a load pushes one of them, so that the scene has no equilibrium
 template <class Space>
 void hold_free_motions(const Scene& scene, const Lattice& lattice, Model<Space>& model);
 
-/// What a planar model of a static problem leaves out.
+/// Returns the part of a static problem that a planar model leaves out.
 OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
                         const std::vector<PlacedLoad>& loads, const Part& part);
 
-/// \throws InputError if the scene is not the test that it wants reported; if the command line may
-/// be the cause, the report is left out with a remark instead
+/// Checks that the scene is the test that it wants reported. If the command line may be the cause
+/// that it is not, the report is dropped with a remark.
+/// \throws InputError if the scene is not that test for another reason
 void check_reports(Scene& scene);
 
 /// summary.json of a run, and the lines that a user reads at its end.
