@@ -40,7 +40,7 @@ Triad<double> beam_triad(const Bodies& bodies, const Beams& beams, std::int32_t 
 }
 
 bool is_flat(const Bodies& bodies, const Beams& beams, std::int32_t m) {
-  constexpr double rounding = 2e-15;  // of two vectors made unit and orthogonal
+  constexpr double rounding = 2e-15;  // of orthonormalisation
   const auto [e1, e2, e3] = beam_triad(bodies, beams, m);
   return e1.z == 0 && std::abs(e2.z) <= rounding && std::abs(e2.x + e1.y) <= rounding &&
          std::abs(e2.y - e1.x) <= rounding;

@@ -11,8 +11,8 @@
 namespace floe {
 namespace {
 
-/// The x > 0 at which an increasing function takes a value, by bisection; the least positive number
-/// worth having if it lies above the value there already.
+/// The x > 0 at which an increasing function takes a value, by bisection. About 1e-9 if the
+/// function is above the value there already.
 double solve(const auto& increasing, double value) {
   double low = 1e-9, high = 1;
   while (increasing(high) < value) high *= 2;
@@ -23,8 +23,8 @@ double solve(const auto& increasing, double value) {
   return high;
 }
 
-/// Per beam: whether its facet ends on the sheet's edge, that is whether both of its bodies lie on
-/// one side.
+/// Per beam: whether its facet ends on the edge of the sheet, that is, whether both bodies lie on
+/// one side of the sheet.
 std::vector<std::uint8_t> edge_beams(const Lattice& lattice) {
   std::vector<std::uint8_t> at_edge(lattice.beams.bodies.size(), 0);
   for (const char* side : {"left", "right", "bottom", "top"}) {
@@ -48,8 +48,8 @@ std::complex<double> fourfold(const Lattice& lattice, std::size_t m) {
   return square * square / std::norm(square);
 }
 
-/// K and D(1 + nu) need k_n and k_by times 1/(1 - nu), whatever the cells; G and D(1 - nu) then
-/// give r and g.
+/// Gives a sheet the E, nu, D and nu_b of its ice. K and D(1 + nu) of the plate need k_n and k_by
+/// times 1/(1 - nu), whatever the cells; G and D(1 - nu) then determine r and g.
 void make_isotropic(Lattice& lattice, const Ice& ice, Calibration& c) {
   const double nu = ice.poisson;
   c.scale = 1 / (1 - nu);
@@ -61,17 +61,19 @@ void make_isotropic(Lattice& lattice, const Ice& ice, Calibration& c) {
   c.ratios.torsion =
       solve([&](double g) { return twist_stiffness(g, c.ratios.transverse, chi); }, shape);
 
-  // Mean directions of beams are not quite even. Of k_n n n n n + k_s t n t n the part that turns
-  // four times has the factor k_n - k_s: uneven k_s, and k_t likewise, make up for it.
+  // The directions of the beams are not quite evenly distributed. The part of the affine stiffness
+  // k_n n n n n + k_s t n t n that turns four times has the factor k_n - k_s, so a k_s that varies
+  // with the direction removes it; k_t likewise.
   const auto evened = [&](double ratio) {
     const std::complex<double> amplitude = 2 * (1 - ratio) * std::conj(c.ratios.texture);
-    const double most = 0.9 * ratio;  // or some would be negative
+    const double most = 0.9 * ratio;  // keeps all stiffnesses positive
     return amplitude * std::min(1.0, most / std::max(std::abs(amplitude), most));
   };
   const std::complex<double> shear_wave = evened(c.ratios.shear),
                              torsion_wave = evened(c.ratios.torsion);
 
-  // At a free edge an isotropic plate contracts freely, but the facets there are wider than inside.
+  // An isotropic plate contracts freely at a free edge. The facets there are wider than inside and
+  // would make the edge too stiff, so its beams are softened (measured).
   const double edge = 1 - 0.6 * nu;
   const std::vector<std::uint8_t> at_edge = edge_beams(lattice);
   Beams& b = lattice.beams;
@@ -108,7 +110,7 @@ Calibration calibrate(Lattice& lattice, const Ice& ice, Calibrate kind, Shear sh
   c.moduli = lattice_moduli(c.ratios, ice.poisson, shear);
   c.moduli.young *= c.scale, c.moduli.shear *= c.scale;
   c.moduli.bulk *= c.scale, c.moduli.bending *= c.scale;
-  // Measured on sheets of 462 to 7391 bodies, of 5 Lloyd iterations to 150 of quasi_newton.
+  // Measured on sheets of 462 to 7391 bodies, from 5 Lloyd iterations to 150 of quasi_newton.
   const double formula = 0.001 * (1 + std::pow(c.ratios.irregularity / 0.15, 2));
   const double bodies = lattice.bodies.size();
   const auto scatter = [&](double of_one) {

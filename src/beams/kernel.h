@@ -1,15 +1,15 @@
 /// \file
-/// One beam: strain energy and its exact gradient, on any scalar (model.md section 2).
+/// One beam: strain energy and its exact gradient, on any scalar (model.md, "Beam").
 ///
-/// Two rigid bodies i and j, displaced by u_i, u_j and rotated by q_i, q_j from the state at rest,
-/// are joined by a shear-flexible beam from centroid to centroid, whose triad at rest is T (e1
-/// along the beam). All is computed in T: there the chord at rest is (l0, 0, 0) and small rotations
-/// are small numbers, so that strains keep their relative precision down to 1e-12 where components
-/// in the world would leave 1e-16 of l0.
+/// A shear-flexible beam joins the centroids of two rigid bodies i and j, which are displaced by
+/// u_i, u_j and rotated by q_i, q_j from the state at rest. The triad of the beam at rest is T,
+/// with e1 along the beam. All is computed in T, where the chord at rest is (l0, 0, 0) and small
+/// rotations are small numbers. So strains keep their relative precision down to 1e-12, where
+/// components in world axes would be rounded to 1e-16 of l0.
 ///
 ///     d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
-///     a, b = q_i, q_j with vector parts taken to T (the triads that the bodies carry, seen from T)
-///     r = a* b = (w, v) with the sign that makes w >= 0
+///     a, b = q_i, q_j with vector parts in T     the triads that the bodies carry, seen from T
+///     r = a* b = (w, v), with the sign for w >= 0
 ///     psi = 2 atan2(|v|, w) v/|v|                relative rotation [rad]
 ///     m = (a + b)/|a + b|, E = R_m^T e           the chord in the mean triad
 ///     Delta = d.(2 (l0, 0, 0) + d)/(l + l0)      elongation [m], exact at any rotation and strain
@@ -30,7 +30,7 @@
 
 namespace floe {
 
-/// A triad that stands anywhere: components of a world vector in it, and back.
+/// A triad of any orientation, to take vectors from world axes to the triad and back.
 template <class C>
 struct AnyFrame {
   Vec3<C> e1, e2, e3;
@@ -46,8 +46,8 @@ struct AnyFrame {
             T(T(e1.z * v.x) + T(e2.z * v.y)) + T(e3.z * v.z)};
   }
 };
-/// A triad with e3 along z, e1 = (c, s, 0): that of every beam of a sheet. Less to load, less to
-/// multiply.
+/// A triad with e3 along z and e1 = (c, s, 0), as every beam of a sheet has. It has fewer numbers
+/// to load and to multiply.
 template <class C>
 struct FlatFrame {
   C c, s;
@@ -62,15 +62,15 @@ struct FlatFrame {
   }
 };
 
-/// What a beam is at rest: its triad, its length [m], its stiffnesses [N/m, N m].
+/// Constants of a beam.
 template <class C, template <class> class Frame = AnyFrame>
 struct BeamConstants {
-  Frame<C> rest;
-  C l0;
-  C kn, ksz, ksy, kt, kby, kbz;
+  Frame<C> rest;                 ///< triad at rest
+  C l0;                          ///< length at rest [m]
+  C kn, ksz, ksy, kt, kby, kbz;  ///< stiffnesses [N/m, N m]
 };
 
-/// The six strains, and what the gradient needs with them.
+/// The six strains, and intermediate results that the gradient needs.
 template <class T>
 struct BeamStrains {
   T delta, gamma_y, gamma_z;  ///< [m]
@@ -89,16 +89,18 @@ struct BeamGradient {
   Vec3<T> force, moment_i, moment_j;
 };
 
-/// Functions of s2 = |v|^2 that rotations need: h = (1 - asin(s)/s)/s2 and 1/|a + b| =
-/// 1/sqrt(2 (1 + w)), w = sqrt(1 - s2). Below |v| = 0.1 (a relative rotation of 11 degrees) their
-/// series, whose first terms left out are 1e-17; above it the closed forms.
+/// Functions of s2 = |v|^2 that rotations need: h = (1 - asin(s)/s)/s2 and inverse_sum =
+/// 1/|a + b| = 1/sqrt(2 (1 + w)), with w = sqrt(1 - s2). Below |v| = 0.1 (a relative rotation of 11
+/// degrees) they are summed as series, whose first omitted terms are 1e-17; above it the closed
+/// forms are used.
 template <class T>
 struct HalfAngle {
   T h, inverse_sum;
 };
 template <class T>
 HalfAngle<T> half_angle_series(const T& s2) {
-  // By halves (Estrin's scheme): a block waits for these, and Horner's would be twice as long.
+  // Estrin's scheme: a block waits for these sums, and the dependency chain of Horner's scheme
+  // would be twice as long.
   const T x2 = T(s2 * s2), x4 = T(x2 * x2);
   const auto sum = [&](double c0, double c1, double c2, double c3, double c4, double c5, double c6,
                        double c7) {
@@ -109,13 +111,14 @@ HalfAngle<T> half_angle_series(const T& s2) {
   // asin(s)/s = sum c_k s^2k, c_k = (2k)!/(4^k k!^2 (2k+1)) (Abramowitz & Stegun 4.4.40)
   const T arc = sum(1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0, 35.0 / 1152.0, 63.0 / 2816.0,
                     231.0 / 13312.0, 143.0 / 10240.0, 6435.0 / 557056.0);
-  // 1/sqrt(2 (1 + sqrt(1 - s2))) = 1/2 C(s2/4)^(1/2), C the Catalan numbers' function: terms
+  // 1/sqrt(2 (1 + sqrt(1 - s2))) = 1/2 C(s2/4)^(1/2), C the generating function of the Catalan
+  // numbers: terms
   // binomial(2k + 1/2, k)/(4k + 1) (s2/4)^k/2 (Graham, Knuth & Patashnik, (5.60))
   const T inverse = sum(0.5, 1.0 / 16.0, 7.0 / 256.0, 33.0 / 2048.0, 715.0 / 65536.0,
                         4199.0 / 524288.0, 52003.0 / 8388608.0, 334305.0 / 67108864.0);
   return {T(-arc), inverse};
 }
-inline constexpr double series_limit = 0.01;
+inline constexpr double series_limit = 0.01;  ///< of s2
 /// \param w  cosine of half the relative rotation, >= 0
 template <class T>
 HalfAngle<T> half_angle(const T& s2, const T& w) {
@@ -125,7 +128,8 @@ HalfAngle<T> half_angle(const T& s2, const T& w) {
   const T s = sqrt(s2);
   return {T(T(1.0 - T(atan2(s, w) / s)) / s2), T(1.0 / sqrt(T(2.0 * T(1.0 + w))))};
 }
-/// Lanes that need the closed form are rare (a beam bent by 11 degrees) and are done one by one.
+/// Computes the closed forms in the lanes that need them, one by one: such lanes are rare (a beam
+/// bent by 11 degrees).
 [[gnu::noinline, gnu::cold]] inline void half_angle_one_by_one(const Lanes& s2, const Lanes& w,
                                                                HalfAngle<Lanes>& f) {
   for (std::size_t k = 0; k < lanes; ++k) {
@@ -143,7 +147,8 @@ inline HalfAngle<Lanes> half_angle(const Lanes& s2, const Lanes& w) {
   return f;
 }
 
-/// q and -q are the same rotation: takes b, and r = a* b with it, to the side where r.w >= 0.
+/// q and -q are the same rotation: chooses the sign of b, and of r = a* b with it, so that
+/// r.w >= 0.
 template <class T>
 void take_shorter_way(Quat<T>& b, Quat<T>& r) {
   const auto sign = sign_of(r.w);
@@ -155,8 +160,9 @@ inline void take_shorter_way(Quat<Lanes>& b, Quat<Lanes>& r) {
   take_shorter_way<Lanes>(b, r);
 }
 
-/// Co-rotational strains (Crisfield 1990, 1997: strains against a triad that goes with the beam).
-/// \param d  u_j - u_i [m]   \param qi, qj  rotations of the bodies from rest
+/// Co-rotational strains (Crisfield 1990, 1997): strains against a triad that moves with the beam.
+/// \param d       u_j - u_i [m], world axes
+/// \param qi, qj  rotations of the bodies from rest
 template <class T, class Constants>
 BeamStrains<T> corotational_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
                                     const Quat<T>& qj) {
@@ -192,8 +198,9 @@ BeamStrains<T> corotational_strains(const Constants& beam, const Vec3<T>& d, con
   return s;
 }
 
-/// Strains linear in displacements and in rotation vectors, 2 (x, y, z) of a linearised quaternion
-/// (1, x, y, z).
+/// Strains linear in displacements and rotation vectors. Sets the six strains only.
+/// \param d       u_j - u_i [m], world axes
+/// \param qi, qj  linearised quaternions (1, x, y, z) of rotation vectors 2 (x, y, z)
 template <class T, class Constants>
 BeamStrains<T> linear_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
                               const Quat<T>& qj) {
@@ -207,6 +214,7 @@ BeamStrains<T> linear_strains(const Constants& beam, const Vec3<T>& d, const Qua
   return s;
 }
 
+/// Strain energy U [J].
 template <class T, class Constants>
 T beam_energy(const Constants& beam, const BeamStrains<T>& s) {
   return T(0.5 * (beam.kn * s.delta * s.delta + beam.ksz * s.gamma_y * s.gamma_y +
@@ -214,13 +222,15 @@ T beam_energy(const Constants& beam, const BeamStrains<T>& s) {
                   beam.kby * s.psi.y * s.psi.y + beam.kbz * s.psi.z * s.psi.z));
 }
 
-/// What works on the six strains: forces [N] on Delta, gamma_y, gamma_z, moments [N m] on psi.
+/// Section forces, conjugate to the six strains: forces [N] on Delta, gamma_y, gamma_z and moments
+/// [N m] on psi. Also serves for the strains themselves and for their rates.
 template <class T>
 struct BeamStress {
   T n, qy, qz;
   Vec3<T> c;
 };
 
+/// Section forces of the springs.
 template <class T, class Constants>
 BeamStress<T> elastic_stress(const Constants& beam, const BeamStrains<T>& s) {
   return {T(beam.kn * s.delta),
@@ -237,7 +247,7 @@ BeamStress<T> operator+(const BeamStress<T>& a, const BeamStress<T>& b) {
 /// Dashpots on the six strains [N s/m, N m s].
 using BeamDashpots = std::array<double, 6>;
 
-/// What dashpots put on the strains at their rates.
+/// Section forces of the dashpots at the given strain rates.
 template <class T>
 BeamStress<T> viscous_stress(const BeamDashpots& c, const BeamStress<T>& rate) {
   return {T(c[0] * rate.n),
@@ -246,8 +256,7 @@ BeamStress<T> viscous_stress(const BeamDashpots& c, const BeamStress<T>& rate) {
           {T(c[3] * rate.c.x), T(c[4] * rate.c.y), T(c[5] * rate.c.z)}};
 }
 
-/// Exact gradient B^T stress of co-rotational strains (formula: model.md section 2, "Exact
-/// gradient").
+/// Exact gradient B^T stress of the co-rotational strains (model.md, "Beam").
 template <class T, class Constants>
 BeamGradient<T> corotational_gradient(const Constants& beam, const BeamStrains<T>& s,
                                       const BeamStress<T>& stress) {
@@ -267,10 +276,12 @@ BeamGradient<T> corotational_gradient(const Constants& beam, const BeamStrains<T
           beam.rest.to_world(s.mean.to_world(half + z))};
 }
 
-/// Rates B v of the co-rotational strains, with the same B as the gradient.
-/// In the mean triad: v = v_j - v_i, mean spin w = (w_i + w_j)/2, relative spin d = w_j - w_i; the
-/// triad spins with w_m = w - tau x d/2, the chord changes by v - w_m x E, and psi by S^-1 d
-/// (model.md section 2).
+/// Rates B v of the co-rotational strains, with the same B as the gradient. In the mean triad, with
+/// v = v_j - v_i, the mean spin w = (w_i + w_j)/2 and the relative spin d = w_j - w_i: the triad
+/// spins with w_m = w - tau x d/2, the chord has the rate v - w_m x E, and psi has the rate S^-1 d
+/// (model.md, "Beam").
+/// \param velocity        v_j - v_i [m/s], world axes
+/// \param spin_i, spin_j  w_i, w_j [rad/s], world axes
 template <class T, class Constants>
 BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
                                  const Vec3<T>& velocity, const Vec3<T>& spin_i,
@@ -287,7 +298,7 @@ BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
           s.g * d + T(s.h * dot(s.v, d)) * s.v};
 }
 
-/// Rates of the linear strains.
+/// Rates of the linear strains; parameters as for corotational_rates().
 template <class T, class Constants>
 BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity, const Vec3<T>& spin_i,
                            const Vec3<T>& spin_j) {
@@ -297,7 +308,7 @@ BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity, const
           beam.rest.to_local(spin_j - spin_i)};
 }
 
-/// Exact gradient B^T stress of linear strains.
+/// Exact gradient B^T stress of the linear strains.
 template <class T, class Constants>
 BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stress) {
   const T &qy = stress.qy, &qz = stress.qz;
@@ -307,7 +318,7 @@ BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stre
           beam.rest.to_world(half + c)};
 }
 
-/// The kernel for one choice of kinematics, picked outside the loop over beams.
+/// The kernel for one choice of kinematics, which is made outside the loop over beams.
 template <Kinematics kinematics>
 struct BeamKernel {
   static constexpr bool is_linear = kinematics == Kinematics::linear;

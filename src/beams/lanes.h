@@ -1,7 +1,7 @@
 /// \file
-/// Constants of beams in blocks, one beam per lane, and the wrenches of a block: the loop that
-/// every step of every long run spends its time in. Gather and scatter are register transposes;
-/// bodies get their beams' shares in the order of the beams, so sums do not depend on lanes, ranks
+/// Constants of beams in blocks, one beam per lane, and the wrenches of a block: the loop in which
+/// explicit steps spend most of their time. Gather and scatter are register transposes. A body
+/// sums the wrenches of its beams in the order of the beams, so sums do not depend on lanes, ranks
 /// or runs.
 #pragma once
 
@@ -17,11 +17,11 @@
 
 namespace floe {
 
-/// Numbers of a frame, in the order of its members.
+/// Number of doubles in a frame.
 template <template <class> class Frame>
 inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
 
-/// What beams are at rest, number by number, lane by lane: frame, l0, six stiffnesses.
+/// Constants of a block of beams, number by number and lane by lane: frame, l0, six stiffnesses.
 template <template <class> class Frame>
 struct alignas(64) BeamBlock {
   static constexpr std::size_t first = frame_size<Frame>;
@@ -65,10 +65,10 @@ struct alignas(64) BeamBlock {
   }
 };
 
-/// Dashpots of a block: on the six strains, and 1 where this rank counts the beam's energy.
+/// Dashpots of a block of beams.
 struct alignas(64) DashpotBlock {
-  std::array<std::array<double, lanes>, 6> values;
-  std::array<double, lanes> counts;
+  std::array<std::array<double, lanes>, 6> values;  ///< on the six strains [N s/m, N m s]
+  std::array<double, lanes> counts;  ///< 1 for beams whose energy this rank counts, else 0
   BeamDashpots get(std::size_t lane) const {
     BeamDashpots c{};
     for (std::size_t k = 0; k < 6; ++k) c[k] = values[k][lane];
@@ -81,12 +81,13 @@ struct alignas(64) DashpotBlock {
   }
 };
 
-/// A block's bodies, one per lane.
+/// Displacements u, velocities v, spins w and rotations q of bodies, one body per lane.
 struct LaneBodies {
   Vec3<Lanes> u, v, w;
   Quat<Lanes> q;
 };
 
+/// Loads the records of the given bodies into lanes.
 template <bool with_velocity>
 LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& bodies) {
   const auto four = [&](std::size_t offset) {
@@ -106,8 +107,8 @@ LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& 
   return b;
 }
 
-/// Adds a block's shares to its bodies' wrenches, in the order of the lanes. Of a wrench's eight
-/// doubles the last two are padding and stay as they are.
+/// Subtracts the gradients of a block from the wrenches of its bodies, in the order of the lanes.
+/// The last two of the eight doubles of a wrench are padding and stay as they are.
 inline void scatter(const std::array<std::int32_t, lanes>& i,
                     const std::array<std::int32_t, lanes>& j, const BeamGradient<Lanes>& g,
                     double* wrenches) {
@@ -126,17 +127,21 @@ inline void scatter(const std::array<std::int32_t, lanes>& i,
   (std::make_index_sequence<lanes>{});
 }
 
-/// Of stresses on strains at their rates.
+/// Power of section forces at the given strain rates [W].
 inline Lanes power(const BeamStress<Lanes>& stress, const BeamStress<Lanes>& rate) {
   return stress.n * rate.n + stress.qy * rate.qy + stress.qz * rate.qz + dot(stress.c, rate.c);
 }
 
-/// Beams that carry whatever comes.
+/// Strength hook of beams that cannot break.
 struct Unbreakable {};
 
-/// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
-/// \param strength  has a say on the elastic forces: where strength.gives_way(forces), the block is
-/// left to strength.add(); with dashpots it is told of what they do
+/// Adds the wrenches of one block.
+/// \param dashpots  null unless damped
+/// \param records   of the local bodies, Spatial::record doubles each
+/// \param wrenches  of the local bodies, Spatial::wrench doubles each
+/// \param strength  hook of beams that may break: if strength.gives_way(elastic forces), the block
+///                  goes to strength.add() instead; strength.store() gets the forces of dashpots
+/// \returns the power lost in the dashpots of the beams that this rank counts, per lane [W]
 template <Kinematics kinematics, bool damped, template <class> class Frame,
           class Strength = Unbreakable>
 [[gnu::always_inline]] inline Lanes add_block(const BeamBlock<Frame>& block,

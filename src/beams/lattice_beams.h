@@ -1,5 +1,5 @@
 /// \file
-/// The beams of a part in blocks of lanes, as a force.
+/// The force of the beams of a part, computed in blocks of lanes.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,10 @@
 
 namespace floe {
 
-/// Loops over the beams of a part; space, kinematics, frames and damping are chosen outside them.
-/// \tparam Beam  SpatialLanes or PlanarLanes: one beam on records of its space, and in lanes
+/// Loops over the beams of a part. Space, kinematics, frames and damping are template parameters,
+/// so the loops do not branch on them.
+/// \tparam Beam    SpatialLanes or PlanarLanes: one beam on body records, and in lanes
+/// \tparam damped  beams have dashpots
 template <class Beam, bool damped>
 class LatticeBeams : public BeamForce<typename Beam::Space>,
                      public HasTangent<typename Beam::Space>,
@@ -36,7 +38,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
         blocks_((part.beams.bodies.size() + lanes - 1) / lanes, Block{}),
         dashpots_(damped ? blocks_.size() : 0, DashpotBlock{}),
         stiffness_(static_cast<std::size_t>(part.local)) {
-    // The last block is filled up with beams that have no stiffness, on body 0.
+    // Beams without stiffness, on body 0, fill up the last block.
     for (std::size_t m = part.beams.bodies.size(); m < blocks_.size() * lanes; ++m)
       blocks_[m / lanes].set(m % lanes, Beam::none());
     for (std::int32_t m = 0; m < part.beams.size(); ++m) set(m, options);
@@ -49,8 +51,8 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     return roles;
   }
 
-  /// flatten: everything of the kernel in one body, or lanes travel through memory between its
-  /// functions.
+  /// The attribute flatten inlines the whole kernel: between functions lanes would pass through
+  /// memory.
   [[gnu::flatten]] void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
     const double* records = state.records.data();
     double* values = wrenches.values.data();
@@ -68,7 +70,8 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
     typename Tangent<Space>::PairBlock block;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
-      // Without symmetry the dashpots' force is followed as the beam turns, which is little.
+      // The derivative of the dashpots' force, which turns with the beam, is small and not
+      // symmetric: only K has it.
       const Dashpots c = damped ? dashpots(m) : Dashpots{};
       const Dashpots* followed = damped && !tangent.symmetric() ? &c : nullptr;
       Beam::tangent(constants(m), followed, record(state, i), record(state, j), tangent.symmetric(),
@@ -113,8 +116,9 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   double power(const State<Space>&) const override { return -power_lost_; }
   void take_work(double work) override { lost_ -= work; }
 
-  /// Of the stiffnesses that change with a beam's length, against the lighter of its bodies: k_n,
-  /// and k_s (l0/l)^2 + |N|/l across.
+  /// Estimated from the stiffnesses of a beam at its present length, over the mass of its lighter
+  /// body: k_n along the beam, and k_s (l0/l)^2 + |N|/l across. Linear beams have none, since their
+  /// stiffnesses do not change.
   std::optional<double> rate_estimate(const State<Space>& state) const override {
     if (Beam::Kernel::is_linear) return {};
     double fastest2 = 0;
@@ -173,19 +177,20 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     return energy;
   }
 
-  /// What dashpots have lost at the time of the last evaluation [J]. Leapfrog's velocities lag half
-  /// a step: at t_n the sum has the powers up to n - 3/2, and what is due of the last one makes the
-  /// balance of second order (summation by parts of the power v_{n+1/2} C (v_{n-1/2} + v_{n+1/2})/2
-  /// that the scheme loses between t_n and t_n+1). The same share of the very first power is left
-  /// out.
+  /// Energy that dashpots have lost up to the time of the last evaluation [J]. The velocities of
+  /// leapfrog lag half a step: at t_n the sum holds the powers up to n - 3/2, and 3/4 of a step of
+  /// the last power makes the balance of second order (summation by parts of the power
+  /// v_{n+1/2} C (v_{n-1/2} + v_{n+1/2})/2 that the scheme loses between t_n and t_n+1).
+  /// take_losses() omits the same share of the very first power.
   virtual double lost_by_now() const { return lost_ + 0.75 * step_ * power_lost_; }
-  /// A step of dt follows the last evaluation.
+  /// Adds the losses of a step of dt [s] that follows the last evaluation.
   virtual void take_losses(double dt) { lost_ += (step_ > 0 ? dt : 0.25 * dt) * power_lost_; }
 
-  /// Constants stream through once per step; fetched this far ahead they cost 15 ns per beam and
-  /// not 17.
+  /// Number of blocks that the loop prefetches ahead. The constants stream through the cache once
+  /// per step; a beam costs 15 ns with the prefetch and 17 ns without.
   static constexpr std::size_t blocks_ahead = 4;
 
+  /// Enters beam m as it is at rest, undamaged.
   void set(std::int32_t m, const BeamOptions& options) {
     const auto k = static_cast<std::size_t>(m);
     Block& block = blocks_[k / lanes];
@@ -221,10 +226,10 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   const Part& part_;
   std::vector<Block> blocks_;
   std::vector<DashpotBlock> dashpots_;
-  std::vector<double> stiffness_;
-  double power_lost_ = 0;  ///< in the last evaluation [W]
-  double lost_ = 0;        ///< [J]
-  double step_ = 0;        ///< the last one [s]
+  std::vector<double> stiffness_;  ///< per local body: bound, summed over its beams [N/m]
+  double power_lost_ = 0;          ///< in dashpots, in the last evaluation [W]
+  double lost_ = 0;                ///< by dashpots, taken over so far [J]
+  double step_ = 0;                ///< length of the last step [s]
 };
 
 }  // namespace floe

@@ -10,7 +10,7 @@
 namespace floe {
 namespace {
 
-/// Per body: whether it is in none of the sets of a sheet's sides; all are if none is.
+/// Per body: 1 unless it is in the set of a side of the sheet.
 std::vector<std::uint8_t> inner_bodies(const Lattice& lattice) {
   std::vector<std::uint8_t> inner(lattice.bodies.position.size(), 1);
   for (const char* side : {"left", "right", "bottom", "top"}) {
@@ -21,16 +21,16 @@ std::vector<std::uint8_t> inner_bodies(const Lattice& lattice) {
   return inner;
 }
 
-/// The irregularity that the corrections are proportional to: relaxation saturates a little in very
-/// irregular cells (measured; model.md section 3).
+/// X, to which the corrections are proportional: relaxation saturates a little in very irregular
+/// cells (measured; model.md, "Effective moduli of the lattice, calibrated sheets").
 double saturated(double irregularity) { return irregularity / (1 + 0.6 * irregularity); }
 
 }  // namespace
 
 LatticeRatios lattice_ratios(const Lattice& lattice, Shear shear) {
   const std::vector<std::uint8_t> inner = inner_bodies(lattice);
-  // Per body: T = sum w exp(3i phi) over its facets' normals, S = sum w/l, and its plan, sum w l/4;
-  // all times h, which cancels.
+  // Per body, from sums over its facets with the normal at phi: T = sum w exp(3i phi),
+  // S = sum w/l, and the plan area sum w l/4. All are times h, which cancels.
   std::vector<std::complex<double>> unbalanced(inner.size());
   std::vector<double> stiffness(inner.size()), plan(inner.size());
   double axial = 0, sliding = 0, bending = 0, bending_l2 = 0, twisting_l2 = 0, transverse_l2 = 0;
@@ -87,7 +87,7 @@ double twist_stiffness(double g, double transverse, double irregularity) {
 LatticeModuli lattice_moduli(const LatticeRatios& ratios, double poisson, Shear shear) {
   const double g = in_plane_stiffness(ratios.shear, ratios.irregularity, shear);
   const double s = twist_stiffness(ratios.torsion, ratios.transverse, ratios.irregularity);
-  constexpr double k = 0.5;  // K*/E_b; and D*(1 + nu_b*) 12/(2 E_b h^3)
+  constexpr double k = 0.5;  // both K*/E_b and D*(1 + nu_b*) 12/(2 E_b h^3)
   return {4 * k * g / (k + g), (k - g) / (k + g), g, k, (k + s) * (1 - poisson * poisson),
           (k - s) / (k + s)};
 }
@@ -96,7 +96,7 @@ LatticeModuli lattice_moduli(double size, double thickness, const Ice& ice, doub
                              Shear shear, Torsion torsion) {
   const double w = size / std::sqrt(3.0), h = thickness;
   const double iy = w * h * h * h / 12.0, iz = h * w * w * w / 12.0;
-  Beams one;  // the lattice's only kind of beam
+  Beams one;  // all beams of the regular lattice are alike
   one.bodies = {{0, 1}};
   one.area = {w * h};
   one.inertia_y = {iy};

@@ -1,10 +1,11 @@
 /// \file
-/// One beam in the plane: strain energy and its exact gradient, on any scalar, and what follows for
-/// planar body records. The spatial kernel (kernel.h; model.md section 2) for bodies that turn
-/// about z only and a section whose axis 3 is z.
+/// One beam in the plane: strain energy and its exact gradient, on any scalar, and the same on
+/// planar body records. This is the spatial kernel (kernel.h) for bodies that turn about z only and
+/// a section whose axis 3 is z (model.md, "Planar models").
 ///
-/// Two rigid bodies i and j, displaced by u_i, u_j and turned by theta_i, theta_j from the state at
-/// rest. All is computed in the beam's axes at rest, T (axis 1 along the beam), as there:
+/// Two rigid bodies i and j are displaced by u_i, u_j and turned by theta_i, theta_j from the state
+/// at rest. As in the spatial kernel, all is computed in the axes T of the beam at rest, with axis
+/// 1 along the beam:
 ///
 ///     d = T^T (u_j - u_i), e = (l0, 0) + d, l = |e|
 ///     m = (theta_i + theta_j)/2, E = R(m)^T e     the chord against the mean of the two ends
@@ -13,8 +14,8 @@
 ///     psi = theta_j - theta_i                     relative rotation [rad], of any size
 ///     U = 1/2 (kn Delta^2 + ks gamma^2 + kb psi^2)
 ///
-/// The spatial kernel takes psi from rotations, so it knows it within half a turn; within that the
-/// two agree.
+/// The spatial kernel computes psi from quaternions, which tell it up to half a turn only; within
+/// half a turn both kernels agree.
 #pragma once
 
 #include <Eigen/Core>
@@ -40,7 +41,7 @@ Vec2<T> operator-(const Vec2<T>& a, const Vec2<T>& b) {
   return {T(a.x - b.x), T(a.y - b.y)};
 }
 
-/// Axes turned by an angle of cosine c and sine s: components of a vector in them, and back.
+/// Axes turned by an angle of cosine c and sine s, to take vectors to these axes and back.
 template <class C>
 struct Turned {
   C c, s;
@@ -55,15 +56,15 @@ struct Turned {
   }
 };
 
-/// What a beam is at rest: its axes, its length [m], its stiffnesses [N/m, N/m, N m].
+/// Constants of a beam.
 template <class C>
 struct PlanarConstants {
-  Turned<C> rest;
-  C l0;
-  C kn, ks, kb;
+  Turned<C> rest;  ///< axes at rest
+  C l0;            ///< length at rest [m]
+  C kn, ks, kb;    ///< stiffnesses [N/m, N/m, N m]
 };
 
-/// The three strains, and what the gradient needs with them.
+/// The three strains, and intermediate results that the gradient needs.
 template <class T>
 struct PlanarStrains {
   T delta, gamma;  ///< [m]
@@ -73,7 +74,8 @@ struct PlanarStrains {
   Turned<T> mean;  ///< R(m)
 };
 
-/// What works on the strains: forces [N] on Delta and gamma, a moment [N m] on psi.
+/// Section forces, conjugate to the strains: forces [N] on Delta and gamma, a moment [N m] on psi.
+/// Also serves for the rates of the strains.
 template <class T>
 struct PlanarStress {
   T n, q, c;
@@ -84,7 +86,7 @@ PlanarStress<T> operator+(const PlanarStress<T>& a, const PlanarStress<T>& b) {
   return {T(a.n + b.n), T(a.q + b.q), T(a.c + b.c)};
 }
 
-/// What dashpots put on the strains at their rates.
+/// Section forces of the dashpots at the given strain rates.
 template <class T, class C>
 PlanarStress<T> viscous_stress(const std::array<C, 3>& c, const PlanarStress<T>& rate) {
   return {T(c[0] * rate.n), T(c[1] * rate.q), T(c[2] * rate.c)};
@@ -98,7 +100,9 @@ struct PlanarGradient {
   T moment_i, moment_j;
 };
 
-/// \param d  u_j - u_i [m]   \param turn_i, turn_j  angles of the bodies [rad]
+/// Co-rotational strains: strains against axes that turn with the beam.
+/// \param d               u_j - u_i [m], world axes
+/// \param turn_i, turn_j  angles of the bodies [rad]
 template <class T, class C>
 PlanarStrains<T> corotational_strains(const PlanarConstants<C>& beam, const Vec2<T>& d,
                                       const T& turn_i, const T& turn_j) {
@@ -119,7 +123,7 @@ PlanarStrains<T> corotational_strains(const PlanarConstants<C>& beam, const Vec2
   return s;
 }
 
-/// Strains linear in displacements and angles.
+/// Strains linear in displacements and angles. Sets the three strains only.
 template <class T, class C>
 PlanarStrains<T> linear_strains(const PlanarConstants<C>& beam, const Vec2<T>& d, const T& turn_i,
                                 const T& turn_j) {
@@ -131,18 +135,21 @@ PlanarStrains<T> linear_strains(const PlanarConstants<C>& beam, const Vec2<T>& d
   return s;
 }
 
+/// Strain energy U [J].
 template <class T, class C>
 T beam_energy(const PlanarConstants<C>& beam, const PlanarStrains<T>& s) {
   return T(0.5 *
            (beam.kn * s.delta * s.delta + beam.ks * s.gamma * s.gamma + beam.kb * s.psi * s.psi));
 }
 
+/// Section forces of the springs.
 template <class T, class C>
 PlanarStress<T> elastic_stress(const PlanarConstants<C>& beam, const PlanarStrains<T>& s) {
   return {T(beam.kn * s.delta), T(beam.ks * s.gamma), T(beam.kb * s.psi)};
 }
 
-/// Exact gradient B^T stress: that of space with moments along z, where tau x P has none.
+/// Exact gradient B^T stress of the co-rotational strains: the spatial gradient with moments along
+/// z, along which tau x P has no component.
 template <class T, class C>
 PlanarGradient<T> corotational_gradient(const PlanarConstants<C>& beam, const PlanarStrains<T>& s,
                                         const PlanarStress<T>& stress) {
@@ -154,15 +161,16 @@ PlanarGradient<T> corotational_gradient(const PlanarConstants<C>& beam, const Pl
   return {beam.rest.to_world(s.mean.to_world(n)), T(half - stress.c), T(half + stress.c)};
 }
 
-/// Exact gradient B^T stress of linear strains.
+/// Exact gradient B^T stress of the linear strains.
 template <class T, class C>
 PlanarGradient<T> linear_gradient(const PlanarConstants<C>& beam, const PlanarStress<T>& stress) {
   const T half = T((-0.5 * beam.l0) * stress.q);
   return {beam.rest.to_world(Vec2<T>{stress.n, stress.q}), T(half - stress.c), T(half + stress.c)};
 }
 
-/// Rates B v of the co-rotational strains: the mean triad turns with the mean spin.
-/// \param velocity  v_j - v_i   \param spin_i, spin_j  rates of the angles
+/// Rates B v of the co-rotational strains; the mean triad turns with the mean spin.
+/// \param velocity        v_j - v_i [m/s], world axes
+/// \param spin_i, spin_j  rates of the angles [rad/s]
 template <class T, class C>
 PlanarStress<T> corotational_rates(const PlanarConstants<C>& beam, const PlanarStrains<T>& s,
                                    const Vec2<T>& velocity, const T& spin_i, const T& spin_j) {
@@ -175,7 +183,7 @@ PlanarStress<T> corotational_rates(const PlanarConstants<C>& beam, const PlanarS
           T(spin_j - spin_i)};
 }
 
-/// Rates of the linear strains.
+/// Rates of the linear strains; parameters as for corotational_rates().
 template <class T, class C>
 PlanarStress<T> linear_rates(const PlanarConstants<C>& beam, const Vec2<T>& velocity,
                              const T& spin_i, const T& spin_j) {
@@ -183,7 +191,7 @@ PlanarStress<T> linear_rates(const PlanarConstants<C>& beam, const Vec2<T>& velo
   return {chord.x, T(chord.y - T((0.5 * beam.l0) * T(spin_i + spin_j))), T(spin_j - spin_i)};
 }
 
-/// The kernel for one choice of kinematics, picked outside the loop over beams.
+/// The kernel for one choice of kinematics, which is made outside the loop over beams.
 template <Kinematics kinematics>
 struct PlanarKernel {
   static constexpr bool is_linear = kinematics == Kinematics::linear;
@@ -216,7 +224,8 @@ struct PlanarKernel {
   }
 };
 
-/// The kernel on planar body records.
+/// The kernel on planar body records. Parameters i and j of its functions are the records of the
+/// two bodies.
 template <Kinematics kinematics>
 struct PlanarBeam {
   using Space = Planar;
@@ -225,7 +234,7 @@ struct PlanarBeam {
   using Kernel = PlanarKernel<kinematics>;
   static constexpr int n = Space::unknowns;
 
-  /// Constants of beam m of a part; its section's axis 3 is z.
+  /// Constants of beam m of a part; axis 3 of its section is z.
   static Constants make(const Part& part, std::int32_t m, Shear shear) {
     const auto k = static_cast<std::size_t>(m);
     const auto [i, j] = part.beams.bodies[k];
@@ -235,7 +244,7 @@ struct PlanarBeam {
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     return {{inverse * x, inverse * y}, part.beams.length[k], s.kn, s.ksz, s.kbz};
   }
-  /// Of unit length, without stiffness.
+  /// Constants of a beam of unit length without stiffness, to fill up a block.
   static Constants none() { return {{1, 0}, 1, 0, 0, 0}; }
   static double shear_stiffness(const Constants& c) { return c.ks; }
 
@@ -258,7 +267,7 @@ struct PlanarBeam {
     return {s.n, s.q, 0, 0, 0, s.c};
   }
 
-  /// Minus what the dashpots add to the wrenches, as vectors of space.
+  /// Minus the wrenches of the dashpots, as spatial vectors.
   static BeamGradient<double> damping_force(const Constants& c, const Dashpots& dashpots,
                                             const double* i, const double* j) {
     const PlanarStrains<double> s = strains(c, i, j);
@@ -289,8 +298,8 @@ struct PlanarBeam {
   }
 
   /// 6 x 6 tangent on (u_i, theta_i, u_j, theta_j), by forward differentiation of the gradient in
-  /// four directions: the relative displacement and the two angles. K and H are one.
-  /// \param dashpots  their force goes with the motion too; may be null
+  /// four directions: the relative displacement and the two angles. K and H are the same here.
+  /// \param dashpots  if not null, includes the derivative of their force to the displacements
   static void tangent(const Constants& c, const Dashpots* dashpots, const double* i,
                       const double* j, bool /*symmetric*/, std::array<double, 4 * n * n>& k) {
     using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 4, 1>>;
@@ -316,7 +325,7 @@ struct PlanarBeam {
   static Vec2<double> relative(const double* i, const double* j) {
     return {j[0] - i[0], j[1] - i[1]};
   }
-  /// Strain rates of the bodies' velocities.
+  /// Strain rates at the velocities of the bodies.
   template <class T>
   static PlanarStress<T> rates(const Constants& c, const PlanarStrains<T>& s, const double* i,
                                const double* j) {

@@ -1,6 +1,6 @@
 /// \file
-/// Constants of planar beams in blocks, one beam per lane, and the wrenches of a block: as
-/// beam_blocks.h, with half the numbers to gather and to scatter and a third of the arithmetic.
+/// Constants of planar beams in blocks, one beam per lane, and the wrenches of a block: as lanes.h,
+/// with half the numbers to gather and to scatter and a third of the arithmetic.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace floe {
 
-/// What beams are at rest, number by number, lane by lane: axes, l0, three stiffnesses.
+/// Constants of a block of beams, number by number and lane by lane: axes, l0, three stiffnesses.
 struct alignas(64) PlanarBlock {
   std::array<std::array<double, lanes>, 6> values;
   std::array<std::int32_t, lanes> i, j;  ///< local bodies
@@ -32,10 +32,10 @@ struct alignas(64) PlanarBlock {
   }
 };
 
-/// Dashpots of a block: on the three strains, and 1 where this rank counts the beam's energy.
+/// Dashpots of a block of beams.
 struct alignas(64) PlanarDashpotBlock {
-  std::array<std::array<double, lanes>, 3> values;
-  std::array<double, lanes> counts;
+  std::array<std::array<double, lanes>, 3> values;  ///< on Delta, gamma, psi
+  std::array<double, lanes> counts;  ///< 1 for beams whose energy this rank counts, else 0
 
   void set(std::size_t lane, const BeamStiffness& c, bool counts_here) {
     values[0][lane] = c.kn, values[1][lane] = c.ksz, values[2][lane] = c.kbz;
@@ -49,7 +49,8 @@ struct alignas(64) PlanarDashpotBlock {
   }
 };
 
-/// Four numbers of each of a block's bodies, one body per lane.
+/// Loads four numbers of the record of each given body, one body per lane.
+/// \param offset  of the first number in a record
 inline std::array<Lanes, 4> gather_planar(const double* records,
                                           const std::array<std::int32_t, lanes>& bodies,
                                           std::size_t offset) {
@@ -58,14 +59,16 @@ inline std::array<Lanes, 4> gather_planar(const double* records,
   });
 }
 
-/// A planar beam in lanes.
+/// A planar beam on body records, and in lanes.
 template <Kinematics kinematics>
 struct PlanarLanes : PlanarBeam<kinematics> {
   using Block = PlanarBlock;
   using DashpotBlock = PlanarDashpotBlock;
   using Kernel = PlanarKernel<kinematics>;
 
-  /// Adds the wrenches of one block; returns the power lost in its dashpots, lane by lane.
+  /// Adds the wrenches of one block.
+  /// \param dashpots  null unless damped
+  /// \returns the power lost in the dashpots of the beams that this rank counts, per lane [W]
   template <bool damped>
   [[gnu::always_inline]] static Lanes add(const Block& block, const DashpotBlock* dashpots,
                                           const double* records, double* wrenches) {

@@ -14,6 +14,8 @@
 
 namespace floe {
 
+/// The kernel on spatial body records. Parameters i and j of its functions are the records of the
+/// two bodies.
 template <Kinematics kinematics>
 struct SpatialBeam {
   using Space = Spatial;
@@ -32,14 +34,14 @@ struct SpatialBeam {
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
     return c;
   }
-  /// Of unit length, without stiffness.
+  /// Constants of a beam of unit length without stiffness, to fill up a block.
   static Constants none() {
     Constants c{};
     c.rest = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     c.l0 = 1;
     return c;
   }
-  /// The larger one.
+  /// The larger of the two shear stiffnesses [N/m].
   static double shear_stiffness(const Constants& c) { return std::max(c.ksy, c.ksz); }
 
   static BeamStrains<double> strains(const Constants& c, const double* i, const double* j) {
@@ -62,15 +64,15 @@ struct SpatialBeam {
             c.kt * s.psi.x, c.kby * s.psi.y,   c.kbz * s.psi.z};
   }
 
-  /// Minus what the dashpots add to the wrenches.
+  /// Minus the wrenches of the dashpots.
   static BeamGradient<double> damping_force(const Constants& c, const BeamDashpots& dashpots,
                                             const double* i, const double* j) {
     const BeamStrains<double> s = strains(c, i, j);
     return Kernel::gradient(c, s, viscous_stress(dashpots, rates<double>(c, s, i, j)));
   }
 
-  /// 12 x 12 damping matrix B^T c B on the velocities (v_i, w_i, v_j, w_j): B by its columns, the
-  /// strain rates of a unit velocity of j against i and of unit spins.
+  /// 12 x 12 damping matrix B^T c B on the velocities (v_i, w_i, v_j, w_j). The columns of B are
+  /// the strain rates of a unit velocity of j relative to i and of unit spins.
   static void damping(const Constants& c, const BeamDashpots& dashpots, const double* i,
                       const double* j, std::array<double, 4 * n * n>& k) {
     const BeamStrains<double> s = strains(c, i, j);
@@ -81,7 +83,7 @@ struct SpatialBeam {
       const BeamStress<double> r = Kernel::rates(c, s, unit[0], unit[1], unit[2]);
       b[a] = {r.n, r.qy, r.qz, r.c.x, r.c.y, r.c.z};
     }
-    // Which of them moves an unknown, and which way.
+    // Column of B that belongs to an unknown, and its sign.
     constexpr std::array<std::size_t, 12> column{0, 1, 2, 3, 4, 5, 0, 1, 2, 6, 7, 8};
     const auto sign = [](std::size_t unknown) { return unknown < 3 ? -1.0 : 1.0; };
     for (std::size_t row = 0; row < 12; ++row) {
@@ -95,8 +97,9 @@ struct SpatialBeam {
   }
 
   /// 12 x 12 tangent on (u_i, theta_i, u_j, theta_j), by forward differentiation of the gradient in
-  /// nine directions: the relative displacement and the two spins. \param symmetric  H = K +
-  /// skew(m)/2 instead of K   \param dashpots  their force goes with the motion too; may be null
+  /// nine directions: the relative displacement and the two spins.
+  /// \param dashpots   if not null, includes the derivative of their force to the displacements
+  /// \param symmetric  H = K + skew(m)/2 instead of K
   static void tangent(const Constants& c, const BeamDashpots* dashpots, const double* i,
                       const double* j, bool symmetric, std::array<double, 4 * n * n>& k) {
     using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
@@ -144,7 +147,7 @@ struct SpatialBeam {
   static Vec3<T> vector_at(const double* r, int offset) {
     return {T(r[offset]), T(r[offset + 1]), T(r[offset + 2])};
   }
-  /// Strain rates of the bodies' velocities.
+  /// Strain rates at the velocities of the bodies.
   template <class T>
   static BeamStress<T> rates(const Constants& c, const BeamStrains<T>& s, const double* i,
                              const double* j) {
@@ -157,8 +160,8 @@ struct SpatialBeam {
             r[Space::rotation + 3]};
   }
 
-  /// A rotation with its derivatives to the three components of a spin: dq = (0, spin) q/2, or,
-  /// linear, (0, spin)/2.
+  /// A rotation with its derivatives to the three components of a spin: dq = (0, spin) q/2, or
+  /// (0, spin)/2 in linear kinematics.
   template <class Dual>
   static Quat<Dual> spun(const Quat<double>& q, int first) {
     Quat<Dual> out{Dual(q.w), Dual(q.x), Dual(q.y), Dual(q.z)};

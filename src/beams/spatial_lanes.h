@@ -1,5 +1,5 @@
 /// \file
-/// The spatial beams of a part in blocks of lanes, as a force.
+/// The force of the spatial beams of a part, computed in blocks of lanes.
 #pragma once
 
 #include "base/collectives.h"
@@ -9,7 +9,7 @@
 
 namespace floe {
 
-/// A spatial beam in lanes.
+/// A spatial beam on body records, and in lanes.
 template <Kinematics kinematics, template <class> class Frame>
 struct SpatialLanes : SpatialBeam<kinematics> {
   using Block = BeamBlock<Frame>;
@@ -24,8 +24,8 @@ struct SpatialLanes : SpatialBeam<kinematics> {
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 using SpatialBeams = LatticeBeams<SpatialLanes<kinematics, Frame>, damped>;
 
-/// Whether all of a part's beams are flat. Collective: forces must not depend on how bodies are
-/// shared.
+/// Whether axis 3 of all beams of the lattice is z. Collective, since forces must not depend on
+/// how the bodies are distributed over ranks.
 inline bool all_flat(const Part& part) {
   bool flat = true;
   for (std::int32_t m = 0; m < part.beams.size() && flat; ++m)

@@ -1,5 +1,5 @@
 /// \file
-/// Stiffnesses of a beam; free of PETSc and MPI, as kernels are.
+/// Stiffnesses of a beam. Like the kernels, this header needs neither PETSc nor MPI.
 #pragma once
 
 namespace floe {

@@ -1,6 +1,7 @@
 /// \file
-/// Effective moduli of large sheets of a lattice (model.md section 3): in closed form for the
-/// infinite regular (triangular) one, with a measured correction for cells of any shape.
+/// Effective moduli of a large sheet: in closed form for the infinite regular (triangular) lattice,
+/// with a measured correction for cells of any shape (model.md, "Effective moduli of the lattice,
+/// calibrated sheets").
 #pragma once
 
 #include <complex>
@@ -11,7 +12,7 @@
 
 namespace floe {
 
-/// In-plane moduli of a lattice and its plate bending stiffness, in units of the material's.
+/// Moduli of a lattice in its plane and in bending, relative to those of its material.
 struct LatticeModuli {
   double young;    ///< E*/E_b; regular: 2(1+r)/(3+r)
   double poisson;  ///< nu*; regular: (1-r)/(3+r)
@@ -21,31 +22,39 @@ struct LatticeModuli {
   double bending_poisson;  ///< nu_b*; regular: (1-g)/(3+g)
 };
 
-/// What the moduli of a lattice of cells depend on. Means weigh each beam by its part of the plan.
+/// Ratios that determine the moduli of a lattice. Means weigh each beam by its part of the plan.
 struct LatticeRatios {
   double shear = 0;              ///< r: mean of k_sz/k_n
   double torsion = 0;            ///< g: mean of k_t/k_by
   double transverse = 0;         ///< rho: k_sy l^2/(4 k_by)
-  double irregularity = 0;       ///< chi of the cells, 0 for regular hexagons (model.md section 3)
-  std::complex<double> texture;  ///< p: mean of exp(4i phi) over the beams' directions
+  double irregularity = 0;       ///< chi of the cells, 0 for regular hexagons
+  std::complex<double> texture;  ///< p: mean of exp(4i phi) over the directions of the beams
 };
 
-/// Of a sheet's lattice; bodies in its sets left, right, bottom and top are left out, as long as
-/// there are others.
+/// Ratios of the lattice of a sheet. Bodies in the sets left, right, bottom and top are left out;
+/// without these sets all bodies count.
 LatticeRatios lattice_ratios(const Lattice& lattice, Shear shear);
 
-/// G*/E_b in the plane of beams with k_n = E_b A/l; S = D*(1-nu_b*) 12/(2 E_b h^3) of plates of
-/// beams with k_by = E_b I_y/l. Both are what the corrections for irregular cells act on; the two
-/// others, K* and D*(1+nu_b*), do not depend on the cells.
+/// G*/E_b of a lattice of beams with k_n = E_b A/l, corrected for irregular cells. K* does not
+/// depend on the cells.
+/// \param r             ratio k_sz/k_n
+/// \param irregularity  chi
 double in_plane_stiffness(double r, double irregularity, Shear shear);
+/// D*(1-nu_b*) 12/(2 E_b h^3) of a plate of beams with k_by = E_b I_y/l, corrected for irregular
+/// cells. D*(1+nu_b*) does not depend on the cells.
+/// \param g             ratio k_t/k_by
+/// \param transverse    rho = k_sy l^2/(4 k_by)
+/// \param irregularity  chi
 double twist_stiffness(double g, double transverse, double irregularity);
 
-/// Moduli of a large sheet of beams whose E_b I_y and E_b A are the material's.
+/// Moduli of a large sheet of beams with the E_b I_y and E_b A of the material.
+/// \param poisson  nu of the material
 LatticeModuli lattice_moduli(const LatticeRatios& ratios, double poisson, Shear shear);
 
-/// Of the infinite regular lattice.
-/// \param size  element size l [m]   \param thickness  h [m]
-/// With w = l/sqrt(3), r = k_s/k_n (Ostoja-Starzewski 2002; Karihaloo, Shao & Xiao 2003).
+/// Moduli of the infinite regular lattice, with w = l/sqrt(3), r = k_s/k_n (Ostoja-Starzewski 2002;
+/// Karihaloo, Shao & Xiao 2003).
+/// \param size       element size l [m]
+/// \param thickness  h [m]
 LatticeModuli lattice_moduli(double size, double thickness, const Ice& ice, double shear_factor,
                              Shear shear, Torsion torsion);
 
