@@ -1,5 +1,5 @@
 /// \file
-/// The one table of floe's options.
+/// The table of all options of floe.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace floe {
 
-/// All options of floe, sections together, in the order of docs/options.md.
+/// All options of floe, grouped by sections, in the order of docs/options.md.
 std::span<const OptionSpec> scene_keys();
 
 }  // namespace floe

@@ -1,5 +1,5 @@
 /// \file
-/// A lattice file that is not there yet.
+/// Message for a lattice file that does not exist yet.
 #pragma once
 
 #include <string>
@@ -9,12 +9,13 @@
 
 namespace floe {
 
-/// Collective. \throws InputError if the scene's lattice file is not there, with the command that
-/// makes it if the scene's comments hold one
+/// Checks that the scene's lattice file exists. Collective.
+/// \throws InputError if it does not, with the command that makes it if a comment of the scene has
+///   one
 void require_lattice_file(const Scene& scene, MPI_Comm comm);
 
-/// The command in a scene's comments that writes `file`: what stands in a comment line up to "&&",
-/// if that has the path as a word; empty if there is none.
+/// Finds the command in a scene's comments that writes `file`: the text of a comment line up to
+/// "&&" that has the path as a word; empty if there is none.
 std::string command_that_makes(const std::string& file, const std::string& scene_text);
 
 }  // namespace floe

@@ -19,7 +19,7 @@ namespace {
 
 using Entry = std::pair<const char*, double>;
 
-/// What a mesh depends on. The seed is kept in two halves: a double holds 53 bits.
+/// Values on which a mesh depends. The seed is stored in two halves, since a double holds 53 bits.
 std::array<Entry, 9> identity(const SheetPlan& plan) {
   return {Entry{"format", 1},
           {"length", plan.length},
@@ -32,7 +32,7 @@ std::array<Entry, 9> identity(const SheetPlan& plan) {
           {"tolerance", plan.tolerance}};
 }
 
-/// As far as the relaxation is told by a file.
+/// The part of a relaxation that a file keeps.
 struct Relaxed {
   std::vector<Point2> generators;
   int iterations = 0;
@@ -86,7 +86,8 @@ Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file
                                   const std::function<void(int, double)>& on_iteration,
                                   std::function<void()>& keep) {
   bool there = false;
-  std::error_code ignored;  // what is there and cannot be read is no reason to make it anew
+  // Any existing entry counts, so that an unreadable file is an error and is not replaced.
+  std::error_code ignored;
   if (rank(comm) == 0)
     there = std::filesystem::symlink_status(file, ignored).type() !=
             std::filesystem::file_type::not_found;

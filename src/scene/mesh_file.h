@@ -1,6 +1,6 @@
 /// \file
-/// Relaxed generators of a sheet, kept in a file: scenes that share a sheet share the work of its
-/// mesh.
+/// Relaxed generators of a sheet, kept in a file, so that scenes of the same sheet mesh it only
+/// once.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,12 @@
 
 namespace floe {
 
-/// The tessellation of a plan: from the file if it is there, else relaxed as the plan says. Either
-/// way cells are made from the generators in the same manner, so that the result is the same to the
-/// last bit. Collective. \param keep  writes the file if it was not there; to be called once all
-/// else is known to be good \throws InputError if the file is another plan's, or no mesh file at
-/// all
+/// Makes the tessellation of a plan: from the file if it exists, else relaxed as the plan says. In
+/// both cases cells are made from the generators in the same way, so that the result is the same to
+/// the last bit. Collective.
+/// \param keep  set to a function that writes the file, if it did not exist; to be called when
+///   everything else is known to be good
+/// \throws InputError if the file is that of another plan, or no mesh file
 Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file, MPI_Comm comm,
                                   const std::function<void(int, double)>& on_iteration,
                                   std::function<void()>& keep);

@@ -13,7 +13,7 @@ bool any_out_of_plane(const Point3& translation, const Point3& rotation) {
   return translation[2] != 0 || rotation[0] != 0 || rotation[1] != 0;
 }
 
-/// What of the scene itself points out of plane.
+/// Returns the first reason in the scene that needs space; empty if there is none.
 std::string scene_needs_space(const Scene& scene) {
   if (scene.forces.buoyancy) return "forces: buoyancy acts along z";
   if (scene.forces.gravity) return "forces: gravity acts along z";
@@ -34,8 +34,8 @@ std::string scene_needs_space(const Scene& scene) {
   return {};
 }
 
-/// Whether a body that turns about z does so about a principal axis: the tensor of inertia, times
-/// z, is along z to rounding.
+/// Whether z is a principal axis of a body, so that it can turn about z in the plane: the tensor of
+/// inertia times z is along z to rounding.
 bool turns_in_plane(const Bodies& bodies, std::int32_t body) {
   constexpr double rounding = 1e-12;
   const auto b = static_cast<std::size_t>(body);
@@ -47,7 +47,8 @@ bool turns_in_plane(const Bodies& bodies, std::int32_t body) {
   return std::hypot(l.x, l.y) <= rounding * l.z;
 }
 
-/// What of the lattice, or of its motion at first, is not in one plane.
+/// Returns the first reason in the lattice, or in its initial motion, that needs space; empty if
+/// there is none.
 std::string lattice_needs_space(const Scene& scene, const Lattice& lattice) {
   const Bodies& bodies = lattice.bodies;
   const bool moves = scene.integrator != Integrator::quasistatic;

@@ -20,10 +20,10 @@ std::string text(const char* format, auto... values) {
   return line.data();
 }
 
-/// A count, in full as long as that says more.
+/// Formats a count with all digits as far as these are useful.
 std::string count(double value) { return text(value < 1e9 ? "%.0f" : "%.4g", value); }
 
-/// "1 frame", "2 frames".
+/// Formats "1 frame", "2 frames".
 std::string counted(double value, const std::string& what) {
   return count(value) + " " + what + (value == 1 ? "" : "s");
 }
@@ -63,7 +63,7 @@ std::string steps_text(const Scene& scene, const RunPlan& plan) {
 PlannedOutput planned_output(const Scene& scene, const RunPlan& plan, const OutputSize& size) {
   constexpr double default_rows = 200;  // of explicit and implicit runs
   const bool is_static = scene.integrator == Integrator::quasistatic;
-  // Samples that fall into one step are one; implicit steps end where a sample is due.
+  // Samples that fall into the same step are one; implicit steps end where a sample is due.
   const double most = plan.steps > 0 && scene.integrator != Integrator::implicit
                           ? plan.steps
                           : std::numeric_limits<double>::infinity();
@@ -74,9 +74,9 @@ PlannedOutput planned_output(const Scene& scene, const RunPlan& plan, const Outp
   PlannedOutput output;
   output.frames = 1 + std::max(1.0, std::min(std::ceil(fields), most));
   output.rows = 1 + std::max(1.0, std::min(std::ceil(history), most));
-  if (scene.output.history == 0)  // whatever is a sample is a row
+  if (scene.output.history == 0)  // every sample is a row
     output.rows = std::max(output.rows, 1 + std::min(std::ceil(history) + output.frames, most));
-  // Of checkpoints the one before the last is kept too.
+  // The checkpoint before the last one is kept too.
   const bool several = (plan.steps - plan.done) * plan.seconds_a_step > scene.checkpoint.every;
   const double generations = several ? 2 : 1;
   output.bytes = size.once + output.rows * size.row + output.frames * size.frame +
@@ -116,7 +116,7 @@ void check_size(const Scene& scene, double free, int ranks) {
     const double unknowns = bodies * (flat ? Planar::unknowns : Spatial::unknowns);
     needed += factorisation_cost(unknowns, ranks).bytes;
   }
-  constexpr double honest = 3;  // a factor of what estimates are good to
+  constexpr double honest = 3;  // factor to which estimates are good
   const double most = scene.limit.memory > 0 ? 1e9 * scene.limit.memory : honest * free;
   const std::string what =
       "sheet: about " + count(bodies) + " bodies would take about " + bytes(needed) + " of memory";

@@ -1,4 +1,4 @@
-// Contacts and obstacles.
+// Reading of contacts and obstacles.
 #include <cmath>
 
 #include "contact/law.h"
@@ -63,7 +63,7 @@ ObstacleMotion read_motion(Options& options, const std::string& name, bool half_
     motion.amplitude = vector(options.numbers<3>("obstacle: NAME: amplitude", name));
     motion.frequency = options.number("obstacle: NAME: frequency", name);
   }
-  // Left unread, and so refused, where nothing moves.
+  // Without a motion the key is not read, and so it is refused.
   if (!motion.at_rest()) motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
   return motion;
 }

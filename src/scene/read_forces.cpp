@@ -1,4 +1,4 @@
-// Which forces act, cracks, water.
+// Reading of forces, fracture and water.
 #include <algorithm>
 
 #include "reading.h"
@@ -6,7 +6,7 @@
 namespace floe {
 namespace {
 
-/// What an integrator cannot step, and what to do instead.
+/// Refuses forces that the integrator cannot step, with an alternative.
 void check_integrator_of_forces(Options& options, Scene& scene) {
   const bool is_static = scene.integrator == Integrator::quasistatic;
   if (scene.forces.drag && is_static) {

@@ -1,4 +1,4 @@
-// Prescribed motions and loads.
+// Reading of prescribed motions and loads.
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
 
-/// Values of components that are not fixed would be ignored in silence.
+/// Refuses values of components that are not fixed, which would be ignored in silence.
 void check_fixed(Options& options, const Boundary& boundary, const std::string& key, Point3& values,
                  std::size_t first) {
   for (std::size_t k = 0; k < 3; ++k) {
@@ -51,7 +51,7 @@ Boundary read_boundary(Options& options, const std::string& name) {
   return boundary;
 }
 
-/// Bodies with mass cannot be displaced at once.
+/// Refuses a displacement without ramp in dynamics: bodies with mass cannot jump.
 void require_motion(const Scene& scene, const Boundary& boundary) {
   if (scene.integrator == Integrator::quasistatic || boundary.ramp.seconds > 0 ||
       !boundary.displacement || *boundary.displacement == Point3{})

@@ -1,4 +1,4 @@
-// The sheet and its ice, or a lattice file; regions and cuts.
+// Reading of the sheet and its ice, or of a lattice file; regions and cuts.
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -31,7 +31,7 @@ void read_sheet(Options& options, Scene& scene) {
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
                      (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
                      text_of(shorter) + " [m]");
-  constexpr double most_bodies = 1e8;  // indices of beams and facets are 32-bit
+  constexpr double most_bodies = 1e8;  // indices of beams and facets have 32 bits
   const double bodies = (plan.length / plan.element_size) * (plan.width / plan.element_size);
   if (bodies > most_bodies)
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +

@@ -1,6 +1,6 @@
 /// \file
-/// Reading a scene, part by part: each function takes its keys from the options and puts what they
-/// say into the scene. All throw InputError alike on all ranks.
+/// Reading a scene, part by part. Each function reads its keys from the options and stores their
+/// values in the scene. All throw InputError alike on all ranks.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace floe {
 
-/// A number as people write it, six digits at most.
+/// Formats a number with at most six digits.
 std::string text_of(double value);
 
-/// Which forces act, and which keys have no effect without them.
+/// Reads which forces act, and refuses keys that have no effect without them.
 void read_forces(Options& options, Scene& scene);
-/// The sheet and its ice, or the lattice file.
+/// Reads the sheet and its ice, or the lattice file.
 void read_lattice_source(Options& options, Scene& scene);
 void read_regions_and_cuts(Options& options, Scene& scene);
 void read_fracture(Options& options, Scene& scene);
 void read_water(Options& options, Scene& scene);
-/// Contacts and obstacles.
+/// Reads contacts and obstacles.
 void read_contact(Options& options, Scene& scene);
-/// Prescribed motions, loads.
+/// Reads prescribed motions, and loads.
 void read_boundaries(Options& options, Scene& scene);
 void read_loads(Options& options, Scene& scene);
 

@@ -24,11 +24,11 @@ namespace fs = std::filesystem;
 
 constexpr auto key = "checkpoint_restart";
 
-/// What rank 0 finds.
+/// The result of the search on rank 0.
 struct Found {
   std::string file, done_in, remark;
   CheckpointHead head;
-  double done_time = 0;  ///< of the run in done_in [s]
+  double done_time = 0;  ///< end time of the run in done_in [s]
 };
 
 std::string seconds(double value) {
@@ -42,7 +42,8 @@ bool is_there(const std::string& path) {
   return fs::exists(fs::symlink_status(path, ignored));
 }
 
-/// An option that the command line or the scene gives; null if neither does.
+/// Returns an option of the command line or, if it has none, of the scene; null if neither gives
+/// it.
 const Given* given_anew(const UserOptions& user, std::string_view name) {
   for (const GivenOptions* options : {&user.command_line, &user.scene}) {
     if (const auto found = options->find(name); found != options->end()) return &found->second;
@@ -50,7 +51,7 @@ const Given* given_anew(const UserOptions& user, std::string_view name) {
   return nullptr;
 }
 
-/// The checkpoint named by the user.
+/// Reads the head of the checkpoint that the user names.
 Found named_checkpoint(const std::string& file) {
   try {
     return {file, {}, {}, read_head(file)};
@@ -59,14 +60,14 @@ Found named_checkpoint(const std::string& file) {
   }
 }
 
-/// The options of a run that is done and has left no checkpoint.
+/// Returns the options of a run that is done and left no checkpoint.
 std::string options_in(const std::string& dir) {
   std::ostringstream text;
   text << std::ifstream(dir + "/options.yaml").rdbuf();
   return text.str();
 }
 
-/// The newest good checkpoint of a folder, if there is any.
+/// Finds the newest good checkpoint of a folder, if there is one.
 Found newest_checkpoint(const std::string& dir) {
   const std::string newest = (fs::path(dir) / "checkpoint.h5").string(),
                     older = previous_checkpoint(newest);
@@ -94,7 +95,7 @@ Found newest_checkpoint(const std::string& dir) {
   return found;
 }
 
-/// Rank 0's on all ranks.
+/// Broadcasts rank 0's result.
 void share(Found& found, MPI_Comm comm) {
   CheckpointHead& head = found.head;
   for (std::string* text : {&found.file, &found.done_in, &found.remark, &head.version,
@@ -105,13 +106,13 @@ void share(Found& found, MPI_Comm comm) {
   broadcast(found.done_time, comm);
 }
 
-/// Where a run writes whose scene has not been read yet.
+/// Returns the output folder of a run whose scene has not been read yet.
 std::string output_folder(const std::string& scene, const UserOptions& user) {
   const Given* dir = given_anew(user, "output_dir");
   return dir != nullptr ? dir->value : "out/" + fs::path(scene).stem().string();
 }
 
-/// What the checkpoint's run had.
+/// Returns the options of the checkpoint's run.
 GivenOptions options_of(const Found& found) {
   const std::string source =
       found.file.empty() ? found.done_in + "/options.yaml" : "'" + found.file + "'";
@@ -121,7 +122,8 @@ GivenOptions options_of(const Found& found) {
   return options;
 }
 
-/// Results are the same to the last bit only where these are.
+/// Adds a remark if version, level or number of ranks differ: results are the same to the last bit
+/// only where these are.
 void compare(const CheckpointHead& head, MPI_Comm comm, std::vector<std::string>& remarks) {
   const std::string built = built_for(comm);
   int ranks = 1;
@@ -163,12 +165,12 @@ Restart find_restart(const std::string& scene, UserOptions& user, MPI_Comm comm)
   restart.time = found.head.time;
   restart.done_in = found.done_in;
   if (!found.remark.empty()) restart.remarks.push_back(found.remark);
-  if (found.file.empty() && found.head.options.empty()) return restart;  // it begins
+  if (found.file.empty() && found.head.options.empty()) return restart;  // the run begins at t = 0
   user.checkpoint = options_of(found);
   if (const auto end = user.checkpoint.find("time_end"); end != user.checkpoint.end())
     restart.done_end = to_number(end->second.value).value_or(0);
   if (found.file.empty()) return restart;
-  // One that -ts_max_steps ended is done, but not at its end.
+  // A run that -ts_max_steps ended has the status done, but has not reached its end.
   constexpr double rounding = 1e-9;
   if (found.done_time < (1 - rounding) * restart.done_end) {
     found.done_in.clear();
@@ -176,7 +178,7 @@ Restart find_restart(const std::string& scene, UserOptions& user, MPI_Comm comm)
   }
   if (scene.empty()) restart.scene = found.head.scene;
   (user.command_line.contains(key) ? user.command_line : user.scene).at(key).value = found.file;
-  // The run goes on in the folder where its files are, wherever that has been moved.
+  // The run goes on in the folder that has its files, wherever that folder was moved.
   std::string dir = fs::path(found.file).parent_path().string();
   if (dir.empty()) dir = ".";
   bool is_its_folder = false;

@@ -12,28 +12,29 @@
 namespace floe {
 namespace {
 
-/// Whole sections and single keys. Of what moves the bodies only loads may change: they jump at the
-/// time of the checkpoint, while obstacles and boundaries, whose places are functions of the time
-/// since 0, would jump with all that touches them.
-constexpr std::array<std::string_view, 12> may_change{"time: end",
-                                                      "time: allow_unstable",
-                                                      "limit",
-                                                      "output",
-                                                      "checkpoint",
-                                                      "report",
-                                                      "check",
-                                                      "sheet: mesh_file",
-                                                      "lattice_file",  // what is in it may not
-                                                      "load: NAME: force",
-                                                      "load: NAME: moment",
-                                                      "load: NAME: ramp"};
+/// Sections and keys that may change. Of the options that move bodies only loads may: they jump at
+/// the time of the checkpoint. The places of obstacles and boundaries are functions of the time
+/// since 0, so they would jump together with everything in contact with them.
+constexpr std::array<std::string_view, 12> may_change{
+    "time: end",
+    "time: allow_unstable",
+    "limit",
+    "output",
+    "checkpoint",
+    "report",
+    "check",
+    "sheet: mesh_file",
+    "lattice_file",  // its contents may not change
+    "load: NAME: force",
+    "load: NAME: moment",
+    "load: NAME: ramp"};
 
 bool is_free(std::string_view key) {
   const auto is_it = [&](std::string_view free) { return free == key || free == section_of(key); };
   return std::any_of(may_change.begin(), may_change.end(), is_it);
 }
 
-/// The line of the table that an option of the command line is of, and its name in messages.
+/// The table's line of an option of the command line, and the option's name in messages.
 struct Known {
   const OptionSpec* line = nullptr;
   std::string label;
@@ -61,7 +62,7 @@ bool same_item(const std::string& a, const std::string& b) {
   return x && y ? *x == *y : a == b;
 }
 
-/// Whether two texts say the same.
+/// Whether two texts have the same value.
 bool is_same(Kind kind, const std::string& a, const std::string& b) {
   if (a == b) return true;
   if (kind == Kind::flag) return to_flag(a) && to_flag(a) == to_flag(b);
@@ -96,7 +97,7 @@ void refuse_changes(const UserOptions& user) {
       if (options == &user.scene && user.command_line.contains(option)) continue;
       const auto before = user.checkpoint.find(option);
       const std::string was = before == user.checkpoint.end() ? "" : before->second.value;
-      // PETSc's are tuning, but for the step; the type of a stepper its run looks at itself.
+      // PETSc's options are tuning, except the step; the run checks the type of its stepper itself.
       if (option == "ts_dt" && !same_item(given.value, was)) refuse(option, given, was);
       const auto [line, label] = known(option);
       if (line == nullptr || is_free(line->key) || before == user.checkpoint.end()) continue;
@@ -123,7 +124,7 @@ bool is_taken_along(std::string_view option) {
   const auto is_in = [&](std::string_view part) {
     return option.find(part) != std::string_view::npos;
   };
-  // Inner solvers have these families behind a prefix of their own: sub_pc_type.
+  // Inner solvers have these families after a prefix of their own: sub_pc_type.
   return std::any_of(solvers.begin(), solvers.end(), is_in) &&
          std::none_of(watching.begin(), watching.end(), is_in);
 }

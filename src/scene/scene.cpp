@@ -40,7 +40,7 @@ void read_time(Options& options, Scene& scene) {
                      text_of(scene.time.end) + " [s]");
 }
 
-/// What only time integration has a use for.
+/// Reads the keys that only dynamics need, or refuses them in statics.
 void read_dynamics(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::quasistatic) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
@@ -89,11 +89,11 @@ void read_report(Options& options, Scene& scene) {
   }
 }
 
-/// Why results cannot be written to `dir`, or nothing. Looks, but makes nothing.
+/// Returns why results cannot be written to `dir`; empty if they can. Creates nothing.
 std::string output_problem(const std::string& dir) {
   std::error_code error;
   std::filesystem::path there = std::filesystem::absolute(dir, error);
-  // A link to nowhere counts as being there: no folder can be made in its place.
+  // A link to nowhere counts as existing: no folder can be made in its place.
   while (!std::filesystem::exists(std::filesystem::symlink_status(there, error)) &&
          there.has_relative_path())
     there = there.parent_path();
@@ -112,13 +112,14 @@ void read_output(Options& options, Scene& scene) {
   throw_verdict(rank() == 0 ? output_problem(scene.output.dir) : "", PETSC_COMM_WORLD);
 }
 
-/// The water's density may have been meant in another unit.
+/// Returns a question whether the water's density was meant in another unit; empty if it is
+/// plausible.
 std::string density_question(const Scene& scene) {
   const std::string question = unit_question(scene.water_density, "kg/m^3", 500, 2000);
   return question.empty() ? "" : "; water: density:" + question;
 }
 
-/// A floating sheet needs a draft within its thickness.
+/// Checks that the draft of a floating sheet is within its thickness.
 void check_floats(const Scene& scene) {
   if (scene.has_sheet && scene.forces.buoyancy && scene.ice.density >= scene.water_density)
     throw InputError("ice: density: " + text_of(scene.ice.density) + " must be < water: density " +
@@ -126,7 +127,7 @@ void check_floats(const Scene& scene) {
                      density_question(scene));
 }
 
-/// Solver options that nothing in this run could ask for.
+/// Drops solver options that this run cannot use.
 void leave_out_solvers(Options& options, const Scene& scene) {
   const bool chosen = options.on_command_line("integrator");
   if (scene.integrator == Integrator::quasistatic) options.leave_out("ts_", chosen);
@@ -134,7 +135,7 @@ void leave_out_solvers(Options& options, const Scene& scene) {
   for (const auto* family : {"snes_", "ksp_", "pc_", "mat_"}) options.leave_out(family, chosen);
 }
 
-/// The scene as the options say it. What has no effect is refused, or left in options.idle().
+/// Reads the whole scene. Keys without effect are refused, or collected in options.idle().
 Scene read_all(Options& options, const std::string& path) {
   Scene scene;
   scene.path = path;
@@ -162,27 +163,29 @@ Scene read_all(Options& options, const std::string& path) {
   read_report(options, scene);
   read_output(options, scene);
   scene.check_only = options.flag("check");
-  // Without what is of this part of the run only: it repeats the whole run, and no more.
+  // Options that concern only this part of the run are read after this, so that options.yaml
+  // repeats the whole run and no more.
   scene.options_yaml = options_heading() + options.yaml();
   scene.output.overwrite = options.flag("output: overwrite");
   if (options.given("checkpoint: restart"))
     scene.checkpoint.restart = options.text("checkpoint: restart");
-  if (scene.checkpoint.restart == "auto") scene.checkpoint.restart.clear();  // there was none
+  if (scene.checkpoint.restart == "auto")
+    scene.checkpoint.restart.clear();  // there is no checkpoint
   if (options.given("checkpoint: wall_time"))
     scene.checkpoint.wall_time = options.duration("checkpoint: wall_time");
   options.refuse_unread();
   return scene;
 }
 
-/// Labels of the keys that have no effect in the scene's file as it is, without a command line, as
-/// far as it can be read so.
+/// Returns the labels of the keys without effect in the scene's file alone, without the command
+/// line, as far as it can be read so.
 std::set<std::string> idle_without_command_line(const std::string& path, const UserOptions& user) {
   std::set<std::string> labels;
   try {
     Options options(scene_keys(), {{}, user.scene, {}}, true);
     try {
       (void)read_all(options, path);
-    } catch (const InputError&) {  // what the command line mends
+    } catch (const InputError&) {  // the command line may correct it
     }
     for (const IdleKey& key : options.idle()) labels.insert(key.label);
   } catch (const InputError&) {
@@ -190,7 +193,8 @@ std::set<std::string> idle_without_command_line(const std::string& path, const U
   return labels;
 }
 
-/// Keys of the file that have no effect: an error, unless the command line is the cause.
+/// Refuses keys of the file without effect, unless the command line is the cause, which gives a
+/// remark.
 void judge_idle_keys(const Options& options, const std::string& path, const UserOptions& user,
                      Scene& scene) {
   if (options.idle().empty()) return;

@@ -11,7 +11,7 @@
 namespace floe {
 namespace {
 
-/// Ends of the sheet pulled apart along an axis, nothing else held.
+/// Boundaries that pull the ends of the sheet apart along an axis and hold nothing else.
 std::vector<Boundary> pulled_ends(std::size_t axis, double displacement) {
   const std::array<const char*, 2> sets =
       axis == 0 ? std::array{"left", "right"} : std::array{"bottom", "top"};
@@ -26,7 +26,8 @@ std::vector<Boundary> pulled_ends(std::size_t axis, double displacement) {
   return ends;
 }
 
-/// \throws InputError if a body is on both ends: a single row of bodies cannot be stretched across
+/// Checks the ends. \throws InputError if a body is on both ends: a single row of bodies cannot be
+/// stretched across
 void require_two_ends(const Lattice& lattice, const std::vector<Boundary>& ends,
                       std::string_view side) {
   const std::vector<std::int32_t>&first = lattice.sets.at(ends[0].set),
@@ -37,7 +38,7 @@ void require_two_ends(const Lattice& lattice, const std::vector<Boundary>& ends,
         std::string(side) + ": must be of more than one row of bodies");
 }
 
-/// Force along `axis` that the first end's bodies take [N]. Collective.
+/// Force along `axis` on the bodies of the first end [N]. Collective.
 double force_on_first_end(const Model<Planar>& model, const Wrenches<Planar>& wrenches,
                           std::size_t axis) {
   double force = 0;
@@ -84,7 +85,7 @@ StrengthCalibration calibrate_strength(const Scene& scene, const Lattice& lattic
   StrengthCalibration c;
   c.along_x = first_break(scene, lattice, comm, 0) / given;
   c.along_y = first_break(scene, lattice, comm, 1) / given;
-  constexpr double digits = 1e6;  // rounded: the same bits on any number of ranks
+  constexpr double digits = 1e6;  // rounded, so that all numbers of ranks give the same bits
   c.factor = std::round(digits * 2 / (c.along_x + c.along_y)) / digits;
   return c;
 }
