@@ -1,4 +1,4 @@
-// floe SCENE.yaml [-key value ...]: reads like the method section of a paper.
+// floe SCENE.yaml [-key value ...]: runs a scene, in the order of docs/architecture.md, "One run".
 
 #include <malloc.h>
 
@@ -38,15 +38,15 @@ void say_error(const std::string& text) {
   if (floe::rank() == 0) floe::print_error(text);
 }
 
-/// Arrays above 1 MB come from the system and go back to it when they are freed, or the peak of a
-/// large sheet's set-up would be kept for the whole run. After MPI_Init: Open MPI switches that
-/// off.
+/// Makes the system take back arrays above 1 MB when they are freed, or the memory of a large
+/// sheet's set-up would be kept for the whole run. To be called after MPI_Init, since Open MPI
+/// switches that off.
 void give_memory_back() {
   mallopt(M_MMAP_MAX, 1 << 16);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
 }
 
-/// The initial state, kept until the output folder is there.
+/// The initial state, kept until the output folder exists.
 template <class Space>
 struct First {
   floe::State<Space> state;
@@ -54,14 +54,14 @@ struct First {
   std::vector<std::pair<std::string, double>> columns, forces;
 };
 
-/// What a run starts from.
+/// The state of the program before a run.
 struct Start {
   double time;
   std::optional<floe::RunFolder>& folder;
   floe::MeshReport mesh;
   floe::Lattice lattice;
   floe::ModelChoice choice;
-  std::string go_on;  ///< the command that goes on where this one stops
+  std::string go_on;  ///< the command that goes on after this run has stopped
 };
 
 using Columns = std::vector<std::pair<std::string, double>>;
@@ -74,7 +74,7 @@ std::vector<std::string> names_of(const Columns& forces, const Columns& integrat
   return names;
 }
 
-/// The files of another run would be cut back.
+/// Refuses a folder with files of another run, which would be cut back.
 void require_same_run(const floe::Scene& scene, const floe::RunFolder& folder,
                       const std::string& run) {
   if (run.empty())
@@ -113,11 +113,11 @@ int run(const floe::Scene& scene, Start& start) {
   packed.pack_beams(lattice);
   if (size() == 1) packed.pack_bodies(lattice, model.part().bodies);
 
-  // 4. Output, opened once every option is known to be understood: bad input leaves no folder
-  // behind. Solvers read some of theirs during the first step.
+  // 4. Output. The folder is opened when all options are known to be understood, so that bad input
+  // leaves no folder behind: solvers read some of their options in the first step.
   RunFolder* const folder = start.folder ? &*start.folder : nullptr;
   std::optional<Output<Space>> output;
-  std::optional<OutputArchive> restart;  // what a checkpoint says of the files to go on with
+  std::optional<OutputArchive> restart;  // history of the files to go on with, from a checkpoint
   std::optional<First<Space>> first;
   const auto open = [&](const std::vector<std::string>& columns) {
     reject_unused_options(scene.unused_options);
@@ -131,7 +131,7 @@ int run(const floe::Scene& scene, Start& start) {
     if (restart) make_newest(scene.checkpoint.restart, checkpoint_file(scene), PETSC_COMM_WORLD);
     start.mesh.keep();
     start.mesh.keep = [] {};
-    if (rank() == 0) packed.unpack(lattice);  // others need no geometry but places
+    if (rank() == 0) packed.unpack(lattice);  // other ranks need positions only
     output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
                    std::move(lattice), model, loads, scene.options_yaml,
                    restart ? &*restart : nullptr);
@@ -163,12 +163,12 @@ int run(const floe::Scene& scene, Start& start) {
       files.persist(archive);
     }
   };
-  // A checkpoint must not outlive the files that it knows of.
+  // The files must be on disk before a checkpoint that refers to them.
   const auto before_checkpoint = [&](const std::vector<std::string>& columns) {
     prepare(columns);
     output->sync();
   };
-  // Bad input ends with one line: what may be meant so is said once the run is known to be
+  // Bad input ends with a single line, so warnings are printed only when the run is known to be
   // possible.
   const auto on_plan = [&](const RunPlan& plan) {
     for (const std::string& warning : scene.warnings) say_error("floe: warning: " + warning + "\n");
@@ -182,8 +182,8 @@ int run(const floe::Scene& scene, Start& start) {
         std::to_string(model.part().global_beams) + " beams\n");
     return done;
   }
-  prepare({});  // a run that found not even a first state leaves a summary that says so
-  const bool goes_on = result.stopped && !is_static;  // where it was
+  prepare({});  // a run without even a first state leaves a summary that says so
+  const bool goes_on = result.stopped && !is_static;  // from its checkpoint
   if (!goes_on) output->finish();
 
   // 6. Results
@@ -203,14 +203,14 @@ int run(const floe::Scene& scene, Start& start) {
   return result.done ? done : result.stopped ? stopped : failed;
 }
 
-/// What a user has asked for.
+/// The user's request.
 struct Wish {
   const floe::program::Words& words;  ///< the command
   const floe::UserOptions& options;
   const floe::Restart& restart;
 };
 
-/// With `auto` a run that is done is not made again.
+/// Whether the run of a restart by `auto` is done already; it is not repeated.
 bool is_done(const floe::Scene& scene, const floe::Restart& restart) {
   constexpr double rounding = 1e-12;
   const std::string& dir = restart.done_in;
@@ -225,7 +225,8 @@ bool is_done(const floe::Scene& scene, const floe::Restart& restart) {
   return true;
 }
 
-/// \param folder  where the results go, for who ends the run; none if the scene is only checked
+/// Makes a run. \param folder  set to the output folder, for the caller that ends the run; stays
+/// empty if the scene is only checked
 int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
   using namespace floe;
   Start start{MPI_Wtime(), folder, {}, {}, {}, {}};
@@ -244,12 +245,12 @@ int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
       if (folder && (folder->has_begun() || run_place().code == failed)) {
         folder->fail(why);
       } else {
-        folder.reset();  // nothing of it is left
+        folder.reset();  // removes all that was made
       }
     });
   }
 
-  // 2. Sheet -> lattice, and what it does not need
+  // 2. Sheet -> lattice, and the choice of the model
   run_place().stage = "while the lattice was made";
   start.lattice = make_lattice(scene, PETSC_COMM_WORLD, start.mesh);
   stop_if_asked(PETSC_COMM_WORLD);
@@ -274,7 +275,7 @@ int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
   return code;
 }
 
-/// The run, and how it ends if something ends it: one line, and what the folder should say.
+/// Makes the run. If an error ends it, prints one line and writes the summary of the failure.
 int run_to_an_end(const Wish& user) {
   std::optional<floe::RunFolder> folder;
   const auto end = [&](const floe::Verdict& why, int code) {
@@ -298,7 +299,7 @@ int run_to_an_end(const Wish& user) {
   }
 }
 
-/// The scene's run.
+/// Reads the command line and the scene, and makes the run.
 int run_command(int argc, char** argv, const floe::program::Words& words,
                 floe::StopSignals& signals) {
   try {

@@ -9,7 +9,7 @@
 namespace floe::program {
 namespace {
 
-/// A word as a shell takes it back.
+/// Quotes a word for a shell.
 std::string quoted(const std::string& word) {
   constexpr std::string_view harmless = "_./:,=+@%-";
   const auto plain = [&](unsigned char c) {

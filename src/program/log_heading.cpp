@@ -13,7 +13,7 @@
 namespace floe::program {
 namespace {
 
-/// As one would type it.
+/// Quotes a word for a shell.
 std::string shell_word(std::string_view word) {
   bool plain = !word.empty();
   for (const char c : word)

@@ -6,8 +6,8 @@
 
 namespace floe::program {
 
-/// Version, date, command line, folder, machine, number of ranks and the processors that the
-/// library is built for. After MPI has begun.
+/// Returns version, date, command line, folder, machine, number of ranks and the processors for
+/// which the library is built. To be called after MPI has begun.
 std::string log_heading(int argc, const char* const* argv);
 
 }  // namespace floe::program

@@ -10,7 +10,7 @@ namespace floe::program {
 namespace fs = std::filesystem;
 
 fs::path program_file() {
-  // /proc/self/exe would be the loader where that runs the program.
+  // /proc/self/exe would be the loader if that runs the program.
   const auto here = reinterpret_cast<std::uintptr_t>(&program_file);
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {

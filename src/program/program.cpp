@@ -28,7 +28,7 @@ constexpr auto usage =
     "       floe -help [SECTION or KEY]        options of scenes: default, unit, range\n"
     "       floe --version                     version of floe and of its libraries\n";
 
-/// Of the launcher's variables the first that is there.
+/// Returns the first of the launcher's variables that is set, null if none is.
 template <std::size_t N>
 const char* first_of(const std::array<const char*, N>& variables) {
   for (const char* variable : variables) {
@@ -37,8 +37,9 @@ const char* first_of(const std::array<const char*, N>& variables) {
   return nullptr;
 }
 
-/// On the first rank only, or every rank would say the same. The others have not failed: a launcher
-/// ends all processes with the first that has, if need be before the first rank has spoken.
+/// Prints on the first rank only, since all ranks would print the same. The other ranks return
+/// success: a launcher ends all processes when one fails, possibly before the first rank has
+/// printed.
 int say(const std::string& text, Exit code, std::FILE* where = stdout) {
   if (!is_first_rank()) return done;
   std::fputs(text.c_str(), where);
@@ -64,7 +65,7 @@ std::string help() {
          "options (floe help sheet), version.\n";
 }
 
-/// A section, a key, or a family of PETSc's; empty if the topic is none of them.
+/// Returns the help of a section, a key, or a family of PETSc's options; empty for other topics.
 std::string options_about(const std::string& topic) {
   const std::string keys = options_topic(topic);
   return keys.empty() ? solver_options_help(topic) : keys;

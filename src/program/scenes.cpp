@@ -21,7 +21,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, none);
 }
 
-/// Names of a folder's scenes, without their extension.
+/// Returns the names of a folder's scenes, without their extension.
 std::vector<std::string> scenes_in(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code none;
@@ -32,7 +32,7 @@ std::vector<std::string> scenes_in(const fs::path& folder) {
   return names;
 }
 
-/// The first sentence of the comment at a scene's head, whose first line is a command.
+/// Returns the first sentence of the comment at a scene's head, whose first line is a command.
 std::string subject_of(const fs::path& scene) {
   std::ifstream file(scene);
   std::string line, text;
@@ -73,7 +73,7 @@ std::string near_scene(const std::string& scene) {
   const fs::path given(scene), shipped = scenes_folder();
   const auto is_it = [](const fs::path& path) { return "; is it '" + path.string() + "'?"; };
 
-  // The same name with the extension, here or among the scenes that came with floe
+  // The same name with the extension, here or among the scenes that come with floe
   const fs::path with_extension = fs::path(scene).replace_extension(".yaml");
   for (const fs::path& name : {with_extension, fs::path(scene + ".yaml")}) {
     if (is_file(name)) return is_it(name);
@@ -83,7 +83,7 @@ std::string near_scene(const std::string& scene) {
     if (!shipped.empty() && is_file(path)) return is_it(path);
   }
 
-  // A tool, or a name that is nearly right
+  // A tool, or a name with a spelling mistake
   if (!is_scene(scene)) {
     std::vector<std::string_view> known{"help", "version"};
     for (const Subcommand& tool : subcommands()) known.push_back(tool.name);

@@ -1,5 +1,5 @@
 /// \file
-/// The scenes that come with floe, and names that are nearly those of scenes.
+/// The scenes that come with floe, and hints for misspelt names of scenes.
 #pragma once
 
 #include <filesystem>
@@ -7,13 +7,13 @@
 
 namespace floe::program {
 
-/// The shipped scenes' folder, or nothing.
+/// Returns the folder of the scenes that come with floe; empty if there is none.
 std::filesystem::path scenes_folder();
 
-/// The shipped scenes, each with the first sentence of its comment.
+/// Lists the scenes that come with floe, each with the first sentence of its comment.
 std::string list_of_scenes();
 
-/// Whether a first word is a scene: a file, or a word with '/' or '.' in it. A tool is not,
+/// Whether a first word is a scene: a file, or a word with '/' or '.' in it. A tool is no scene,
 /// although it is a file in tools/.
 bool is_scene(std::string_view word);
 

@@ -51,7 +51,7 @@ int run_subcommand(char** argv) {
     return failed;
   }
   const std::string tool = folder / "tools" / name;
-  // What the tool runs is this floe, unless the user names another.
+  // The tool runs this floe, unless the user names another.
   setenv("FLOE", program_file().c_str(), 0);
   argv[0] = const_cast<char*>(tool.c_str());  // NOLINT: execv's words are not const
   execv(tool.c_str(), argv);

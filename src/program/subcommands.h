@@ -7,19 +7,21 @@
 
 namespace floe::program {
 
+/// A tool and its description.
 struct Subcommand {
   std::string_view name;
-  std::string_view line;  ///< what it does, as floe help lists it
+  std::string_view line;  ///< description in the list of floe help
 };
 
-/// All of them: each is a program of that name in tools/.
+/// All tools: each is a program of that name in tools/.
 std::span<const Subcommand> subcommands();
 
 /// Whether a tool has this name.
 bool is_subcommand(std::string_view word);
 
-/// Becomes the tool, with the words after it. \param argv  words of the tool, its name first, ended
-/// by a null pointer \return an exit code, after one line on standard error, if it cannot
+/// Replaces this process by the tool.
+/// \param argv  words of the tool, its name first, ended by a null pointer
+/// \return an exit code, after one line on standard error, if the tool cannot be run
 int run_subcommand(char** argv);
 
 }  // namespace floe::program

@@ -16,13 +16,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Boundary of the scene that fixes x of a set; null if there is none.
 const Boundary* boundary_on(const Scene& scene, const std::string& set) {
   const auto found = std::find_if(scene.boundaries.begin(), scene.boundaries.end(),
                                   [&](const Boundary& b) { return b.set == set && b.fixed[0]; });
   return found == scene.boundaries.end() ? nullptr : &*found;
 }
 
-/// The load that a bending test has: one, at a point.
+/// Load of a bending test: the first one at a point; null if there is none.
 const Load* point_load(const Scene& scene) {
   const auto found = std::find_if(scene.loads.begin(), scene.loads.end(),
                                   [](const Load& l) { return l.point.has_value(); });
@@ -51,9 +52,10 @@ double mean_x(const Model<Space>& model, const Boundary& boundary) {
   return sum / number;
 }
 
-/// E = F/(A0 eps) with F the internal forces of the beams on the left bodies, eps = u/L, A0 = width
-/// h (paper). The same with the gauge length, between the edge cells' centroids that u acts on,
-/// for L, is what tends to the modulus of a large sheet.
+/// Adds the tension test (model.md, "Tension test"): E = F/(A0 eps) with F the internal forces of
+/// the beams on the left bodies, eps = u/L, A0 = width h (paper). With the gauge length between the
+/// centroids of the edge cells, on which u acts, in place of L, E tends to the modulus of a large
+/// sheet.
 template <class Space>
 void add_tension(const Scene& scene, const Model<Space>& model, const MeshReport& mesh,
                  const Sample& last, Json& json, std::string& text) {
@@ -84,8 +86,9 @@ void add_tension(const Scene& scene, const Model<Space>& model, const MeshReport
                gauged / scene.ice.young, gauge);
 }
 
-/// Deflection of the load's point from the floating equilibrium at time 0, against the infinite
-/// plate's w0 = P/(8 k l_c^2), k = rho_w g, l_c = (D/k)^(1/4) (Wyman 1950).
+/// Adds the bending test (model.md, "Bending on water"): the deflection of the load's point from
+/// the floating equilibrium at time 0, compared with the infinite plate's w0 = P/(8 k l_c^2), k =
+/// rho_w g, l_c = (D/k)^(1/4) (Wyman 1950).
 void add_bending(const Scene& scene, const Sample& first, const Sample& last, Json& json,
                  std::string& text) {
   const Load& load = *point_load(scene);
@@ -104,7 +107,7 @@ void add_bending(const Scene& scene, const Sample& first, const Sample& last, Js
                deflection / wyman, wyman, characteristic);
 }
 
-/// Number of contacts at the end, and the largest and the mean force on each obstacle.
+/// Adds the number of contacts at the end, and the largest and the mean force on each obstacle.
 void add_contacts(const Scene& scene, const Sample& last, Json& json) {
   const auto value = [&](const std::string& name) {
     const auto found = std::find_if(last.forces.begin(), last.forces.end(),
@@ -123,7 +126,7 @@ void add_contacts(const Scene& scene, const Sample& last, Json& json) {
   }
 }
 
-/// What a large sheet of this lattice has, less the material's constants.
+/// Adds the expected constants of a large sheet of this lattice less those of the material.
 void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::string& text) {
   const double nu = scene.ice.poisson;
   Json j;
@@ -153,7 +156,7 @@ void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::
 
 namespace {
 
-/// Why this scene is no such test, or nothing.
+/// Returns why the scene is no tension test; empty if it is one.
 std::string tension_problem(const Scene& scene) {
   const Boundary *left = boundary_on(scene, "left"), *right = boundary_on(scene, "right");
   if (!scene.has_sheet || left == nullptr || right == nullptr)
@@ -164,6 +167,7 @@ std::string tension_problem(const Scene& scene) {
   return {};
 }
 
+/// Returns why the scene is no bending test; empty if it is one.
 std::string bending_problem(const Scene& scene) {
   const Load* load = point_load(scene);
   if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)

@@ -7,7 +7,7 @@
 namespace floe {
 namespace {
 
-/// A unit that people have in mind where the scene wants SI, and how much of SI it is.
+/// A unit that users may have in mind where the scene expects SI, and its size in SI.
 struct Unit {
   std::string_view si, name;
   double size;

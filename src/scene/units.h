@@ -1,5 +1,5 @@
 /// \file
-/// Numbers that are off by a thousand or a million, as they are where units were mistaken.
+/// Detection of numbers that are wrong by a thousand or a million, as mistaken units are.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace floe {
 
-/// " is it meant in GPa?", if `value` in that unit instead of `unit` would be from `least` to
-/// `most`; else nothing.
+/// Returns " is it meant in GPa?" if `value`, read in that unit instead of `unit`, would be from
+/// `least` to `most`; else an empty string.
 std::string unit_question(double value, std::string_view unit, double least, double most);
 
-/// One line per number of a scene's sheet, water and contacts that is far from what is usual for
-/// ice.
+/// Returns a line for each number of a scene's sheet, water, fracture and contact that is far from
+/// the usual range for ice.
 std::vector<std::string> unusual_numbers(const Scene& scene);
 
 }  // namespace floe
