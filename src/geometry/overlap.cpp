@@ -16,7 +16,7 @@ std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face)
           shapes.corners.data() + shapes.corner_of[face + 1]};
 }
 
-/// Nothing for a face without area: it bounds nothing.
+/// Returns the plane of a face; nothing for a face without area, which bounds nothing.
 std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   const auto corners = corners_of(shapes, face);
   const auto at = [&](std::size_t k) {
@@ -63,7 +63,7 @@ double concavity(const Shapes& shapes, std::int32_t body) {
 
 Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
                          std::span<const Vec3<double>> placed, std::span<const HalfSpace> planes) {
-  // The plane that leaves least comes first: what the others then cut is small.
+  // Clip first by the plane that removes most of A, because the later cuts are then small.
   std::size_t first_plane = 0;
   double shallowest = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < planes.size(); ++k) {
@@ -84,7 +84,7 @@ Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
   return integrals();
 }
 
-/// The whole body.
+/// Sets now_ to the whole body.
 void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed) {
   const auto b = static_cast<std::size_t>(body);
   const std::int32_t base = shapes.vertex_of[b];
@@ -101,7 +101,7 @@ void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec
     now_.corners.push(shapes.corners[c] - base);
 }
 
-/// Clips by one half-space; false if nothing is left.
+/// Clips by one half-space; returns false if the rest is empty.
 bool Clipper::cut(const HalfSpace& plane) {
   const std::size_t n = now_.points.size();
   if (distance_.size() < n) {
@@ -116,12 +116,12 @@ bool Clipper::cut(const HalfSpace& plane) {
   if (inside == n) return true;
   if (inside == 0) return false;
 
-  // At the most every edge is crossed, that is every second corner, which both of its faces get
-  // and a cap.
+  // At most every edge is crossed, which gives half as many crossings as corners. Each crossing is
+  // a corner of both faces of its edge and of a cap.
   const std::size_t corners = now_.corners.size();
   next_.clear(n + corners, 3 * corners, now_.faces.size() + corners);
   crossings_.clear(corners);
-  for (std::size_t k = 0; k < n; ++k) {  // without a branch that would be guessed wrong
+  for (std::size_t k = 0; k < n; ++k) {  // without a branch, which would be mispredicted
     const bool in = distance_[k] <= 0;
     place_[k] = in ? static_cast<std::int32_t>(next_.points.size()) : -1;
     next_.points.push(now_.points[k]);
@@ -134,7 +134,8 @@ bool Clipper::cut(const HalfSpace& plane) {
   return true;
 }
 
-/// The crossing of an edge, made when its first face is clipped and found when its second is.
+/// Returns the crossing of an edge: made when the first face of the edge is clipped, found when the
+/// second is.
 std::int32_t Clipper::crossing(std::int32_t inside, std::int32_t outside) {
   for (std::size_t k = 0; k < crossings_.size(); ++k) {
     if (crossings_[k].inside == inside && crossings_[k].outside == outside)
@@ -169,7 +170,7 @@ void Clipper::clip_face(const Face& face, std::int32_t kept) {
     } else if (!a_in && b_in) {
       const std::int32_t entered = crossing(b, a);
       next_.corners.push(kept + entered);
-      // The cap runs against the face: from where the face enters to where it has left.
+      // The cap runs against the face: from the face's entry to its exit.
       if (left >= 0) {
         crossings_[static_cast<std::size_t>(entered)].next = left;
         left = -1;
@@ -194,8 +195,8 @@ void Clipper::close_caps(std::int32_t kept) {
       k = crossings_[static_cast<std::size_t>(k)].next;
     }
     const auto end = static_cast<std::int32_t>(next_.corners.size());
-    // A cap of two corners has no area; without it the two faces beside it share that edge, and no
-    // edge ever has more than two faces.
+    // A cap of two corners has no area. Without it the two faces beside it share that edge, so that
+    // no edge ever has more than two faces.
     if (end - begin > 2) {
       next_.faces.push({begin, end, true});
     } else {
@@ -204,8 +205,8 @@ void Clipper::close_caps(std::int32_t kept) {
   }
 }
 
-/// Cones over the triangles of all facets, with a vertex of the overlap as apex: numbers are as
-/// small as the overlap.
+/// Sums cones over the triangles of all facets, with a vertex of the overlap as apex, so that all
+/// numbers are as small as the overlap.
 Overlap Clipper::integrals() const {
   const Vec3<double> apex = now_.points[0];
   double volume6 = 0;

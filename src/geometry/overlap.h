@@ -1,9 +1,10 @@
 /// \file
-/// What two convex polyhedra have in common: exact up to rounding, whatever the position.
+/// The overlap of two convex polyhedra, exact up to rounding in any position.
 ///
 /// Notation: the polyhedron A is given by its vertices, B by the planes of its faces, both in one
-/// frame (for small numbers: B's own). The overlap's surface consists of facets on A's surface and
-/// of facets on B's; those on B's are the caps that clipping A by B's half-spaces leaves behind.
+/// frame (B's own, which keeps numbers small). The surface of the overlap consists of facets on A's
+/// surface and facets on B's; the facets on B's surface are the caps that clipping A by B's
+/// half-spaces leaves.
 #pragma once
 
 #include <cstdint>
@@ -19,44 +20,46 @@ namespace floe {
 struct Overlap {
   double volume = 0;        ///< V [m^3]
   Vec3<double> centroid{};  ///< c [m]
-  Vec3<double> area{};      ///< S, the sum of area vectors of the facets on B, outwards [m^2]
-  Vec3<double> moment{};    ///< sum of int (r - c) x dA over the same facets [m^3]
+  Vec3<double> area{};      ///< S, the sum of the area vectors of the facets on B, outwards [m^2]
+  Vec3<double> moment{};    ///< sum of int (r - c) x dA over the facets on B [m^3]
 };
 
-/// Half-spaces whose intersection is body b of `shapes`, one per face, in its own frame: normals by
-/// Newell's sums, offsets that hold all corners of the face.
+/// Appends the half-spaces whose intersection is body b of `shapes`, one per face, in the body's
+/// own frame. The normals are Newell's sums; each offset holds all corners of its face.
 void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<HalfSpace>& planes);
 
-/// Largest distance of a vertex of body b beyond one of its faces' planes, or of a face's corner
-/// from its plane [m]: rounding if the body is convex and its faces are plane.
+/// Returns the largest distance of a vertex of body b beyond the plane of one of its faces, or of a
+/// face's corner from the face's plane [m]. It is of the size of rounding if the body is convex and
+/// its faces are plane.
 double concavity(const Shapes& shapes, std::int32_t body);
 
-/// Clips polyhedra; the memory it works in is its own and kept, so that calls do not allocate once
-/// it has grown.
+/// Clips polyhedra. An object keeps its working memory, so that calls do not allocate once the
+/// memory has grown.
 ///
-/// A cut asks for each vertex only on which side of the plane it is. A vertex at the plane counts
-/// as inside. Every edge with one end inside gets one new vertex, for both of its faces, and each
-/// new vertex is where one face's boundary leaves the half-space and another's enters it, so that
-/// the caps are closed loops for any pattern of signs: the surface stays closed, and the integrals
-/// over it right to rounding, in all degenerate positions. No divisor can vanish.
+/// A cut depends on each vertex only by the side of the plane on which the vertex lies. A vertex at
+/// the plane counts as inside. Every edge with one end inside gets one new vertex, for both of its
+/// faces, and at each new vertex one face's boundary leaves the half-space and another's enters it,
+/// so that the caps are closed loops for any pattern of signs: the surface stays closed, and the
+/// integrals over it right to rounding, in all degenerate positions. No divisor can vanish.
 class Clipper {
  public:
-  /// \param placed  vertices of body `body` of `shapes`, in B's frame, as many as it has
-  /// \param planes  B's half-spaces   \returns zeros if A and B do not overlap
+  /// Returns the overlap of A and B, zeros if there is none.
+  /// \param placed  vertices of body `body` of `shapes`, in B's frame [m]
+  /// \param planes  B's half-spaces
   Overlap overlap(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed,
                   std::span<const HalfSpace> planes);
 
  private:
   struct Face {
-    std::int32_t begin, end;  ///< its corners
+    std::int32_t begin, end;  ///< corners begin ... end-1
     bool on_b;
   };
   struct Crossing {
-    std::int32_t inside, outside;  ///< ends of the edge
-    std::int32_t next;             ///< along the cap
+    std::int32_t inside, outside;  ///< ends of the edge, by their side of the plane
+    std::int32_t next;             ///< next crossing along the cap
     bool done;
   };
-  /// Entries whose room is made before they come, so that pushing does not look.
+  /// A stack whose room is reserved in advance, so that push() makes no check.
   template <class T>
   class Stack {
    public:
@@ -96,7 +99,7 @@ class Clipper {
 
   Mesh now_, next_;
   std::vector<double> distance_;
-  std::vector<std::int32_t> place_;  ///< of a vertex among those that are kept, or -1
+  std::vector<std::int32_t> place_;  ///< index of a vertex among the kept ones, or -1
   Stack<Crossing> crossings_;
 };
 

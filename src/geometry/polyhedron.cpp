@@ -7,8 +7,8 @@ namespace floe {
 PlanProperties plan_properties(std::span<const Point2> polygon) {
   PlanProperties p;
   if (polygon.size() < 3) return p;
-  // Green's theorem about the first vertex: the sums stay as small as the polygon, wherever it
-  // lies.
+  // Green's theorem about the first vertex: the sums stay as small as the polygon, wherever the
+  // polygon lies.
   const auto [x0, y0] = polygon[0];
   double area2 = 0, sx = 0, sy = 0, xx = 0, yy = 0, xy = 0;
   for (std::size_t k = 1; k + 1 < polygon.size(); ++k) {
@@ -41,8 +41,8 @@ double triple(const Point3& a, const Point3& b, const Point3& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Cones of a fixed apex over triangles: six times the volume, and 24 times the first moment, about
-/// it.
+/// Sums of cones with one apex over triangles: six times the volume, and 24 times the first moment
+/// about the apex.
 struct Cones {
   Point3 apex;
   double volume6 = 0;
@@ -108,9 +108,9 @@ Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Poi
   for (const Point3& p : placed) (p[2] < level ? any_below : any_above) = true;
   if (!any_below) return s;
 
-  // The apex of all cones lies in the water's plane, so that the cut itself contributes nothing and
-  // each face can be clipped on its own, without a list of what is left of it. Its place in the
-  // plane is the first vertex's, for small numbers.
+  // The apex of all cones lies in the plane of the water, so that the cut itself contributes
+  // nothing and each face can be clipped on its own, without a list of its remaining parts. The
+  // other two coordinates are the first vertex's, for small numbers.
   Cones cones{placed[0]};
   if (any_above) cones.apex[2] = level;
   const Point3& o = cones.apex;
@@ -121,8 +121,8 @@ Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Poi
   const auto corner = [&](std::int32_t k) -> const Point3& {
     return placed[static_cast<std::size_t>(shapes.corners[k] - base)];
   };
-  // Where the edge from a (below) to b (not below) meets the plane: both faces of an edge get the
-  // same bits.
+  // Returns the point in which the edge from a (below) to b (not below) meets the plane. Both faces
+  // of an edge get the same bits.
   const auto crossing = [level](const Point3& a, const Point3& b) {
     const double t = (level - a[2]) / (b[2] - a[2]);
     return Point3{a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), level};
@@ -154,7 +154,8 @@ Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Poi
       }
     }
     if (!cut) continue;
-    // Seen from above, the face's share of the cut's boundary runs against its own direction.
+    // Seen from above, the part of the cut's boundary on this face runs against the face's
+    // direction.
     const double ax = enters[0] - o[0], ay = enters[1] - o[1];
     const double bx = leaves[0] - o[0], by = leaves[1] - o[1];
     const double c = ax * by - bx * ay;

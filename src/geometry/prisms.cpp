@@ -47,7 +47,7 @@ std::optional<Prisms> as_prisms(const Shapes& shapes) {
   Prisms prisms;
   prisms.bottom = shapes.vertices.front()[2];
   prisms.top = shapes.vertices[static_cast<std::size_t>(shapes.vertex_of[1]) - 1][2];
-  Shapes one;  // what body b would be
+  Shapes one;  // the prism that body b must equal
   for (std::size_t b = 0; b < static_cast<std::size_t>(shapes.bodies()); ++b) {
     const auto first = static_cast<std::size_t>(shapes.vertex_of[b]),
                end = static_cast<std::size_t>(shapes.vertex_of[b + 1]);

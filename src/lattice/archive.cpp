@@ -28,7 +28,7 @@ std::vector<double> Archive::read(const std::string& name, Within must, int colu
   return values;
 }
 
-/// A dataset of one number.
+/// Reads a dataset of one number.
 std::vector<double> Archive::one(const std::string& name, Within must) {
   std::vector<double> values = read(name, must);
   if (values.size() != 1) refuse(name + " must be one number");
@@ -52,7 +52,7 @@ void Archive::common(const std::string& name, double& value, Within must) {
 }
 
 void Archive::common(const std::string& name, std::int64_t& value, std::int64_t least) {
-  constexpr double most = 9007199254740992;  // 2^53: exact up to there
+  constexpr double most = 9007199254740992;  // 2^53, up to which doubles hold every integer
   auto number = static_cast<double>(value);
   common(name, number, {static_cast<double>(least), most});
   value = static_cast<std::int64_t>(number);
@@ -91,7 +91,7 @@ void Archive::share(const std::string& name, double& value) {
   }
 }
 
-/// Rank after rank, on rank 0.
+/// Returns the numbers of all ranks on rank 0, in order of the ranks. Collective.
 std::vector<double> Archive::gathered(std::span<const double> mine) const {
   const auto ranks = static_cast<std::size_t>(size(part_.comm));
   const int count = static_cast<int>(mine.size());

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int bits = 20;  // per axis: 60-bit keys, cells of a millionth of the extent
 
-/// Index along the three-dimensional Hilbert curve of a point with integer coordinates
+/// Returns the index along the three-dimensional Hilbert curve of a point with integer coordinates
 /// (Skilling 2004, "Programming the Hilbert curve", AIP Conf. Proc. 707, 381: axes to transpose).
 /// CGAL's hilbert_sort is not used: its median splits put points with equal coordinates (every flat
 /// sheet) in arbitrary order.

@@ -24,7 +24,7 @@ std::string text_of(double value) {
   return text.data();
 }
 
-/// Names the file and the dataset in whatever is wrong with it.
+/// Reads and checks datasets; every error message names the file and the dataset.
 class Reader {
  public:
   explicit Reader(const std::string& path, std::string key = "lattice_file")
@@ -71,7 +71,7 @@ class Reader {
   }
 
  private:
-  /// Products of a few such numbers are still finite.
+  /// Limits the size of values, so that products of a few of them are finite.
   void check_size(const std::string& name, const char* what, std::size_t k, double value) const {
     constexpr double largest = 1e30;
     if (!(std::abs(value) <= largest))
@@ -98,7 +98,7 @@ Bodies read_bodies(const Reader& in) {
     if (std::abs(norm - 1) > 1e-6)
       in.refuse("/bodies/orientation",
                 "row " + std::to_string(k) + " is not a unit quaternion (w x y z)");
-    // What floe wrote is unit to rounding and must come back to the bit.
+    // Quaternions that floe wrote are unit to rounding and must keep their bits.
     if (std::abs(norm - 1) > 1e-15) b.orientation[k] = {w / norm, x / norm, y / norm, z / norm};
   }
   b.mass = in.scalars("/bodies/mass", n);
@@ -135,7 +135,7 @@ void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
   }
 }
 
-/// A second beam between the same bodies would be a mistake that doubles a stiffness.
+/// Refuses a second beam between the same bodies, which would double a stiffness by mistake.
 void check_pairs(const Reader& in, const std::vector<std::array<std::int32_t, 2>>& pairs) {
   const bool sorted = std::adjacent_find(pairs.begin(), pairs.end(), std::greater_equal()) ==
                       pairs.end();  // as floe writes them
@@ -183,7 +183,7 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
   return beams;
 }
 
-/// Offsets must start at 0, grow, and end at `end`.
+/// Checks that offsets start at 0, do not decrease, and end at `end`.
 void check_offsets(const Reader& in, const std::string& name,
                    const std::vector<std::int32_t>& offsets, std::size_t groups, std::size_t end) {
   if (offsets.size() != groups + 1)
@@ -193,7 +193,8 @@ void check_offsets(const Reader& in, const std::string& name,
     in.refuse(name, "must grow from 0 to " + std::to_string(end));
 }
 
-/// Faces that close around the body's centroid, seen counter-clockwise from outside.
+/// Checks that the faces of each body close and are counter-clockwise seen from outside, and, with
+/// `centred_at_origin`, that the centroid is the origin.
 void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
@@ -215,7 +216,7 @@ void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
       in.refuse("/shapes/corners",
                 name + ": faces must be counter-clockwise seen from outside, around a volume > 0");
     if (!centred_at_origin) continue;
-    constexpr double centred = 1e-6;  // of the body's size
+    constexpr double centred = 1e-6;  // relative to the body's size
     if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
       in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
   }

@@ -8,8 +8,8 @@
 namespace floe {
 namespace {
 
-/// Reverse Cuthill-McKee order of the bodies, neighbours being those joined by a beam (PETSc's, on
-/// one rank).
+/// Returns the reverse Cuthill-McKee order of the bodies, where bodies joined by a beam are
+/// neighbours (PETSc's ordering, on one rank).
 std::vector<std::int32_t> reverse_cuthill_mckee(const Lattice& lattice) {
   const PetscInt n = lattice.bodies.size();
   std::vector<PetscInt> start(static_cast<std::size_t>(n) + 1, 0);
@@ -58,8 +58,8 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
     std::sort(set.begin(), set.end());
   }
 
-  // A beam runs from the smaller to the larger body. ImplicitRotations it round turns axis 1, and
-  // axis 2 with it, so that axis 3 = 1 x 2 (up, in a sheet) stays.
+  // A beam runs from the smaller to the larger body. Reversing a beam turns axis 1, and axis 2 with
+  // it, so that axis 3 = 1 x 2 (up, in a sheet) stays.
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
     auto& [i, j] = lattice.beams.bodies[m];
     i = renumbered[static_cast<std::size_t>(i)];

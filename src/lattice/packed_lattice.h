@@ -1,5 +1,5 @@
 /// \file
-/// A lattice that waits in less memory.
+/// A lattice in less memory, for the time between its uses.
 #pragma once
 
 #include <array>
@@ -9,16 +9,17 @@
 
 namespace floe {
 
-/// What a sheet's lattice can do without while nobody looks at it: shapes, where they are prisms of
-/// one thickness, properties that all beams share, and bodies that are a part's as well. A large
-/// sheet's lattice is most of rank 0's memory during a run's set-up.
+/// Packs the parts of a sheet's lattice that can be restored: shapes that are prisms of one
+/// thickness, properties that all beams share, and bodies that a Part holds too. A large sheet's
+/// lattice takes most of rank 0's memory during the set-up of a run.
 class PackedLattice {
  public:
   void pack_shapes(Lattice& lattice);
   void pack_beams(Lattice& lattice);
-  /// \param copy  of the bodies, must live until unpack(); if it differs, the bodies stay
+  /// \param copy  equal bodies, which must live until unpack(); if they differ, the lattice keeps
+  /// its own
   void pack_bodies(Lattice& lattice, const Bodies& copy);
-  /// As it was, to the last bit.
+  /// Restores the lattice to the last bit.
   void unpack(Lattice& lattice);
 
  private:

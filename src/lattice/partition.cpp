@@ -10,7 +10,7 @@
 namespace floe {
 namespace {
 
-/// Owner of every body: equal chunks along the Hilbert curve.
+/// Returns the owner of every body: equal chunks along the Hilbert curve.
 std::vector<std::int32_t> owners(const Lattice& lattice, int ranks) {
   const std::vector<std::int32_t> along = hilbert_order(lattice.bodies.position);
   const auto n = static_cast<std::int64_t>(along.size());
@@ -45,7 +45,8 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
                      std::to_string(n) + " bodies of the scene");
   const std::vector<std::int32_t> owner = owners(lattice, ranks);
 
-  // Rank after rank, each rank's bodies in global order: their index there, and PETSc's block row.
+  // Each rank's bodies are numbered in global order, rank after rank: local index and PETSc's block
+  // row.
   std::vector<std::int32_t> count(static_cast<std::size_t>(ranks) + 1, 0), index(owner.size());
   for (std::size_t b = 0; b < owner.size(); ++b)
     index[b] = count[static_cast<std::size_t>(owner[b]) + 1]++;

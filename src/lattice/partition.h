@@ -1,7 +1,7 @@
 /// \file
-/// A lattice spread over ranks: each owns a chunk of the bodies along a Hilbert curve and computes
-/// every beam that touches one of them, in global order, so that forces do not depend on the number
-/// of ranks, to the last bit.
+/// A lattice distributed over ranks. Each rank owns a chunk of the bodies along a Hilbert curve and
+/// computes every beam that touches an owned body, in global order, so that forces have the same
+/// bits for any number of ranks.
 #pragma once
 
 #include <mpi.h>
@@ -15,8 +15,8 @@
 
 namespace floe {
 
-/// What one rank holds. Local bodies: the owned ones in global order, then ghosts by (owner, global
-/// index).
+/// The bodies and beams of one rank. Local bodies are the owned ones in global order, then the
+/// ghosts by (owner, global index).
 struct Part {
   MPI_Comm comm = MPI_COMM_NULL;
   std::int32_t global_bodies = 0;
@@ -28,17 +28,17 @@ struct Part {
   std::vector<std::int32_t> row;     ///< per local body: its block row in PETSc's numbering
   Bodies bodies;                     ///< of local bodies
 
-  Beams beams;  ///< that touch an owned body, local indices, in global order
+  Beams beams;  ///< beams that touch an owned body, local indices, in global order
   std::vector<std::int32_t> global_beam;  ///< per local beam: its index in the lattice
-  std::vector<std::uint8_t>
-      counts_here;  ///< per local beam: this rank owns bodies[0], and counts its energy
+  /// per local beam: whether this rank owns bodies[0], and therefore counts the beam's energy
+  std::vector<std::uint8_t> counts_here;
 
   Shapes shapes;  ///< of owned bodies; empty if the lattice has none
   Ghosts ghosts;
 
-  /// Local indices of the bodies of a global set that are local here; ghosts included.
+  /// Returns the local indices of the bodies of a global set that are local here, ghosts included.
   std::vector<std::int32_t> localise(const std::vector<std::int32_t>& global_set) const;
-  /// Local index of a global body, or -1.
+  /// Returns the local index of a global body, or -1.
   std::int32_t local_index(std::int32_t global_body) const;
 
  private:
@@ -46,12 +46,12 @@ struct Part {
   std::vector<std::int32_t> local_of_;  ///< per global body: local index or -1
 };
 
-/// \throws InputError if there are more ranks than bodies. Collective; the lattice is the same on
-/// every rank.
+/// Distributes a lattice, which must be the same on every rank. Collective.
+/// \throws InputError if there are more ranks than bodies
 Part partition(const Lattice& lattice, MPI_Comm comm);
 
-/// Order of points along a Hilbert curve in the box that holds them (degenerate extents do no
-/// harm).
+/// Returns the order of points along a Hilbert curve in the box that holds them. The box may be
+/// flat.
 std::vector<std::int32_t> hilbert_order(const std::vector<Point3>& points);
 
 }  // namespace floe

@@ -1,5 +1,5 @@
 /// \file
-/// Picking and renumbering the entries of a lattice's arrays.
+/// Selection and renumbering of the entries of a lattice's arrays.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace floe {
 
-/// values[order[0]], values[order[1]], ...; an empty optional array stays empty.
+/// Return values[order[0]], values[order[1]], ...; an empty optional array stays empty.
 template <class T>
 std::vector<T> pick(const std::vector<T>& values, std::span<const std::int32_t> order) {
   std::vector<T> picked;
@@ -33,8 +33,8 @@ inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
           pick(b.height, order)};
 }
 
-/// The same in place, array by array: what is left of one is given back before the next is copied.
-/// The structured bindings name every member, so that none is forgotten.
+/// Reorder in place, array by array: each old array is freed before the next is copied. The
+/// structured bindings name every member, so that none is forgotten.
 inline void permute(Bodies& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
   auto& [position, orientation, mass, inertia, velocity, spin] = b;
@@ -50,7 +50,7 @@ inline void permute(Beams& b, std::span<const std::int32_t> order) {
 inline Shapes pick(const Shapes& s, std::span<const std::int32_t> order) {
   Shapes out;
   if (s.empty()) return out;
-  if (order.size() + 1 == s.vertex_of.size()) {  // all of them: just as much again
+  if (order.size() + 1 == s.vertex_of.size()) {  // all bodies: the sizes stay
     out.vertices.reserve(s.vertices.size());
     out.corners.reserve(s.corners.size());
     out.corner_of.reserve(s.corner_of.size());

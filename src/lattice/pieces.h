@@ -9,8 +9,9 @@
 
 namespace floe {
 
-/// Per body, the first body of the piece that it belongs to: bodies joined by beams, but for those
-/// that are broken. \param broken  per beam, 0 if it holds; empty: all do
+/// Returns, per body, the first body of its piece. A piece consists of bodies joined by unbroken
+/// beams.
+/// \param broken  per beam, 0 if the beam holds; empty: all beams hold
 std::vector<std::int32_t> connected_pieces(const Lattice& lattice,
                                            const std::vector<std::uint8_t>& broken = {});
 

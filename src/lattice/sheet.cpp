@@ -7,14 +7,14 @@
 namespace floe {
 namespace {
 
-/// Cosine and sine of the angle from x to the axis along which the plan extends most. No
+/// Returns cosine and sine of the angle from x to the axis along which the plan extends most. No
 /// trigonometric function is used, so the same plan gives the same bits everywhere.
 Point2 long_axis(const PlanProperties& plan) {
   const double d = plan.xx - plan.yy, r = std::hypot(d, 2 * plan.xy);
-  // The axes of a square or a regular hexagon are rounding errors: keep the world's.
+  // The axes of a square or a regular hexagon are rounding errors, so the world's axes are taken.
   if (r <= 1e-12 * (plan.xx + plan.yy)) return {1, 0};
-  const double c2 =
-      d / r;  // cosine of the double angle; the larger of c, s from it, the other from 2 c s
+  // c2 is the cosine of the double angle. It gives the larger of c and s; 2 c s gives the other.
+  const double c2 = d / r;
   if (c2 >= 0) {
     const double c = std::sqrt((1 + c2) / 2);
     return {c, plan.xy / (r * c)};
@@ -23,13 +23,13 @@ Point2 long_axis(const PlanProperties& plan) {
   return {plan.xy / (r * s), s};
 }
 
-/// Unit quaternion of the rotation about z whose cosine c >= 0 and sine s are given.
+/// Returns the unit quaternion of the rotation about z with the given cosine c >= 0 and sine s.
 std::array<double, 4> about_z(const Point2& axis) {
   const double w = std::sqrt((1 + axis[0]) / 2);
   return {w, 0, 0, axis[1] / (2 * w)};
 }
 
-/// A polygon (world, plan) in the frame of its centroid and axis.
+/// Transforms a polygon (world, plan) to the frame of its centroid and axis.
 void to_frame(std::span<const Point2> polygon, const Point2& centroid, const Point2& axis,
               std::vector<Point2>& local) {
   local.clear();
@@ -91,8 +91,8 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
     const PlanProperties plan = plan_properties(polygon);
     const Point2 axis = long_axis(plan);
     const double surface_density = section.ice.density * h, mass = surface_density * plan.area;
-    // Second moments on the principal axes: `most` along axis 1, so the moment about it is the
-    // least.
+    // Second moments on the principal axes: `most` along axis 1, so the moment of inertia about
+    // axis 1 is the least.
     const double mean = (plan.xx + plan.yy) / 2;
     const double half = std::hypot((plan.xx - plan.yy) / 2, plan.xy);
     const double most = mean + half, least = mean - half, slab = mass * h * h / 12;
@@ -118,8 +118,8 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
 }
 
 void cut(Lattice& lattice, const Point2& a, const Point2& b) {
-  // A body whose centroid lies on the saw's line counts to its right. So a path of beams from one
-  // side to the other is cut exactly once, and beams along the line are not.
+  // A body whose centroid lies on the line of the saw counts as being to its right. A path of beams
+  // from one side to the other is then cut exactly once, and beams along the line are not cut.
   const auto left_of = [](const Point2& p, const Point2& q, const Point3& x) {
     return (q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0]);
   };
@@ -136,7 +136,7 @@ void cut(Lattice& lattice, const Point2& a, const Point2& b) {
     if (!crosses(m)) kept.push_back(m);
 
   const auto keep = [&kept](auto& column) {
-    if (column.empty()) return;  // some may be absent
+    if (column.empty()) return;  // optional arrays may be absent
     for (std::size_t k = 0; k < kept.size(); ++k) column[k] = column[kept[k]];
     column.resize(kept.size());
   };

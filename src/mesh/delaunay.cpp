@@ -1,4 +1,4 @@
-// The only file that sees CGAL: its headers take 10 s and 0.7 GB to compile.
+// Only this file includes CGAL, whose headers take 10 s and 0.7 GB to compile.
 #include "mesh/delaunay.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
@@ -20,8 +20,8 @@ using FaceBase = CGAL::Triangulation_face_base_with_info_2<std::int32_t, Kernel>
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 using Triangulation = CGAL::Delaunay_triangulation_2<Kernel, Structure>;
 
-// Error bounds of the two determinants below (Shewchuk 1997, "A" filters); epsilon = 2^-53. What
-// they cannot decide goes to CGAL's exact predicates.
+// Error bounds of the two determinants below (Shewchuk 1997, "A" filters); epsilon = 2^-53.
+// Determinants within the bounds go to CGAL's exact predicates.
 constexpr double epsilon = std::numeric_limits<double>::epsilon() / 2;
 constexpr double orientation_bound = (3 + 16 * epsilon) * epsilon;
 constexpr double circle_bound = (10 + 96 * epsilon) * epsilon;
@@ -36,7 +36,7 @@ bool left_turn(const Point2& a, const Point2& b, const Point2& c) {
   return CGAL::orientation(cgal(a), cgal(b), cgal(c)) == CGAL::LEFT_TURN;
 }
 
-/// d strictly inside the circle through a, b, c (counter-clockwise).
+/// Whether d lies strictly inside the circle through a, b, c (counter-clockwise).
 bool inside_circle(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
   const double ax = a[0] - d[0], ay = a[1] - d[1], bx = b[0] - d[0], by = b[1] - d[1];
   const double cx = c[0] - d[0], cy = c[1] - d[1];
@@ -68,8 +68,8 @@ void Delaunay::build(std::vector<Point2> points) {
   if (static_cast<std::int32_t>(triangulation.number_of_vertices()) != n)
     throw InputError("sheet: two generators of the mesh coincide");
 
-  // Triangles numbered by their first half-edge, which starts at the lowest vertex: neighbours in
-  // the plane are neighbours in memory, and the numbering is not CGAL's.
+  // Triangles are numbered by their first half-edge, which starts at the lowest vertex. Neighbours
+  // in the plane are then neighbours in memory, and the numbering does not depend on CGAL.
   using Corners = std::array<std::int32_t, 3>;
   std::vector<std::pair<Corners, Triangulation::Face_handle>> faces;
   faces.reserve(triangulation.number_of_faces());
@@ -160,7 +160,7 @@ void Delaunay::repair(std::vector<std::int32_t> edges) {
 
 void Delaunay::move(std::span<const Point2> points, const Share& share) {
   std::copy(points.begin(), points.end(), points_.begin());
-  // Each rank looks at its share of the triangles; -1 stands for one that is turned over.
+  // Each rank checks its share of the triangles; -1 stands for a triangle that is turned over.
   const std::int32_t begin = share.begin(triangles()), end = share.end(triangles());
   std::vector<std::int32_t> bad;
   for (std::int32_t t = begin; t < end; ++t) {

@@ -1,4 +1,4 @@
-// What becomes of a Voronoi diagram in the end: polygons, facets, sides.
+// The polygons, facets and sides of a finished Voronoi diagram.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,13 +9,13 @@
 namespace floe::mesh {
 namespace {
 
-constexpr double shortest = 1e-9;  ///< facets below this times the element size are none
+constexpr double shortest = 1e-9;  ///< facets below this times the element size are dropped
 
 }  // namespace
 
-/// Puts Voronoi vertices that are closer than the shortest facet, or that close to a side, on one
-/// place. All cells that meet there share it, so they still tile the plan without gap or overlap,
-/// and no polygon has an edge that is no facet.
+/// Merges Voronoi vertices that are closer than the shortest facet, and moves vertices that close
+/// to a side onto the side. All cells at a merged vertex share it, so the cells still tile the plan
+/// without gap or overlap, and no polygon has an edge without a facet.
 void Voronoi::merge_close_vertices() {
   const double tolerance = shortest * l_;
   const std::int32_t triangles = delaunay_.triangles();
@@ -37,8 +37,8 @@ void Voronoi::merge_close_vertices() {
   for (std::int32_t t = 0; t < triangles; ++t) centre_[t] = centre_[places.find(t)];
 }
 
-/// Length inside the plan of the edge from p to q; negative if there is none of it (Liang & Barsky
-/// 1984).
+/// Returns the length inside the plan of the edge from p to q [m]; negative if the edge lies
+/// outside (Liang & Barsky 1984).
 double Voronoi::clipped_width(const Point2& p, const Point2& q) const {
   const double dx = q[0] - p[0], dy = q[1] - p[1];
   double from = 0, to = 1;
@@ -54,7 +54,8 @@ double Voronoi::clipped_width(const Point2& p, const Point2& q) const {
 }
 
 Tessellation Voronoi::finish(std::span<const std::int32_t> number) {
-  // Built anew, so that the result depends on where the generators are, not on how they came there.
+  // Built anew, so that the result depends on the positions of the generators only, not on their
+  // earlier motion.
   frame();
   update_cells();
   const auto n = static_cast<std::int32_t>(generators_.size());

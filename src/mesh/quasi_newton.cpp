@@ -1,7 +1,7 @@
-// L-BFGS on the CVT energy F(z) = sum of int |x - z_k|^2 dA over the cells, whose gradient is
-// 2 m_k (z_k - c_k), m = area, c = centroid (Du et al. 1999; F is twice differentiable: Liu et al.
-// 2009). PETSc's BLMVM, bounds = the plan. Every rank runs the same solver on its own copy of the
-// unknowns, in step with the others; only the cells are shared out.
+// L-BFGS on the CVT energy F(z) = sum of int |x - z_k|^2 dA over the cells. The gradient is 2 m_k
+// (z_k - c_k), m = area, c = centroid (Du et al. 1999; F is twice differentiable: Liu et al. 2009).
+// The solver is PETSc's BLMVM with the plan as bounds. Every rank runs the same solver on its own
+// copy of the unknowns; only the work on the cells is shared by the ranks.
 #include <petsctao.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 namespace floe::mesh {
 namespace {
 
-/// Units of the solver: lengths in l, energies in l^2 times half the mean cell area, so that a unit
-/// step along the negative gradient (m / mean m)(z - c) is about one Lloyd move, which is always a
-/// safe one.
+/// Units of the solver: lengths in l, energies in l^2 times half the mean cell area. A unit step
+/// along the negative gradient (m / mean m)(z - c) is then about one Lloyd move, which is always
+/// safe.
 struct Problem {
   Voronoi& voronoi;
   double l, mean_area, tolerance;
@@ -36,9 +36,9 @@ struct Solver {
   ~Solver() { (void)TaoDestroy(&tao); }
 };
 
-/// Generators that a long trial step put on one place (a corner of the plan, say) have no cells of
-/// their own. F is continuous there: a step of 1e-3 l away from each other changes it little, and
-/// the line search goes on.
+/// Separates coincident generators, which have no cells of their own. A long trial step may move
+/// several generators to one place (a corner of the plan, for example). F is continuous there: a
+/// step of 1e-3 l away from each other changes F little, and the line search goes on.
 void separate(std::vector<Point2>& points, double l) {
   std::vector<std::size_t> order(points.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -50,7 +50,7 @@ void separate(std::vector<Point2>& points, double l) {
   for (std::size_t k = 1; k < order.size(); ++k) {
     const Point2& p = old[order[k]];
     same = p == old[order[k - 1]] ? same + 1 : 0;
-    // Towards the centre of the plan, which is convex, each by another distance.
+    // Towards the centre of the plan, which is convex, each by a different distance.
     const double shrink = same * 1e-3 * l / std::max(l, std::abs(p[0]) + std::abs(p[1]));
     for (double& x : points[order[k]]) x -= shrink * x;
   }
@@ -84,8 +84,8 @@ double evaluate(Problem& problem, Vec x, Vec gradient) {
     energy += cells[k].energy;
   }
   check(VecRestoreArrayWrite(gradient, &g));
-  // Above that of as many hexagons, its lower bound: BLMVM takes its first step as if the minimum
-  // were 0.
+  // Relative to the energy of as many hexagons, its lower bound, because BLMVM takes its first step
+  // as if the minimum were 0.
   const double hexagons = 5 / (18 * std::numbers::sqrt3) * problem.mean_area * problem.mean_area *
                           static_cast<double>(cells.size());
   return (energy - hexagons) / (2 * problem.mean_area * problem.l * problem.l);
@@ -97,13 +97,13 @@ PetscErrorCode objective(Tao, Vec x, double* f, Vec gradient, void* context) noe
     ++problem.evaluations;
     *f = evaluate(problem, x, gradient);
     return 0;
-  } catch (...) {  // carried past PETSc's C code
+  } catch (...) {  // an exception must not pass through PETSc's C code
     problem.failure = std::current_exception();
     return PETSC_ERR_USER;
   }
 }
 
-/// Called after every accepted step, at which the cells are those of the last evaluation.
+/// PETSc calls this function after every accepted step; the cells are those of the last evaluation.
 PetscErrorCode test_move(Tao tao, void* context) noexcept {
   auto& problem = *static_cast<Problem*>(context);
   try {
@@ -116,7 +116,7 @@ PetscErrorCode test_move(Tao tao, void* context) noexcept {
     }
     if (problem.evaluations >= problem.limit)
       return TaoSetConvergedReason(tao, TAO_DIVERGED_MAXFCN);
-    // Nearer than 1e-12 l to a minimum, differences of F are rounding: nothing for a line search.
+    // Nearer than 1e-12 l to a minimum, differences of F are rounding, and a line search fails.
     if (move <= std::max(problem.tolerance, 1e-12))
       return TaoSetConvergedReason(tao, TAO_CONVERGED_USER);
     return TaoDefaultConvergenceTest(tao, nullptr);
@@ -178,7 +178,7 @@ int quasi_newton(Voronoi& voronoi, const SheetPlan& plan, const OnIteration& on_
   const int ierr = TaoSolve(solver.tao);
   if (problem.failure) std::rethrow_exception(problem.failure);
   check(ierr);
-  set_generators(problem, x);  // the last evaluation may have been a trial that was not accepted
+  set_generators(problem, x);  // the last evaluation may belong to a rejected trial
   return problem.evaluations;
 }
 

@@ -1,6 +1,6 @@
 /// \file
-/// How ranks share the work of one sweep: contiguous blocks of cells or edges, whole results on
-/// every rank.
+/// The distribution of the work of one sweep over ranks: contiguous blocks of cells or edges, with
+/// whole results on every rank.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace floe::mesh {
 
 struct Share {
-  MPI_Comm comm = MPI_COMM_NULL;  ///< not used by one rank
+  MPI_Comm comm = MPI_COMM_NULL;  ///< unused with one rank
   int rank = 0, size = 1;
 
   Share() = default;
@@ -21,11 +21,11 @@ struct Share {
   std::int32_t begin(std::int32_t n, int r) const {
     return static_cast<std::int32_t>(std::int64_t{n} * r / size);
   }
-  /// This rank's block of 0 ... n-1.
+  /// Return the begin and end of this rank's block of 0 ... n-1.
   std::int32_t begin(std::int32_t n) const { return begin(n, rank); }
   std::int32_t end(std::int32_t n) const { return begin(n, rank + 1); }
 
-  /// Every rank filled its block of `whole`; afterwards all have all of it. Collective.
+  /// Completes `whole` on every rank, after every rank has filled its own block. Collective.
   template <class T>
   void gather(std::vector<T>& whole) const {
     if (size == 1) return;
@@ -38,7 +38,7 @@ struct Share {
     exchange(MPI_IN_PLACE, 0, whole.data(), count, offset, sizeof(T));
   }
 
-  /// The ranks' lists, one after the other. Collective.
+  /// Concatenates the lists of all ranks, in order of the ranks. Collective.
   template <class T>
   void concatenate(std::vector<T>& list) const {
     if (size == 1) return;
@@ -52,7 +52,7 @@ struct Share {
   }
 
  private:
-  /// MPI_Allgatherv of records of `bytes`.
+  /// Calls MPI_Allgatherv for records of `bytes` bytes.
   void exchange(const void* mine, int n, void* all, const std::vector<int>& count,
                 const std::vector<int>& offset, std::size_t bytes) const {
     MPI_Datatype record;

@@ -11,8 +11,8 @@
 namespace floe {
 namespace {
 
-/// Uniform in the plan. The standard fixes the engine's numbers but not those of its distributions,
-/// hence the own conversion: the upper 53 bits to [0, 1).
+/// Returns n random points, uniform in the plan. The C++ standard fixes the numbers of the engine
+/// but not those of its distributions, so the upper 53 bits are converted to [0, 1) here.
 std::vector<Point2> random_generators(const SheetPlan& plan, std::int64_t n) {
   std::mt19937_64 engine(plan.seed);
   const auto uniform = [&engine] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
@@ -46,7 +46,7 @@ Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
   if (n > most)
     throw InputError("sheet_element_size: makes " + std::to_string(n) + " cells, allowed are " +
                      std::to_string(most));
-  // Numbered along a space-filling curve once; relaxed generators stay near where they started.
+  // Numbered along a space-filling curve once; generators stay near their start during relaxation.
   std::vector<Point2> points = random_generators(plan, n);
   points = permuted(points, mesh::hilbert_order(points, plan.length, plan.width));
   mesh::Voronoi voronoi(plan, std::move(points), mesh::Share(comm));

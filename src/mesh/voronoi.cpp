@@ -24,7 +24,8 @@ void Voronoi::move(std::vector<Point2> generators) {
   update_cells();
 }
 
-/// Triangulates the generators and guards, two per distance_, on a rectangle around the plan.
+/// Triangulates the generators and the guards, which stand two per distance_ on a rectangle around
+/// the plan.
 void Voronoi::frame() {
   std::vector<Point2> points = generators_;
   const double x = x1_ + distance_, y = y1_ + distance_;
@@ -43,7 +44,8 @@ void Voronoi::frame() {
 
 namespace {
 
-/// The mark of a cell next to a guard that stands too near; it tells the other ranks.
+/// Marks a cell next to a guard that stands too near; the mark reaches the other ranks with the
+/// cells.
 constexpr Cell open{-1e300, {}, 0};
 bool is_open(const Cell& cell) { return cell.area == open.area; }
 
@@ -61,7 +63,7 @@ void Voronoi::update_cells() {
   }
 }
 
-/// Computes the cells first ... last-1. \return false if a guard's cell reaches into the plan.
+/// Computes the cells first ... last-1. \return false if a guard's cell reaches into the plan
 bool Voronoi::cover(std::int32_t first, std::int32_t last) {
   circumcentres(first, last);
   const auto n = static_cast<std::int32_t>(generators_.size());
@@ -100,7 +102,7 @@ bool Voronoi::cover(std::int32_t first, std::int32_t last) {
   return true;
 }
 
-/// Of all triangles with a corner among the generators first ... last-1.
+/// Computes the circumcentres of all triangles with a corner among the generators first ... last-1.
 void Voronoi::circumcentres(std::int32_t first, std::int32_t last) {
   const std::int32_t triangles = delaunay_.triangles();
   const auto& points = delaunay_.points();
@@ -126,11 +128,13 @@ std::uint8_t Voronoi::outcode(const Point2& p) const {
                                    (p[1] < -y1_ ? side_bottom : 0) | (p[1] > y1_ ? side_top : 0));
 }
 
-/// The edge between the generator origin(e) and the guard at its other end lies outside the plan.
+/// Whether the edge between the cells of the generator origin(e) and of the guard at its other end
+/// lies outside the plan.
 bool Voronoi::guard_stays_out(std::int32_t e) const {
   const std::int32_t f = delaunay_.twin(e);  // never -1: a generator is not on the hull
   if (out_[e / 3] & out_[f / 3]) return true;
-  // It may pass a corner outside: then the whole plan is on the generator's side of the bisector.
+  // The edge may pass a corner outside: then the whole plan is on the generator's side of the
+  // bisector.
   const Point2& z = delaunay_.points()[delaunay_.origin(e)];
   const Point2& g = delaunay_.points()[delaunay_.origin(f)];
   const double nx = g[0] - z[0], ny = g[1] - z[1];
@@ -139,8 +143,8 @@ bool Voronoi::guard_stays_out(std::int32_t e) const {
 }
 
 /// Clips polygon_ to the plan, side by side (Sutherland & Hodgman 1974). Crossings are computed
-/// from the inner end of an edge, so that both cells of a facet get the same bits; they lie on the
-/// side exactly.
+/// from the inner end of an edge, so that both cells of a facet get the same bits, and lie exactly
+/// on the side.
 void Voronoi::clip() {
   for (int side = 0; side < 4; ++side) {
     const int axis = side / 2, other = 1 - axis;
@@ -167,7 +171,7 @@ void Voronoi::clip() {
 
 namespace {
 
-/// Distance along a Hilbert curve of order 31 (after Warren, Hacker's Delight, ch. 16).
+/// Returns the distance along a Hilbert curve of order 31 (after Warren, Hacker's Delight, ch. 16).
 std::uint64_t hilbert_index(std::uint32_t x, std::uint32_t y) {
   std::uint64_t index = 0;
   for (std::uint32_t s = 1u << 30; s > 0; s >>= 1) {

@@ -3,8 +3,8 @@
 ///
 /// A frame of fixed guard points around the plan closes every cell, so that one generator, or any
 /// number on a line, is no special case. The guards stand so far out that their cells never reach
-/// into the plan (checked every time); hence inside the plan the diagram is that of the generators
-/// alone, exactly.
+/// into the plan (checked in every update); hence inside the plan the diagram is exactly that of
+/// the generators alone.
 #pragma once
 
 #include <span>
@@ -25,7 +25,8 @@ struct Cell {
 
 class Voronoi {
  public:
-  /// \param generators  in the order of a space-filling curve, best
+  /// Computes the diagram. Collective.
+  /// \param generators  should be in the order of a space-filling curve [m]
   Voronoi(const SheetPlan& plan, std::vector<Point2> generators, const Share& share);
 
   /// Moves the generators, which stay inside the plan. Collective.
@@ -35,7 +36,8 @@ class Voronoi {
   const std::vector<Cell>& cells() const { return cells_; }  ///< at the present generators
   std::int64_t builds() const { return delaunay_.builds(); }
 
-  /// Polygons, facets and sides of the present generators; generator k becomes cell number[k].
+  /// Returns the polygons, facets and sides of the present generators; generator k becomes cell
+  /// number[k]. Collective.
   Tessellation finish(std::span<const std::int32_t> number);
 
  private:
@@ -51,17 +53,18 @@ class Voronoi {
   double clipped_width(const Point2& p, const Point2& q) const;
 
   double l_, x1_, y1_;  ///< element size; the plan is [-x1, x1] x [-y1, y1]
-  double distance_;     ///< of the guards from the plan
+  double distance_;     ///< distance of the guards from the plan [m]
   Share share_;
   std::vector<Point2> generators_;
   Delaunay delaunay_;
-  std::vector<Point2> centre_;     ///< circumcentre of each triangle
-  std::vector<std::uint8_t> out_;  ///< its outcode: SheetSide bits of the sides it lies beyond
+  std::vector<Point2> centre_;  ///< circumcentre of each triangle
+  /// outcode of each circumcentre: SheetSide bits of the sides beyond which it lies
+  std::vector<std::uint8_t> out_;
   std::vector<Cell> cells_;
   std::vector<Point2> polygon_, scratch_;
 };
 
-/// Order of points along a Hilbert curve over the plan.
+/// Returns the order of points along a Hilbert curve over the plan.
 std::vector<std::int32_t> hilbert_order(std::span<const Point2> points, double length,
                                         double width);
 

@@ -1,12 +1,12 @@
 /// \file
-/// What a plane bounds.
+/// Half-spaces, each bounded by a plane.
 #pragma once
 
 #include "floe/base/rotation.h"
 
 namespace floe {
 
-/// A half-space: r with normal . r <= offset. The normal is a unit vector.
+/// The half-space of all points r with normal . r <= offset. The normal is a unit vector.
 struct HalfSpace {
   Vec3<double> normal;
   double offset = 0;  ///< [m]

@@ -1,5 +1,5 @@
 /// \file
-/// How rotations of the bodies are counted.
+/// The measure of the bodies' rotations in the strains of beams.
 #pragma once
 
 namespace floe {

@@ -1,5 +1,5 @@
 /// \file
-/// The lattice: bodies joined by beams. What a sheet becomes and what lattice.h5 holds.
+/// The lattice: bodies joined by beams, made from a sheet or read from a lattice file.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace floe {
 
 /// Rigid bodies as a structure of arrays, at rest in the reference configuration. Orientations are
-/// unit quaternions (w, x, y, z), principal axes to world; velocities are in the world.
+/// unit quaternions (w, x, y, z) from principal axes to world axes; velocities are in world axes.
 struct Bodies {
   std::vector<Point3> position;  ///< centroids [m]
   std::vector<std::array<double, 4>> orientation;
@@ -27,13 +27,13 @@ struct Bodies {
   std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
 };
 
-/// Moment of inertia at rest of a body about a unit vector in the world [kg m^2].
+/// Returns the moment of inertia at rest of a body about a unit vector in the world [kg m^2].
 double inertia_about(const Bodies& bodies, std::int32_t body, const Point3& axis);
 
-/// Beams as a structure of arrays; beam m joins the centroids of bodies[m][0] < bodies[m][1],
-/// sorted so. Local axes: 1 along the beam, 2 = axis_y (made orthogonal to 1), 3 = 1 x 2. In a
-/// sheet axis 2 lies in the plane, axis 3 is up: inertia_y resists out-of-plane bending, inertia_z
-/// in-plane bending.
+/// Beams as a structure of arrays; beam m joins the centroids of bodies[m][0] < bodies[m][1]. A
+/// sheet's beams are sorted by their bodies; those of a lattice file keep its order. Local axes: 1
+/// along the beam, 2 = axis_y (made orthogonal to 1), 3 = 1 x 2. In a sheet axis 2 lies in the
+/// plane and axis 3 is up: inertia_y resists out-of-plane bending, inertia_z in-plane bending.
 struct Beams {
   std::vector<std::array<std::int32_t, 2>> bodies;
   std::vector<double> area;            ///< [m^2]
@@ -51,19 +51,19 @@ struct Beams {
   std::int32_t size() const { return static_cast<std::int32_t>(bodies.size()); }
 };
 
-/// Replicated on every rank during set-up; partition() spreads it.
+/// A whole lattice. During set-up every rank holds a copy; partition() distributes it.
 struct Lattice {
   Bodies bodies;
   Beams beams;
   std::map<std::string, std::vector<std::int32_t>> sets;  ///< sorted body indices; "all" is implied
   Shapes shapes;  ///< empty, or one convex polyhedron per body in its principal axes
 
-  /// Indices of a named set. \throws InputError naming `key` if the set is empty, or, with the
-  /// known sets, missing.
+  /// Returns the indices of a named set.
+  /// \throws InputError naming `key` if the set is empty, or, with the known sets, if it is missing
   const std::vector<std::int32_t>& set(const std::string& name, const std::string& key) const;
 };
 
-/// How a sheet's cells become bodies and beams.
+/// The parameters by which the cells of a sheet become bodies and beams.
 struct SheetSection {
   double thickness = 1;  ///< h [m]
   double mid_plane = 0;  ///< z of the sheet's mid-plane [m]
@@ -72,30 +72,32 @@ struct SheetSection {
   Torsion torsion = Torsion::saint_venant;
 };
 
-/// Prisms over the cells (exact mass, centroid and inertia on principal axes), one beam per facet,
-/// edge sets.
+/// Makes the lattice of a sheet: prisms over the cells (exact mass, centroid and inertia on
+/// principal axes), one beam per facet, and the edge sets.
 Lattice make_sheet(const Tessellation& cells, const SheetSection& section);
 
-/// Renumbers bodies in reverse Cuthill-McKee order and sorts beams by (min, max) body. The order
-/// depends on the lattice only, so it is the same for any number of ranks. `order[new] = old` is
-/// returned.
+/// Renumbers bodies in reverse Cuthill-McKee order and sorts beams by (smaller, larger) body. The
+/// order depends on the lattice only, so it is the same for any number of ranks.
+/// \return the old index of each new one: order[new] = old
 std::vector<std::int32_t> reorder(Lattice& lattice);
 
-/// Drops the beams that cross the segment from a to b in plan (a cut made with a saw).
+/// Removes the beams that cross the segment from a to b in plan [m], as a cut with a saw does.
 void cut(Lattice& lattice, const Point2& a, const Point2& b);
 
-/// Adds the set `name` of all bodies with their centroid in the box {x0, x1, y0, y1, z0, z1}.
-/// \throws InputError naming `key` if no body is inside.
+/// Adds the set `name` of all bodies with their centroid in the box {x0, x1, y0, y1, z0, z1} [m].
+/// \throws InputError naming `key` if the set exists already or no body is inside
 void add_region(Lattice& lattice, const std::string& name, const std::array<double, 6>& box,
                 const std::string& key);
 
-/// Reads or writes lattice.h5 (layout: docs/model.md). Writing is by one rank, to a temporary name,
-/// then renamed. \throws InputError naming the file and the dataset if it is missing, has a wrong
-/// shape, or a value out of range.
+/// Reads a lattice file (layout: model.md, "Files").
+/// \throws InputError naming the file and the dataset if the dataset is missing, has a wrong shape,
+/// or has a value out of range
 Lattice read_lattice(const std::string& file);
-/// Reads the one convex polyhedron of a file's /shapes, wherever its origin is.
-/// \param key  the option that named the file, for messages   \throws InputError
+/// Reads the one convex polyhedron in a file's /shapes; its origin may be anywhere.
+/// \param key  the option that named the file, for messages
+/// \throws InputError if the file has no such polyhedron
 Shapes read_polyhedron(const std::string& file, const std::string& key);
+/// Writes a lattice file under a temporary name and renames it. Call on one rank. \throws FileError
 void write_lattice(const Lattice& lattice, const std::string& file);
 
 }  // namespace floe

@@ -1,5 +1,5 @@
 /// \file
-/// Ice and the section properties of the beams made from it (model.md sections 2 and 3).
+/// Ice, and the properties of the sections of the beams made from it (model.md, "Beam").
 #pragma once
 
 namespace floe {
@@ -16,9 +16,9 @@ enum class Torsion {
   polar,         ///< I_y + I_z
 };
 
-/// Saint-Venant torsion constant of an a x b rectangle [m^4]
-/// (Timoshenko & Goodier, Theory of Elasticity, art. 109: J = a b^3 (1/3 - 64/pi^5 (b/a) sum tanh(n
-/// pi a/2b)/n^5)).
+/// Returns the Saint-Venant torsion constant of an a x b rectangle [m^4] (Timoshenko & Goodier,
+/// Theory of Elasticity, art. 109: J = a b^3 (1/3 - 64/pi^5 (b/a) sum tanh(n pi a/2b)/n^5)).
+/// \param a, b  sides [m]
 double saint_venant_torsion(double a, double b);
 
 }  // namespace floe

@@ -1,6 +1,6 @@
 /// \file
-/// Motion of the bodies, spatial or planar. Every loop over bodies or beams is a template on these
-/// traits.
+/// The motion of the bodies, spatial or planar. Every loop over bodies or beams is a template on
+/// the traits Spatial and Planar.
 #pragma once
 
 #include <array>
@@ -12,24 +12,24 @@
 
 namespace floe {
 
-/// Six unknowns per body. A record of 16 doubles, two cache lines: displacement u, rotation q from
+/// Six unknowns per body. A record has 16 doubles, two cache lines: displacement u, rotation q from
 /// rest (w x y z), velocity v, angular velocity, angular momentum; the last two in world axes. With
 /// linear kinematics q is the linearised quaternion (1, theta/2).
 struct Spatial {
   static constexpr int unknowns = 6;  ///< ux uy uz, rotations about x y z
   static constexpr std::array<int, 6> components{0, 1, 2, 3, 4, 5};  ///< of x y z rx ry rz
-  static constexpr int wrench = 8;  ///< doubles per wrench: the unknowns' number, padded
+  static constexpr int wrench = 8;  ///< doubles per wrench: one per unknown, padded
   static constexpr int translations = 3;
   static constexpr int record = 16;
   static constexpr int displacement = 0, rotation = 3, velocity = 7, angular_velocity = 10,
                        angular_momentum = 13;
-  static constexpr int velocities = 6;  ///< numbers from `velocity` on that are rates
+  static constexpr int velocities = 6;  ///< number of rates from index `velocity` on
   static void at_rest(double* of_body) { of_body[rotation] = 1; }
 };
 
-/// Three unknowns per body, for scenes where nothing moves out of plane. A record of 8 doubles, one
-/// cache line, which fours of doubles can step: displacement ux uy, angle theta about z, and their
-/// rates vx vy omega, one of padding after each three.
+/// Three unknowns per body, for scenes without motion out of the plane. A record has 8 doubles, one
+/// cache line, which registers of four doubles can step: displacement ux uy, angle theta about z,
+/// one padding; rates vx vy omega, one padding.
 struct Planar {
   static constexpr int unknowns = 3;  ///< ux uy, rotation about z
   static constexpr std::array<int, 3> components{0, 1, 5};
@@ -41,13 +41,13 @@ struct Planar {
   static void at_rest(double*) {}
 };
 
-/// Records of owned bodies and ghosts, in local order, at one time [s, or pseudo-time].
+/// The records of owned bodies and ghosts, in local order, at one time [s, or pseudo-time].
 template <class Space>
 struct State {
   double time = 0;
   std::vector<double> records;
-  /// Largest velocity [m/s] and angular velocity [rad/s] of an owned body in the last step of
-  /// leapfrog in space; others leave them alone.
+  /// Largest velocity [m/s] and angular velocity [rad/s] of an owned body in the last spatial
+  /// leapfrog step; other integrators leave both unchanged.
   double fastest = 0, fastest_spin = 0;
 
   State() = default;
@@ -66,7 +66,7 @@ inline Vec3<double> displacement(const State<Planar>& state, std::size_t body) {
   const double* r = state.record(body) + Planar::displacement;
   return {r[0], r[1], 0};
 }
-/// Rotation from rest; linearised if kinematics are and the state is spatial.
+/// Return the rotation from rest; linearised if the kinematics are linear and the state is spatial.
 inline Quat<double> rotation(const State<Spatial>& state, std::size_t body) {
   const double* r = state.record(body) + Spatial::rotation;
   return {r[0], r[1], r[2], r[3]};
@@ -75,7 +75,7 @@ inline Quat<double> rotation(const State<Planar>& state, std::size_t body) {
   const double half = 0.5 * state.record(body)[Planar::rotation];
   return {std::cos(half), 0, 0, std::sin(half)};
 }
-/// Rotation vector where kinematics are linear.
+/// Return the rotation vector of linear kinematics.
 inline Vec3<double> linear_rotation(const State<Spatial>& state, std::size_t body) {
   const double* r = state.record(body) + Spatial::rotation;
   return {2 * r[1], 2 * r[2], 2 * r[3]};
@@ -99,11 +99,12 @@ inline Vec3<double> angular_velocity(const State<Planar>& state, std::size_t bod
   return {0, 0, state.record(body)[Planar::angular_velocity]};
 }
 
-/// The same state of a spatial model. \param linear  whether its rotations are linearised
+/// Returns a planar state as a spatial one.
+/// \param linear  whether the rotations are linearised
 State<Spatial> in_space(const State<Planar>& state, bool linear);
 
-/// Force and moment on each local body, in the order of the unknowns [N, N m]; world axes, about
-/// the centroid. Those of ghosts are left unfinished: their owners have them.
+/// Force and moment on each local body, in the order of the unknowns [N, N m], in world axes, about
+/// the centroid. The wrenches of ghosts are incomplete; their owners hold the complete ones.
 template <class Space>
 struct Wrenches {
   std::vector<double> values;
@@ -111,12 +112,12 @@ struct Wrenches {
   explicit Wrenches(std::size_t bodies = 0) : values(bodies * Space::wrench, 0.0) {}
   double* of(std::size_t body) { return values.data() + body * Space::wrench; }
   const double* of(std::size_t body) const { return values.data() + body * Space::wrench; }
-  /// Entry of unknown k, counted through all bodies.
+  /// Return entry k, counted over the unknowns of all bodies.
   double& at(std::size_t k) { return of(k / Space::unknowns)[k % Space::unknowns]; }
   double at(std::size_t k) const { return of(k / Space::unknowns)[k % Space::unknowns]; }
 };
 
-/// A wrench in space; what a planar one does not have is 0.
+/// Returns a wrench as six components; those that a planar wrench lacks are 0.
 template <class Space>
 std::array<double, 6> components_of(const Wrenches<Space>& wrenches, std::size_t body) {
   std::array<double, 6> all{};
@@ -124,7 +125,7 @@ std::array<double, 6> components_of(const Wrenches<Space>& wrenches, std::size_t
     all[static_cast<std::size_t>(Space::components[k])] = wrenches.of(body)[k];
   return all;
 }
-/// Adds a force and a moment; of a planar wrench what lies in the plane.
+/// Adds a force [N] and a moment [N m] to a wrench; a planar wrench takes the in-plane components.
 template <class Space>
 void add(Wrenches<Space>& wrenches, std::size_t body, const Vec3<double>& force,
          const Vec3<double>& moment) {
