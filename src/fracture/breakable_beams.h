@@ -1,5 +1,5 @@
 /// \file
-/// Beams that crack, as a force: the beams of spatial_beams.h with strengths and damage.
+/// The force of beams that crack: the beams of spatial_lanes.h with strengths and damage.
 #pragma once
 
 #include <cmath>
@@ -12,13 +12,15 @@
 
 namespace floe {
 
-/// Strengths of a part's local beams, Weibull's scatter included. Collective.
+/// Strengths of the local beams of a part, with Weibull's scatter. Collective.
+/// \throws InputError if the lattice does not give the sides of the sections
 std::vector<Strength<double>> strengths(const Part& part, const FractureOptions& options);
 
-/// Collects what the ranks count of their cracks, and spreads them again. \param cracks  with beams
-/// as global indices. Collective.
+/// Saves the cracks of all ranks to the archive, or loads them all on every rank. Collective.
+/// \param cracks  those that this rank counts, with global beams; loading: those of all ranks
 void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks);
 
+/// Breakable beams of a part: a force, and the cracks of its beams.
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, public Fracture {
   using Base = SpatialBeams<kinematics, damped, Frame>;
@@ -41,8 +43,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
 
   bool has_history() const override { return true; }
 
-  /// Every beam goes through the same instructions, whatever its neighbours in a block: a block
-  /// that gives way is added again as what damage leaves of it.
+  /// A block with an overloaded or damaged beam is added as a whole, with softened stiffnesses. So
+  /// every beam is computed by the same instructions, whatever its neighbours in the block.
   [[gnu::flatten]] void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     growing_.clear();
     const double* records = state.records.data();
@@ -84,7 +86,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     }
   }
 
-  /// With the damage of the last commit: the secant where a beam softens.
+  /// Adds the tangent at the damage of the last commit; for a beam that softens this is the secant.
   bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
     Tangent<Spatial>::PairBlock block;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
@@ -96,7 +98,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     return true;
   }
 
-  /// Takes over the damage of the last evaluation (dynamics) or of advance() (statics).
+  /// Makes the damage of the last evaluation (dynamics) or of advance() (statics) history.
   void commit(const State<Spatial>& state, double dt) override {
     Base::commit(state, dt);
     for (const Growth& g : growing_) take(g);
@@ -127,7 +129,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     for (const Crack& c : cracks_) {
       if (counts_here(c.beam)) count(c, 1);
     }
-    // What the last evaluation has found counts, although it is history after the step only.
+    // The findings of the last evaluation count, although they become history at the commit only.
     for (const Growth& g : growing_) {
       if (!counts_here(g.crack.beam)) continue;
       fracture += g.dissipated;
@@ -203,9 +205,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   }
 
   Advance advance(const State<Spatial>& state) override {
-    constexpr double rounding = 1e-6;  // of s: growth below it is none
+    constexpr double rounding = 1e-6;  // relative growth of s below this counts as none
     growing_.clear();
-    RankedValue worst{0, -1};  // of the beams that break
+    RankedValue worst{0, -1};  // largest s/kappa of the beams that would break
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = criterion_of(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -245,11 +247,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
  private:
   static constexpr std::int32_t none = -1;
 
-  /// A beam that the last evaluation found to have passed its kappa.
+  /// Growth of the damage of a beam whose s has passed its kappa in the last evaluation.
   struct Growth {
-    Crack crack;        ///< as it will be
-    double released;    ///< by which the energy that it stores falls [J]
-    double dissipated;  ///< [J]
+    Crack crack;        ///< after the growth
+    double released;    ///< decrease of the stored energy [J]
+    double dissipated;  ///< energy dissipated by the growth [J]
   };
 
   bool counts_here(std::int32_t m) const {
@@ -267,7 +269,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     const Crack* c = crack(m);
     return c != nullptr ? c->kappa : 1.0;
   }
-  /// What decides; the loop of add() only asks whether it is worth asking.
+  /// s^2 of the undamaged beams of a block, which decides on damage. The hook in add() only selects
+  /// the blocks for which it is computed.
   Lanes criterion_of(std::size_t b, const State<Spatial>& state) const {
     return block_criterion<kinematics>(blocks_[b], strengths_[b], state.records.data());
   }
@@ -279,7 +282,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   static BeamStress<double> as_stress(const BeamStrains<double>& s) {
     return {s.delta, s.gamma_y, s.gamma_z, s.psi};
   }
-  /// Constants with what damage has left at the present strains.
+  /// Constants of beam m, softened by its damage at the present strains.
   BeamConstants<double> present(std::int32_t m, const State<Spatial>& state) const {
     BeamConstants<double> c = constants(m);
     if (const Crack* k = crack(m)) {
@@ -290,9 +293,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     return c;
   }
 
-  /// Dashpots do the work dt/2 v_{n+1/2}.(F_n + F_{n+1}) between t_n and t_{n+1}, where their
-  /// forces change as suddenly as beams break. So F_n is kept: the balance stays exact for linear
-  /// strains.
+  /// Between t_n and t_{n+1} dashpots do the work dt/2 v_{n+1/2}.(F_n + F_{n+1}), and their forces
+  /// jump when beams break. With the kept F_n the balance is exact for linear strains.
   double lost_by_now() const override {
     return this->lost_ + 0.5 * this->step_ * (power_before_ + this->power_lost_);
   }
@@ -313,10 +315,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     return energy;
   }
 
-  /// What happens to a beam whose s has passed kappa. In dynamics it dissipates what makes the
-  /// energy balance of leapfrog exact for linear strains: forces of this state on strains of the
-  /// last one, 1/2 e_n k e_(n-1) (D_n - D_(n-1)) (work by the mean of the forces at a step's ends).
-  /// In statics it comes straight from rest: U_1 s kappa (D - D_old), exact for any step.
+  /// Growth of the damage of beam m, whose s has passed kappa. In dynamics the dissipated energy is
+  /// that of the forces of this state on the strains of the last one,
+  /// 1/2 e_n k e_(n-1) (D_n - D_(n-1)), which makes the energy balance of leapfrog exact for linear
+  /// strains (work by the mean of the forces at the two ends of a step). In statics, on a
+  /// proportional path from rest, it is U_1 s kappa (D - D_old), exact for any step.
   [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s,
                                              const State<Spatial>& state) const {
     const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
@@ -369,7 +372,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
         three(i + Spatial::angular_velocity), three(j + Spatial::angular_velocity));
   }
 
-  /// A block with a beam that is damaged or may become so: what this state's damage leaves of it.
+  /// Computes the softened copy of block b, which has a beam that is damaged or may become so at
+  /// this state; notes growths of damage (dynamics).
   [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
                                                          const State<Spatial>& state) {
     const Lanes s2 = criterion_of(b, state);
@@ -390,6 +394,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     if constexpr (damped) soft_dashpots_ = softened(dashpots_[b], left);
   }
 
+  /// Makes a growth of damage history.
   void take(const Growth& g) {
     put(g.crack);
     if (g.crack.broken()) newly_broken_.push_back(g.crack.beam);
@@ -397,7 +402,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     dissipated_ += g.dissipated;
   }
 
-  /// A restart goes on with the forces of the last step's start.
+  /// Saves or loads the forces of dashpots at the start of the last step, which the losses of the
+  /// next step depend on.
   void remember_dashpots(Archive& archive) {
     std::vector<std::int32_t> beams;
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
@@ -416,8 +422,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     each([&](float& value) { value = static_cast<float>(rows[k++]); });
   }
 
-  /// Enters a crack. A beam that has broken leaves its block: without stiffness, between a body and
-  /// itself, it costs what any other costs and adds nothing.
+  /// Enters a crack. A broken beam stays in its block, without stiffness and between a body and
+  /// itself: it costs as much as any other beam and adds nothing.
   void put(const Crack& c) {
     const auto m = static_cast<std::size_t>(c.beam);
     std::int32_t& at = crack_of_[m];
@@ -442,13 +448,14 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     mark(m / lanes);
   }
 
-  /// The beam as it was at rest.
+  /// Makes beam m undamaged again.
   void restore(std::int32_t m) {
     this->set(m, beams_);
     crack_of_[static_cast<std::size_t>(m)] = none;
     mark(static_cast<std::size_t>(m) / lanes);
   }
 
+  /// Updates damaged_ of block b.
   void mark(std::size_t b) {
     damaged_[b] = 0;
     for (std::size_t m = b * lanes; m < std::min((b + 1) * lanes, crack_of_.size()); ++m) {
@@ -457,7 +464,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     }
   }
 
-  /// \param all  over all ranks, with global indices
+  /// Enters the cracks of local beams. \param all  cracks of all ranks, with global beams
   void set_cracks(std::vector<Crack> all) {
     for (Crack& c : all) {
       const auto found =
@@ -471,21 +478,21 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   const BeamOptions beams_;
   const FractureOptions options_;
   std::vector<StrengthBlock> strengths_;
-  std::vector<std::uint8_t> damaged_;   ///< per block: some beam is damaged, but not broken
-  std::vector<std::int32_t> crack_of_;  ///< per local beam: its place in cracks_
+  std::vector<std::uint8_t> damaged_;   ///< per block: has a beam that is damaged but not broken
+  std::vector<std::int32_t> crack_of_;  ///< per local beam: index in cracks_, or none
   std::vector<Crack> cracks_,
       kept_;  ///< in the order of their initiation; statics: at the last commit
-  std::vector<std::int32_t> newly_broken_;  ///< since the last commit, local
+  std::vector<std::int32_t> newly_broken_;  ///< local beams, since the last commit
   std::vector<std::array<std::int32_t, 2>> released_;
-  std::vector<ViscousBlock> viscous_;      ///< at the start of the last step
-  std::vector<ViscousBlock> viscous_now_;  ///< a by-product of the last evaluation
+  std::vector<ViscousBlock> viscous_;      ///< forces of dashpots at the start of the last step
+  std::vector<ViscousBlock> viscous_now_;  ///< in the last evaluation, a by-product
   double power_before_ = 0;                ///< of viscous_ at the rates of the last evaluation [W]
   const StrengthBlock unbreakable_{};
   BeamBlock<Frame> soft_block_;  ///< work space of soften()
   DashpotBlock soft_dashpots_;
-  std::vector<Growth> growing_;              ///< a by-product of the last evaluation, no history
-  double dissipated_ = 0, kept_energy_ = 0;  ///< by the beams that this rank counts [J]
-  double dt_ = 0;                            ///< the last step [s]
+  std::vector<Growth> growing_;              ///< by-product of the last evaluation, no history
+  double dissipated_ = 0, kept_energy_ = 0;  ///< by counted beams; the same at the last commit [J]
+  double dt_ = 0;                            ///< length of the last step [s]
 };
 
 }  // namespace floe

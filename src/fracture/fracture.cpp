@@ -11,7 +11,7 @@ namespace {
 /// A number in (0, 1) from a seed and an index (SplitMix64; Steele, Lea & Flood 2014).
 double uniform(std::uint64_t seed, std::int32_t index) {
   std::uint64_t z = seed * 0xD1342543DE82EF95U + static_cast<std::uint64_t>(index) + 1;
-  for (int round = 0; round < 2; ++round) {  // twice: seeds and indices are small numbers
+  for (int round = 0; round < 2; ++round) {  // twice, since seeds and indices are small numbers
     z += 0x9E3779B97F4A7C15U;
     z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
     z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
@@ -20,7 +20,8 @@ double uniform(std::uint64_t seed, std::int32_t index) {
   return (static_cast<double>(z >> 11U) + 0.5) * 0x1p-53;
 }
 
-/// Mean section over the whole lattice, the same bits on any number of ranks: sums of integers.
+/// Mean section of the beams of the whole lattice [m^2]. Sums of integers give the same bits on any
+/// number of ranks. Collective.
 double mean_section(const Part& part) {
   double largest = 0;
   const auto area = [&](std::size_t m) { return part.beams.width[m] * part.beams.height[m]; };
@@ -35,7 +36,7 @@ double mean_section(const Part& part) {
   return largest * (static_cast<double>(sum) / fine) / static_cast<double>(part.global_beams);
 }
 
-constexpr std::size_t crack_size = 11;
+constexpr std::size_t crack_size = 11;  // numbers of a Crack in a checkpoint
 
 std::vector<double> packed(const std::vector<Crack>& cracks) {
   std::vector<double> values;

@@ -1,6 +1,6 @@
 /// \file
-/// Beams that crack (model.md section 11): strengths, one damage variable per beam with given
-/// fracture energies, and what a run may ask of the cracks.
+/// Beams that crack: strengths, one damage variable per beam with given fracture energies, and
+/// queries about the cracks (model.md, "Fracture").
 #pragma once
 
 #include <array>
@@ -16,24 +16,24 @@ namespace floe {
 
 /// A beam that has broken.
 struct Break {
-  double time;        ///< of the state that it broke in [s]
+  double time;        ///< of the state in which the beam broke [s]
   std::int32_t beam;  ///< global index
-  Point3 place;       ///< middle of its two bodies then [m]
-  double mode_mix;    ///< beta: part of shear and torsion in the energy at initiation
-  double energy;      ///< that it has dissipated [J]
-  double nominal;     ///< G A, what it should have [J]; less than `energy` if it was brittle
-  bool brittle;       ///< it stored more than G A when it reached its strength
+  Point3 place;       ///< middle between the centroids of its bodies at this time [m]
+  double mode_mix;    ///< beta: share of shear and torsion in the energy at initiation
+  double energy;      ///< dissipated [J]
+  double nominal;     ///< G A, the energy it should dissipate [J]; less than `energy` if brittle
+  bool brittle;       ///< the beam stored more than G A when it reached its strength
 };
 
-/// What a state in balance has done to the beams.
+/// Effect of a state in balance on the beams.
 enum class Advance {
-  none,      ///< nothing: the state stands
-  softened,  ///< some have lost stiffness
-  broke,     ///< one has broken
+  none,      ///< no change: the state is accepted
+  softened,  ///< beams have lost stiffness
+  broke,     ///< one beam has broken
 };
 
-/// The cracks of a lattice: what breakable beams are beside a force. One state at a time;
-/// collective where it says so.
+/// The cracks of a lattice: the second interface of breakable beams, beside the force. Functions
+/// are collective only if so stated.
 class Fracture {
  public:
   Fracture() = default;
@@ -41,43 +41,48 @@ class Fracture {
   Fracture& operator=(const Fracture&) = delete;
   virtual ~Fracture() = default;
 
-  /// D of a local beam, as of the last commit.
+  /// Damage D of a local beam, as of the last commit; in statics advance() changes it too.
   virtual double damage(std::int32_t beam) const = 0;
-  /// The broken beams that this rank counts, in no particular order.
+  /// Broken beams whose energy this rank counts, in no particular order.
   virtual std::vector<Break> breaks() const = 0;
-  /// Global bodies of the local beams (counted here or not) that the last commit broke: from then
-  /// on they may touch.
+  /// Pairs of global bodies whose beam broke in the last commit, for all local beams (counted here
+  /// or not). These bodies may touch from now on.
   virtual std::span<const std::array<std::int32_t, 2>> released() const = 0;
 
-  /// Statics. Largest s of the undamaged beams over all ranks: above 1 one has reached its
+  /// For statics: largest s of the undamaged beams of all ranks; above 1 a beam has reached its
   /// strength. Collective.
   virtual double overload(const State<Spatial>& state) const = 0;
-  /// Statics. Damage follows a state in balance: that of beams that soften, or one break (of the
-  /// most overloaded beam). Collective.
+  /// For statics: updates damage after a state in balance. All beams that soften are updated, and
+  /// of the beams that would break only the most overloaded one. Collective.
   virtual Advance advance(const State<Spatial>& state) = 0;
-  /// Statics. What advance() did since the last commit is taken back.
+  /// For statics: takes back all changes by advance() since the last commit.
   virtual void retreat() = 0;
 };
 
-/// Breakable beams.
+/// Breakable beams, by their two interfaces.
 class BreakableForce {
  public:
   std::unique_ptr<BeamForce<Spatial>> force;
   Fracture* fracture;  ///< the same object
 };
 
-/// \param part  must outlive the force \throws InputError if the lattice does not give the
-/// sections' sides. Collective.
+/// Makes the force of breakable beams. Collective.
+/// \param part  must outlive the force
+/// \throws InputError if the lattice does not give the sides of the sections
 BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
                                     const FractureOptions& fracture);
 
-/// Largest s of a part's whole beams under section forces, without scatter. Collective.
+/// Largest s of the beams of all ranks under given section forces, undamaged and without scatter of
+/// strengths. Collective.
 /// \param sections  one per local beam
 double overload(const Part& part, const std::vector<BeamSection>& sections,
                 FractureOptions fracture);
 
-/// Factor of beam `beam`'s strengths: (A_ref/A)^(1/m) (-ln U)^(1/m)/Gamma(1 + 1/m), U uniform in
-/// (0, 1) from the seed and the beam's global index.
+/// Weibull factor of the strengths of a beam: (A_ref/A)^(1/m) (-ln U)^(1/m)/Gamma(1 + 1/m), with U
+/// uniform in (0, 1) from the seed and the beam.
+/// \param beam        global index
+/// \param modulus     m
+/// \param area_ratio  A/A_ref
 double weibull_factor(std::uint64_t seed, std::int32_t beam, double modulus, double area_ratio);
 
 }  // namespace floe

@@ -1,6 +1,6 @@
 /// \file
-/// Strengths of beams in blocks of lanes. The loop over an intact sheet pays for one test per
-/// block; blocks with a beam that gives way, or is damaged, are looked at beam by beam.
+/// Strengths of beams in blocks of lanes. The loop over an intact sheet costs one test more per
+/// block; only blocks with an overloaded or damaged beam are treated beam by beam.
 #pragma once
 
 #include "beams/lanes.h"
@@ -8,6 +8,7 @@
 
 namespace floe {
 
+/// Strengths of a block of beams, number by number and lane by lane.
 struct alignas(64) StrengthBlock {
   std::array<std::array<double, lanes>, 5> values;
 
@@ -21,7 +22,7 @@ struct alignas(64) StrengthBlock {
   }
 };
 
-/// s^2 of a block's beams at the given records.
+/// s^2 of the beams of a block at the given body records.
 template <Kinematics kinematics, template <class> class Frame>
 Lanes block_criterion(const BeamBlock<Frame>& block, const StrengthBlock& strength,
                       const double* records) {
@@ -31,7 +32,7 @@ Lanes block_criterion(const BeamBlock<Frame>& block, const StrengthBlock& streng
                                                             beam, j.u - i.u, i.q, j.q)));
 }
 
-/// What a block's dashpots put on its beams.
+/// Section forces of the dashpots of a block [N, N m], in single precision.
 struct alignas(64) ViscousBlock {
   std::array<std::array<float, lanes>, 6> values{};
 
@@ -48,14 +49,15 @@ struct alignas(64) ViscousBlock {
   }
 };
 
-/// The hook of add_block() for beams that may break.
+/// The strength hook of add_block() for beams that may break. The last three are null without
+/// dashpots.
 template <class Add>
 struct BreakableBlock {
   const StrengthBlock& strength;
-  Add add;                               ///< what happens instead; returns the power lost
-  const ViscousBlock* before = nullptr;  ///< with dashpots: at the last step's start
-  ViscousBlock* now = nullptr;
-  Lanes* lost_before = nullptr;  ///< power of those at the present rates, summed up
+  Add add;  ///< called instead of adding the block; returns the power lost
+  const ViscousBlock* before = nullptr;  ///< forces of dashpots at the start of the last step
+  ViscousBlock* now = nullptr;           ///< receives the present forces of dashpots
+  Lanes* lost_before = nullptr;          ///< sum of the power of `before` at the present rates [W]
 
   void store(const BeamStress<Lanes>& viscous, const BeamStress<Lanes>& rate,
              const Lanes& counts) const {
@@ -70,7 +72,7 @@ struct BreakableBlock {
 template <class Add, class... Dashpots>
 BreakableBlock(const StrengthBlock&, Add, Dashpots...) -> BreakableBlock<Add>;
 
-/// A copy with the parts of its beams' stiffnesses that damage leaves.
+/// Copies of a block and of its dashpots, with the values multiplied by the factors of damage.
 template <template <class> class Frame>
 BeamBlock<Frame> softened(const BeamBlock<Frame>& block, const std::array<Softening, lanes>& left) {
   BeamBlock<Frame> soft = block;

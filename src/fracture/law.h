@@ -1,8 +1,8 @@
 /// \file
-/// The law of fracture for one beam (model.md section 11), on any scalar where loops need it.
+/// The law of fracture for one beam, on any scalar where loops need it (model.md, "Fracture").
 ///
 ///     sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),  tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2)
-///     s^2 = (<sigma>/sigma_t)^2 + (tau/tau_c)^2         of what the undamaged beam would carry
+///     s^2 = (<sigma>/sigma_t)^2 + (tau/tau_c)^2         of the forces in an undamaged beam
 ///     U_d = 1/2 k_n <Delta>^2 + shear, torsion, bending;  U_s its shear and torsion
 ///     at s = 1:  U_1 = U_d/s^2, beta = U_s/U_d, 1/G = (1 - beta)/G_f + beta/G_s, s_u = G A/U_1
 ///     D = s_u/(s_u - 1) (1 - 1/kappa), kappa the largest s so far; s_u <= 1: D = 1 at once
@@ -25,14 +25,17 @@ struct Strength {
   T shear, torsion;               ///< 1/(A tau_c), (3 + 1.8 b/a)/(a b^2 tau_c)
 };
 
-/// Of a section of sides w (axis 2) and h (axis 3) [m].
+/// Factors of a rectangular section.
+/// \param w, h     sides along axes 2 and 3 [m]
+/// \param tension  sigma_t [Pa]
+/// \param shear    tau_c [Pa]
 inline Strength<double> section_strength(double w, double h, double tension, double shear) {
   const double a = std::max(w, h), b = std::min(w, h), area = w * h;
   return {1 / (area * tension), 6 / (area * h * tension), 6 / (area * w * tension),
           1 / (area * shear), (3 + 1.8 * b / a) / (a * b * b * shear)};
 }
 
-/// s^2 of elastic section forces.
+/// s^2 of the given elastic section forces.
 template <class T>
 T criterion(const Strength<T>& c, const BeamStress<T>& e) {
   using std::abs;
@@ -44,7 +47,7 @@ T criterion(const Strength<T>& c, const BeamStress<T>& e) {
   return sigma * sigma + tau * tau;
 }
 
-/// Parts of a beam's elastic forces that are left: of the axial one, and of the others.
+/// Factors of the elastic forces of a damaged beam: axial, and the other five.
 struct Softening {
   double axial = 1, rest = 1;
 };
@@ -52,14 +55,15 @@ inline Softening softening(double damage, bool stretched, bool broken) {
   return {broken ? 0.0 : stretched ? 1 - damage : 1.0, 1 - damage};
 }
 
-/// 1/2 (elastic forces) . strains, in the parts that damage takes and does not take.
+/// Energy 1/2 (elastic forces) . strains [J]. Damage reduces all parts but that in compression.
 struct DamageEnergy {
   double stretch, squeeze;  ///< axial: in tension, in compression
   double shear, bending;    ///< shear and torsion; bending
   double damaged() const { return stretch + shear + bending; }
   double whole() const { return damaged() + squeeze; }
 };
-/// Bilinear: forces of one state on strains of another; of one state alone its energy.
+/// Bilinear: the forces of one state on the strains of another. With both of one state it is the
+/// energy of that state.
 inline DamageEnergy damage_energy(const BeamStress<double>& e, const BeamStress<double>& strain) {
   const double axial = 0.5 * e.n * strain.n;
   const bool tension = e.n > 0 && strain.n > 0, pressure = e.n < 0 && strain.n < 0;
@@ -68,7 +72,7 @@ inline DamageEnergy damage_energy(const BeamStress<double>& e, const BeamStress<
           0.5 * (e.c.y * strain.c.y + e.c.z * strain.c.z)};
 }
 
-/// What a beam keeps once it has reached its strength.
+/// History of a beam that has reached its strength.
 struct Crack {
   std::int32_t beam = 0;  ///< local index
   double kappa = 1;       ///< largest s so far
@@ -83,7 +87,10 @@ struct Crack {
   bool broken() const { return damage == 1; }
 };
 
-/// Takes a crack up where s has passed 1. \param energy  at that state
+/// Sets mode mix, nominal energy and ultimate s of a crack when s has passed 1.
+/// \param energy      of the undamaged beam at this state
+/// \param area        A [m^2]
+/// \param g, g_shear  G_f, G_s [J/m^2]
 inline void initiate(Crack& crack, const DamageEnergy& energy, double s, double area, double g,
                      double g_shear) {
   const double damaged = energy.damaged();
@@ -92,7 +99,7 @@ inline void initiate(Crack& crack, const DamageEnergy& energy, double s, double 
   crack.ultimate = crack.nominal * s * s / damaged;
 }
 
-/// D at kappa >= 1.
+/// Damage D at kappa >= 1.
 inline double damage_at(const Crack& crack, double kappa) {
   if (kappa >= crack.ultimate || crack.brittle()) return 1;
   return std::min(1.0, crack.ultimate / (crack.ultimate - 1) * (1 - 1 / kappa));

@@ -15,10 +15,10 @@ const Part& with_shapes(const Part& part) {
   return part;
 }
 
-/// With r from the body's centroid, V the submerged part and W its cut by the water (areas and
-/// moments of both are in Submerged): force rho g V, moment rho g (m_y, -m_x, 0), m = int_V r dV,
-/// and by Reynolds' theorem
-///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA   for a spin t.
+/// Buoyancy of the owned bodies. With r from the centroid of a body, its submerged part V and its
+/// waterplane W (Submerged has the volume, the area and the moments): force rho g V, moment
+/// rho g (m_y, -m_x, 0), m = int_V r dV. By Reynolds' theorem, for a displacement u and a spin t,
+///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA.
 class Buoyancy final : public Force<Spatial>,
                        public HasTangent<Spatial>,
                        public LimitsStep<Spatial> {
@@ -62,8 +62,8 @@ class Buoyancy final : public Force<Spatial>,
       at(3, 3) = weight_ * (s.wyy + s.moment[2]);
       at(4, 4) = weight_ * (s.wxx + s.moment[2]);
       at(3, 4) = at(4, 3) = -weight_ * s.wxy;
-      // The exact derivative to t_z stands in the last column only; half of it in each is the
-      // Hessian.
+      // K has the derivative to t_z in its last column only; the Hessian has half of it in the last
+      // column and half in the last row.
       const double share = tangent.symmetric() ? 0.5 : 1.0;
       at(3, 5) = -share * weight_ * s.moment[0];
       at(4, 5) = -share * weight_ * s.moment[1];
@@ -77,8 +77,8 @@ class Buoyancy final : public Force<Spatial>,
   }
 
   double stiffness_bound(std::int32_t body) const override {
-    // The cut of a convex body by a plane is at most three times its mean cut, volume over height
-    // (a cone's base).
+    // The waterplane of a convex body is at most three times its mean horizontal section, which is
+    // volume over height (the base of a cone).
     double low = 0, high = 0;
     const auto b = static_cast<std::size_t>(body);
     for (std::int32_t v = part_.shapes.vertex_of[b]; v < part_.shapes.vertex_of[b + 1]; ++v) {
@@ -88,7 +88,8 @@ class Buoyancy final : public Force<Spatial>,
     return 3.0 * weight_ * immersion_.volume(body) / (high - low);
   }
 
-  /// Of heave, about: bodies that the surface cuts have a stiffness, others none.
+  /// Approximate rate of heave, with volume^(2/3) for the waterplane. Bodies that the surface does
+  /// not cut have no stiffness.
   std::optional<double> rate_estimate(const State<Spatial>& state) const override {
     double fastest2 = 0;
     for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
@@ -104,8 +105,8 @@ class Buoyancy final : public Force<Spatial>,
     return std::sqrt(fastest2);
   }
 
-  /// Potential of the displaced water: rho g times int_V (-z) dV, the work to push the body down
-  /// from the air.
+  /// Reports the potential of the displaced water: rho g times int_V (-z) dV, the work of pushing
+  /// the body from the air into the water.
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for (std::int32_t body = 0; body < part_.owned; ++body) {

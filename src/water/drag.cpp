@@ -18,8 +18,7 @@ const Part& with_shapes(const Part& part) {
   return part;
 }
 
-/// Velocities of a block's bodies and what of their plan areas counts: A_p V/V_0, V the submerged
-/// part of their volumes.
+/// Velocities of the bodies of a block, and their wet areas A_p V/V_0 with V the submerged volume.
 struct MovingBlock {
   Vec3<Lanes> v;
   Lanes area;
@@ -29,6 +28,7 @@ struct alignas(64) LaneNumbers {
   std::array<double, lanes> values;
 };
 
+/// Wet areas A_p V/V_0 of the owned bodies.
 template <class Space>
 class WettedBodies;
 
@@ -49,12 +49,12 @@ class WettedBodies<Spatial> {
     const Lanes volume = immersion_.of_block(state, block, m.u.z, m.q).volume;
     return {m.v, volume * load(area_per_volume_[block].values.data())};
   }
-  /// Of one body [m^2].
+  /// Wet area of one body [m^2].
   double area(const State<Spatial>& state, std::size_t b) const {
     return per_volume(b) * immersion_.of(state, static_cast<std::int32_t>(b)).volume;
   }
-  /// Its derivative to z, rx, ry: dV = -(W u_z + W_y t_x - W_x t_y) with the waterplane W and its
-  /// moments.
+  /// Derivative of the wet area to z, rx, ry: dV = -(W u_z + W_y t_x - W_x t_y), with the
+  /// waterplane W and its moments.
   std::array<double, 3> slope(const State<Spatial>& state, std::size_t b) const {
     const Submerged s = immersion_.of(state, static_cast<std::int32_t>(b));
     if (s.volume == 0) return {};
@@ -68,7 +68,7 @@ class WettedBodies<Spatial> {
   std::vector<LaneNumbers> area_per_volume_;  ///< A_p/V_0 of each body [1/m]
 };
 
-/// In the plane what is submerged stays so.
+/// In the plane the submerged volume does not change.
 template <>
 class WettedBodies<Planar> {
  public:
@@ -95,10 +95,10 @@ class WettedBodies<Planar> {
   std::vector<LaneNumbers> area_;  ///< [m^2]
 };
 
-/// The ledger: velocities are known half a step apart, so the force F_n at t_n does the work
-/// dt/2 F_n.(v_n-1/2 + v_n+1/2). That is what the kinetic energy m v_n-1/2.v_n+1/2 / 2 of a free
-/// body loses, to rounding. The first half is a by-product of evaluation; a report at t_n counts
-/// it, commit adds the second half.
+/// Drag on the owned bodies. In the energy ledger the force F_n at t_n does the work
+/// dt/2 F_n.(v_n-1/2 + v_n+1/2), since velocities are known half a step apart. The kinetic energy
+/// m v_n-1/2.v_n+1/2 / 2 of a free body falls by the same amount, to rounding. The first half is a
+/// by-product of the evaluation, and a report at t_n counts it; commit() adds the second half.
 template <class Space>
 class Drag final : public Force<Space>,
                    public HasTangent<Space>,
@@ -131,7 +131,8 @@ class Drag final : public Force<Space>,
     power_ = quadratic_ ? add<true>(state, wrenches, forces_.data())
                         : add<false>(state, wrenches, forces_.data());
   }
-  /// F goes with the submerged volume: nothing symmetric, and little beside buoyancy's.
+  /// Adds the derivative of F to the submerged volume to K only: it is not symmetric, and small
+  /// compared with the tangent of buoyancy.
   bool add_tangent(const State<Space>& state, Tangent<Space>& tangent) const override {
     if constexpr (std::is_same_v<Space, Spatial>) {
       if (tangent.symmetric()) return false;
@@ -186,7 +187,7 @@ class Drag final : public Force<Space>,
   double power(const State<Space>&) const override { return power_; }
   void take_work(double work) override { lost_ -= work; }
 
-  /// Of the derivative of the force to the velocity, along the flow.
+  /// Derivative of the force to the velocity along the flow, over the mass.
   std::optional<double> rate_estimate(const State<Space>& state) const override {
     using std::sqrt;
     const Vec3<Lanes> current{current_.x, current_.y, current_.z};
@@ -211,7 +212,9 @@ class Drag final : public Force<Space>,
   }
 
  private:
-  /// Power on the bodies [W]. \param forces  filled, one per owned body; null: not wanted
+  /// Adds the wrenches.
+  /// \param forces  receives the force on each owned body [N]; may be null
+  /// \returns the power on the bodies [W]
   template <bool quadratic>
   [[gnu::flatten]] double add(const State<Space>& state, Wrenches<Space>& wrenches,
                               std::array<double, 4>* forces) const {
@@ -236,11 +239,11 @@ class Drag final : public Force<Space>,
     }
     return sum;
   }
-  /// Velocity of an owned body against the water, and the drag over it and over the area
-  /// [N s/m^3].
+  /// Velocity of an owned body relative to the water [m/s].
   Vec3<double> speed(const State<Space>& state, std::size_t b) const {
     return velocity(state, b) - current_;
   }
+  /// Drag on an owned body per wet area and speed [N s/m^3].
   double factor(const State<Space>& state, std::size_t b) const {
     const Vec3<double> v = speed(state, b);
     return linear_ + coefficient_ * std::sqrt(dot(v, v));
@@ -253,8 +256,8 @@ class Drag final : public Force<Space>,
   bool quadratic_;
   std::vector<std::array<double, 4>> forces_;  ///< of the last evaluation [N], padded
   double power_ = 0;                           ///< of the last evaluation [W]
-  double lost_ = 0;                            ///< [J]
-  double last_dt_ = 0;                         ///< of the step that led to the last state [s]
+  double lost_ = 0;                            ///< by the bodies, taken over so far [J]
+  double last_dt_ = 0;                         ///< length of the last step [s]
 };
 
 }  // namespace

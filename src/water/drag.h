@@ -9,10 +9,11 @@
 
 namespace floe {
 
-/// Force -(c + rho_w C_d |v|/2) A_plan v times the submerged part of the volume, at the centroid; v
-/// is the velocity against the water, A_plan the plan area of the body at rest. Reports as
-/// `energy_drag` what bodies have lost to the water; a current also drives them, a gain counts
-/// negative. \param part  must outlive the force
+/// Makes the force -(c + rho_w C_d |v|/2) A_p (V/V_0) v at the centroid of each owned body, with v
+/// the velocity relative to the water, A_p the plan area of the body at rest and V/V_0 the
+/// submerged part of its volume (model.md, "Water"). Reports as `energy_drag` the energy that the
+/// bodies have lost to the water; energy gained from a current counts as negative.
+/// \param part  with shapes; must outlive the force
 /// \throws InputError if the lattice has no shapes
 template <class Space>
 std::unique_ptr<Force<Space>> make_drag(const Part& part, const DragOptions& options);

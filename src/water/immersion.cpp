@@ -28,8 +28,8 @@ Immersion::Immersion(const Part& part) : part_(part) {
   }
 }
 
-/// A prism along axis 3 has one face at the bottom, one at the top with a corner over each corner
-/// of the bottom, and no other vertex.
+/// Finds out whether owned body b is a prism along axis 3: one face at the bottom, one at the top
+/// with a corner above each corner of the bottom, and no other vertex.
 Prism<double> Immersion::find_prism(std::size_t b) const {
   const auto [qw, qx, qy, qz] = part_.bodies.orientation[b];
   Prism<double> prism{};
@@ -53,7 +53,7 @@ Prism<double> Immersion::find_prism(std::size_t b) const {
     if (!std::all_of(corners.begin(), corners.end(),
                      [&](std::int32_t v) { return at(v)[2] <= bottom + near; }))
       continue;
-    // Seen from outside counter-clockwise, so from above clockwise.
+    // Corners run counter-clockwise seen from outside, hence clockwise seen from above.
     for (auto v = corners.rbegin(); v != corners.rend(); ++v)
       plan.push_back({at(*v)[0], at(*v)[1]});
   }
@@ -89,7 +89,8 @@ Submerged Immersion::of(const State<Spatial>& state, std::int32_t body) const {
   Submerged s;
   s.volume = p.volume;
   s.moment = {p.moment.x, p.moment.y, p.moment.z};
-  // The point of the cut over the plan's (x, y) is at p0 + p1 x + p2 y, q0 + q1 x + q2 y.
+  // The point of the waterplane at (x, y) of the plan has the world coordinates p0 + p1 x + p2 y,
+  // q0 + q1 x + q2 y from the centroid.
   const double p0 = e3.x * p.c0, p1 = e1.x - e3.x * p.sx, p2 = e2.x - e3.x * p.sy;
   const double q0 = e3.y * p.c0, q1 = e1.y - e3.y * p.sx, q2 = e2.y - e3.y * p.sy;
   const double px = p1 * b.x + p2 * b.y, qx = q1 * b.x + q2 * b.y;
@@ -115,7 +116,8 @@ void Immersion::replace(const State<Spatial>& state, std::size_t block, std::siz
 }
 
 double Immersion::plan_area(std::int32_t body) const {
-  // Each point of the plan lies under one face that looks up and over one that looks down.
+  // Each point of the plan view lies below one face of a convex body and above another, so the
+  // projected areas of the faces add up to twice the plan area.
   const auto b = static_cast<std::size_t>(body);
   const Shapes& shapes = part_.shapes;
   const Triad<double> axes = triad(prism(b).axes);

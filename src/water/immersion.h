@@ -1,11 +1,11 @@
 /// \file
-/// The part of each body that is below the water, z < 0: exact at any place and tilt.
+/// The submerged part of each body, z < 0: exact at any place and tilt (model.md, "Water").
 ///
-/// Notation: (x, y, c) are a body's principal axes with the origin at its centroid; R takes them to
-/// the world, (s_x, s_y) = (R_31, R_32)/R_33 is the slope of its plan. Of a prism along c, whose
-/// plan has the area A and the moments S, I about the origin, the water cuts off what is above
-/// c_w(x, y) = c_0 - s_x x - s_y y, c_0 = -z(centroid)/R_33. While only the sides are cut, all
-/// integrals of c from the bottom to c_w are polynomials of A, S and I (physics: docs/model.md 6).
+/// Notation: (x, y, c) are the principal axes of a body with the origin at its centroid. R takes
+/// them to the world, and (s_x, s_y) = (R_31, R_32)/R_33 is the slope of the plan. The plan of a
+/// prism along c has the area A and the moments S, I about the origin. The water surface is at
+/// c_w(x, y) = c_0 - s_x x - s_y y, c_0 = -z(centroid)/R_33. While the water cuts only the sides,
+/// all integrals of c from the bottom to c_w are polynomials of A, S and I.
 #pragma once
 
 #include <algorithm>
@@ -20,28 +20,30 @@
 
 namespace floe {
 
-/// A body at rest, and its plan if it is a prism along axis 3. Of other bodies the circumradius is
-/// infinite, so that they never count as cut at the sides only.
+/// A body at rest, and its plan if the body is a prism along axis 3. Other bodies get an infinite
+/// circumradius, so that sides_only() is false for them.
 template <class T>
 struct Prism {
   Quat<T> axes;              ///< principal axes
-  T z;                       ///< of the centroid [m]
-  T bottom, top;             ///< where the end faces are on axis 3 [m]
-  T area, x, y, xx, xy, yy;  ///< A, S and I of the plan
+  T z;                       ///< height of the centroid [m]
+  T bottom, top;             ///< end faces on axis 3 [m]
+  T area, x, y, xx, xy, yy;  ///< A, S and I of the plan [m^2, m^3, m^4]
   T radius2;                 ///< square of the circumradius about axis 3 [m^2]
   static constexpr std::size_t numbers = 14;
 };
 
-/// What the water leaves of a prism of which it cuts the sides only.
+/// The submerged part of a prism of which the water cuts only the sides.
 template <class T>
 struct PrismBelow {
-  Triad<T> axes;
-  T upright, sx, sy, c0;  ///< 1/R_33, slopes, height of the water over the centroid
+  Triad<T> axes;          ///< principal axes in the world
+  T upright, sx, sy, c0;  ///< 1/R_33; slopes; c_0, the water over the centroid along axis 3 [m]
   T volume;               ///< [m^3]
   Vec3<T> moment;         ///< int r dV, world axes about the centroid [m^4]
 };
 
-/// \param rotation  of unit length   \param z  of the centroid
+/// Submerged part of a prism if the water cuts only the sides (else the result has no meaning).
+/// \param rotation  from rest, of unit length
+/// \param z         height of the centroid over the water [m]
 template <class T>
 PrismBelow<T> prism_below(const Prism<T>& b, const Quat<T>& rotation, const T& z) {
   PrismBelow<T> p;
@@ -61,17 +63,21 @@ PrismBelow<T> prism_below(const Prism<T>& b, const Quat<T>& rotation, const T& z
   return p;
 }
 
-/// Whether the water cuts the sides of a prism only. \param z  of the centroid
+/// Whether the water cuts only the sides of a prism.
+/// \param axes  principal axes in the world
+/// \param z     height of the centroid over the water [m]
 template <class T>
 auto sides_only(const Prism<T>& b, const Triad<T>& axes, const T& z) {
-  // Heights of the end faces over the centroid's foot; their corners are within `reach` of them.
+  // Heights over the water of the points where axis 3 meets the end faces. The heights of the
+  // corners differ from these by at most sqrt(reach2).
   const T bottom = z + axes.e3.z * b.bottom, top = z + axes.e3.z * b.top;
   const T reach2 = b.radius2 * T(axes.e1.z * axes.e1.z + axes.e2.z * axes.e2.z);
   return axes.e3.z > 0.0 && bottom < 0.0 && top > 0.0 && bottom * bottom > reach2 &&
          top * top > reach2;
 }
 
-/// A linearised quaternion (1, theta/2) is longer than 1 and would swell the body.
+/// A quaternion scaled to unit length. A linearised quaternion (1, theta/2) is longer than 1 and
+/// would enlarge the body.
 template <class T>
 Quat<T> of_unit_length(const Quat<T>& q) {
   using std::sqrt;
@@ -79,22 +85,26 @@ Quat<T> of_unit_length(const Quat<T>& q) {
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 
+/// Computes the submerged parts of the owned bodies of a part.
 class Immersion {
  public:
-  /// \param part  with shapes; must outlive this
+  /// \param part  with shapes; must outlive this object
   explicit Immersion(const Part& part);
 
   /// Submerged part of an owned body; moments are about its centroid, in world axes.
   Submerged of(const State<Spatial>& state, std::int32_t body) const;
-  /// The same by clipping the polyhedron, whatever the body is.
+  /// The same by clipping the polyhedron, for any body.
   Submerged by_clipping(const State<Spatial>& state, std::int32_t body) const;
 
+  /// Volumes [m^3] and moments [m^4] of the submerged parts of the bodies of a block.
   struct Lane {
     Lanes volume;
     Vec3<Lanes> moment;
   };
-  /// Volume and moment of the bodies of one block, one per lane: body block * lanes + lane; lanes
-  /// beyond the last owned body repeat it. \param uz, q  their displacements and rotations
+  /// Submerged parts of the bodies of one block. Lane k has body block * lanes + k; lanes beyond
+  /// the last owned body repeat that body.
+  /// \param uz  displacements of the bodies along z [m]
+  /// \param q   rotations of the bodies from rest
   Lane of_block(const State<Spatial>& state, std::size_t block, const Lanes& uz,
                 const Quat<Lanes>& q) const {
     const Prism<Lanes> b = blocks_[block].get();
@@ -109,7 +119,7 @@ class Immersion {
     return below;
   }
   std::size_t blocks() const { return blocks_.size(); }
-  /// Body of a lane.
+  /// Owned body in a lane of a block.
   std::size_t body_of(std::size_t block, std::size_t lane) const {
     return std::min(block * lanes + lane, whole_.size() - 1);
   }
@@ -161,15 +171,17 @@ class Immersion {
   const Part& part_;
   std::vector<Block> blocks_;
   std::vector<VolumeProperties> whole_;
-  std::vector<double> extent_;          ///< of the farthest vertex from the centroid [m]
+  std::vector<double> extent_;          ///< distance of the farthest vertex from the centroid [m]
   mutable std::vector<Point3> placed_;  ///< work space of the clipping
 };
 
-/// Displacements, rotations and velocities of a block's bodies, and the way back of forces on them.
+/// Displacements u, velocities v and rotations q of the bodies of a block, one body per lane.
 struct BlockMotion {
   Vec3<Lanes> u, v;
   Quat<Lanes> q;
 };
+/// Loads the motion of the bodies of a block into lanes.
+/// \tparam with_velocity  velocities too; else they are not set
 template <bool with_velocity>
 BlockMotion block_motion(const Immersion& immersion, const State<Spatial>& state,
                          std::size_t block) {

@@ -6,8 +6,9 @@
 
 namespace floe {
 
+/// Options of drag (model.md, "Water").
 struct DragOptions {
-  double linear = 0;       ///< c [N s/m^3] (the paper: Stokes)
+  double linear = 0;       ///< c of the linear law [N s/m^3] (the paper: Stokes)
   double coefficient = 0;  ///< C_d of the quadratic law
   double density = 1010;   ///< rho_w [kg/m^3]
   Point3 current{};        ///< velocity of the water [m/s]
