@@ -168,7 +168,8 @@ exec "{os.environ["FLOE"]}" "$@"
                       "L40_h0.5_2h", "--meshes", "1")
         rows = {test: table[0] for test, table in tables(self.root / "out")[0].items()}
         young, poisson = rows["tension"]["E_gauge_over_Eb"], rows["tension"]["poisson"]
-        # the infinite lattice's, docs/model.md section 3
+        # those of the infinite lattice (model.md, "Effective moduli of the lattice, calibrated
+        # sheets")
         self.assertAlmostEqual(young, 0.7954, delta=0.01)
         self.assertAlmostEqual(poisson, 0.2046, delta=0.015)
         self.assertAlmostEqual(rows["compression"]["E_gauge_over_Eb"] / young, 1, delta=0.001)

@@ -1,6 +1,6 @@
 /// \file
-/// A floating sheet under a point load against the infinite plate (model.md section 5; paper,
-/// "Bending of an Ice Sheet").
+/// A floating sheet under a point load against the infinite plate (model.md, "Bending on water";
+/// paper, "Bending of an Ice Sheet").
 #pragma once
 
 #include <cmath>

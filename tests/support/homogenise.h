@@ -1,6 +1,7 @@
 /// \file
 /// Effective constants of a lattice: its outermost bodies are given the motion of a uniform strain
-/// or curvature, and mean stresses and strains are taken over bodies inside (model.md section 3).
+/// or curvature, and mean stresses and strains are taken over bodies inside (model.md, "Effective
+/// moduli of the lattice, calibrated sheets").
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 /// \file
-/// The tension test of a square sheet (model.md section 4; paper, "Effective Young's Modulus").
+/// The tension test of a square sheet (model.md, "Tension test"; paper, "Effective Young's
+/// Modulus").
 #pragma once
 
 #include "floe/scene.h"

@@ -1,5 +1,6 @@
 /// \file
-/// A patch of the regular triangular lattice (model.md section 3).
+/// A patch of the regular triangular lattice (model.md, "Effective moduli of the lattice,
+/// calibrated sheets").
 #pragma once
 
 #include <array>

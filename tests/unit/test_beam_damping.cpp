@@ -230,7 +230,7 @@ double inertia(const Lattice& lattice, std::size_t body, Mode mode) {
                : lattice.bodies.inertia[body][static_cast<std::size_t>(k - 3)];
 }
 
-/// The dashpot by the formula of model.md section 8.
+/// Coefficient of the dashpot by the formula of model.md, "Explicit dynamics": Damping.
 double dashpot(const Lattice& lattice, const BeamStiffness& k, Mode mode, double ratio) {
   const double a = inertia(lattice, 0, mode), b = inertia(lattice, 1, mode);
   return 2 * ratio * std::sqrt(2 * a * b / (a + b) * stiffness(k, mode));

@@ -111,7 +111,8 @@ TEST(VolumeProperties, RegularTetrahedronIsIsotropic) {
 }
 
 TEST(Submerged, TiltedPrismCutOnItsSides) {
-  // model.md section 6; the body's frame has its origin at the centroid and the plan's own axes.
+  // The formula is that of model.md, "Water": Prisms. The body's frame has its origin at the
+  // centroid and the plan's own axes.
   std::vector<Point2> plan = pentagon;
   const PlanProperties p = plan_properties(plan);
   for (auto& q : plan) q = {q[0] - p.centroid[0], q[1] - p.centroid[1]};

@@ -1,6 +1,6 @@
-// Floating sheets (model.md section 5): draft, stiffness against tilting, rigid sinking, and the
-// deflection under a point load against an independent static solution and against Wyman's (1950)
-// infinite plate.
+// Floating sheets (model.md, "Bending on water"): draft, stiffness against tilting, rigid sinking,
+// and the deflection under a point load against an independent static solution and against Wyman's
+// (1950) infinite plate.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,7 @@
-// Calibrated sheets (model.md section 3): the constants of a sheet's inside, of the sheet in a
-// tension test, of a narrow strip, and the deflection of a floating sheet, against the material's;
-// and the measured corrections for irregular cells, measured again.
+// Calibrated sheets (model.md, "Effective moduli of the lattice, calibrated sheets"): the constants
+// of a sheet's inside, of the sheet in a tension test, of a narrow strip, and the deflection of a
+// floating sheet, against the material's; and the measured corrections for irregular cells,
+// measured again.
 #include <algorithm>
 #include <array>
 #include <cmath>

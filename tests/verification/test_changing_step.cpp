@@ -1,5 +1,5 @@
-// The stable step falls in the course of a run: shorter steps from there on, or the end (model.md
-// section 8, "Stable step").
+// The stable step falls in the course of a run: shorter steps from there on, or the end (model.md,
+// "Explicit dynamics": Stable step).
 #include <cmath>
 #include <string>
 

@@ -1,4 +1,5 @@
-// The energy ledger of leapfrog closes with the step (model.md section 8, "Energy ledger").
+// The energy ledger of leapfrog closes with the step (model.md, "Explicit dynamics": Energy
+// ledger).
 #include <array>
 #include <cmath>
 #include <string>

@@ -1,5 +1,4 @@
-// A floating block: heave, roll, draft, drag and drift, against formulas (physics: docs/model.md
-// 6).
+// A floating block: heave, roll, draft, drag and drift, against formulas (model.md, "Water").
 
 #include <gtest/gtest.h>
 

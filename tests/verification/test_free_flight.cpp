@@ -1,5 +1,5 @@
 // Leapfrog in free motion: order, and what a top and a flying bar keep over a million steps
-// (model.md section 8).
+// (model.md, "Explicit dynamics").
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // A static answer must not depend on how free rigid motions are taken out, nor on the linear
-// solver, and small strains must give the linear answer (model.md section 4).
+// solver, and small strains must give the linear answer (model.md, "Static solution").
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // Implicit dynamics of lattices: order at large rotations, PETSc's alpha2 as a check, energy, large
-// steps, failed steps, going on, what is prescribed (model.md section 9).
+// steps, failed steps, restarts, prescribed motions (model.md, "Implicit dynamics").
 #include <algorithm>
 #include <array>
 #include <cmath>

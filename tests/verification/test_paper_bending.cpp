@@ -1,5 +1,5 @@
 // The paper's bending test as the paper ran it: explicitly, with Stokes drag, until the sheet rests
-// (model.md sections 5 and 8; paper, "Bending of an Ice Sheet").
+// (model.md, "Bending on water" and "Explicit dynamics"; paper, "Bending of an Ice Sheet").
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,5 @@
-// The paper's tension test as the paper ran it, explicitly (model.md sections 4 and 8).
+// The paper's tension test as the paper ran it, explicitly (model.md, "Tension test" and "Explicit
+// dynamics").
 #include <cmath>
 #include <string>
 #include <vector>

@@ -1,8 +1,9 @@
-// Moduli of the infinite regular lattice (model.md section 3), measured in a patch of it whose
-// outermost bodies are given the motion of a uniform strain or curvature. All others are free. That
-// motion is then the exact answer everywhere, so the beams round an inner body carry what they
-// carry in the infinite lattice: mean stresses and moments are sums of their section forces over
-// that body's hexagon. This goes through the same solver as any scene.
+// Moduli of the infinite regular lattice (model.md, "Effective moduli of the lattice, calibrated
+// sheets"), measured in a patch of that lattice whose outermost bodies are given the motion of a
+// uniform strain or curvature. All others are free. That motion is then the exact answer
+// everywhere, so the beams round an inner body carry the forces of the infinite lattice: mean
+// stresses and moments are sums of the beams' section forces over that body's hexagon. The patch is
+// solved by the same solver as any scene.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -168,7 +169,8 @@ TEST(RegularLattice, TransverseShearStiffness) {
   }
 }
 
-/// The closed forms that floe reports against the table of section 3.
+/// Compares the closed forms that floe reports with the table of model.md, "Effective moduli of the
+/// lattice, calibrated sheets".
 TEST(RegularLattice, ClosedFormsAgainstPublishedTable) {
   struct InPlane {
     Shear shear;

@@ -1,5 +1,5 @@
-// Stable steps of PETSc's Runge-Kutta methods: their polynomials, and what stepping shows (model.md
-// section 8, "Runge-Kutta").
+// Stable steps of PETSc's Runge-Kutta methods: their polynomials, and what stepping shows
+// (model.md, "Explicit dynamics": Runge-Kutta).
 #include <petscts.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // PETSc's Runge-Kutta methods on bodies: orders at large rotations, prescribed motions, the ledger,
-// momenta, adaptive steps (model.md section 8, "Runge-Kutta").
+// momenta, adaptive steps (model.md, "Explicit dynamics": Runge-Kutta).
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The stable step against what stepping shows: bisection on dt for growth of a small random
-// perturbation (model.md section 8, "Stable step").
+// perturbation (model.md, "Explicit dynamics": Stable step).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

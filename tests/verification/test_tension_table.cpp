@@ -1,5 +1,5 @@
 // Effective Young's modulus of random sheets in tension against an independent static solution
-// (model.md section 4): means of n2 meshes agree if they differ by at most 3 std sqrt(1/n2 +
+// (model.md, "Tension test"): means of n2 meshes agree if they differ by at most 3 std sqrt(1/n2 +
 // 1/n), std and n being the reference's.
 #include <algorithm>
 #include <array>

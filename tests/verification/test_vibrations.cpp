@@ -1,4 +1,5 @@
-// Leapfrog: frequencies of a cantilever, speed of a wave along a sheet (model.md sections 3 and 8).
+// Leapfrog: frequencies of a cantilever, speed of a wave along a sheet (model.md, "Effective moduli
+// of the lattice, calibrated sheets" and "Explicit dynamics").
 #include <Eigen/Dense>
 
 #include <algorithm>

@@ -93,7 +93,8 @@ def check_edge_load(test, run):
                            / (8 * floe_plate.edge_deflection(0.3)), 1, delta=0.05)
     plain = run("-beam_calibrate", "none").summary["deflection_over_wyman"]
     test.assertAlmostEqual(plain, 3.47, delta=0.08)
-    # D*, nu_b* of the infinite lattice, docs/model.md section 3
+    # D*, nu_b* of the infinite lattice (model.md, "Effective moduli of the lattice, calibrated
+    # sheets")
     softer = 8 * floe_plate.edge_deflection(0.00415) / np.sqrt(0.9062)
     test.assertAlmostEqual(plain / softer, 1, delta=0.03)
 
