@@ -50,6 +50,7 @@ std::string out_of_memory_text();
 /// line, the last words, and exit code 1 (2 if an option of PETSc is to blame). Does nothing with
 /// sanitizers, whose reports say more.
 void report_crashes();
+/// Restores the system's default action for these signals; does nothing with sanitizers.
 void leave_crashes_to_the_system();
 /// Ends the process after a crash, as report_crashes() describes.
 /// \param what  name of the crash, for example "segmentation fault"

@@ -52,13 +52,18 @@ class Hdf5File {
   template <class T>
   void write_blocks(const std::string& name, std::int64_t rows, int columns,
                     const std::function<void(std::int64_t, std::span<T>)>& make);
+  /// Writes a number as an attribute of a group or dataset.
   void attribute(const std::string& object, const std::string& name, double value);
+  /// Writes a text as a scalar dataset.
   void write_text(const std::string& name, const std::string& text);
 
   /// Makes `name` a link to `object` of another file, whose path is relative to this file's folder.
   void link(const std::string& name, const std::string& file, const std::string& object);
+  /// Removes the name of an object from the file.
   void remove(const std::string& name);
 
+  /// Whether an object is in this file.
+  /// \throws InputError if the name leads through a link to another file or to nowhere
   bool has(const std::string& name) const;
   /// Returns the sorted names of the members of a group.
   std::vector<std::string> members(const std::string& group) const;
@@ -70,7 +75,9 @@ class Hdf5File {
   /// \throws InputError if the dataset is missing or has another number of columns
   std::vector<double> read(const std::string& name, int columns = 1) const;
   std::vector<std::int32_t> read_indices(const std::string& name, int columns = 1) const;
+  /// Returns a text dataset. \throws InputError if the dataset is missing or is not a text
   std::string read_text(const std::string& name) const;
+  /// Returns an attribute. \throws InputError if the attribute is missing or is not a number
   double read_attribute(const std::string& object, const std::string& name) const;
 
  private:

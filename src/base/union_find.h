@@ -16,6 +16,7 @@ class UnionFind {
   explicit UnionFind(std::size_t size) : parent_(size) {
     std::iota(parent_.begin(), parent_.end(), 0);
   }
+  /// Returns the representative of the set of `member`.
   std::int32_t find(std::int32_t member) {
     auto at = static_cast<std::size_t>(member);
     while (static_cast<std::size_t>(parent_[at]) != at) {
@@ -24,6 +25,7 @@ class UnionFind {
     }
     return static_cast<std::int32_t>(at);
   }
+  /// Merges the sets of a and b.
   void unite(std::int32_t a, std::int32_t b) {
     a = find(a), b = find(b);
     parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);

@@ -14,7 +14,9 @@ namespace floe {
 /// lattice takes most of rank 0's memory during the set-up of a run.
 class PackedLattice {
  public:
+  /// Replaces the shapes by prisms, if they are prisms of one thickness.
   void pack_shapes(Lattice& lattice);
+  /// Replaces each property that all beams share by one number.
   void pack_beams(Lattice& lattice);
   /// \param copy  equal bodies, which must live until unpack(); if they differ, the lattice keeps
   /// its own

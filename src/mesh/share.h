@@ -11,6 +11,7 @@
 
 namespace floe::mesh {
 
+/// The rank's place among the ranks that mesh a plan together.
 struct Share {
   MPI_Comm comm = MPI_COMM_NULL;  ///< unused with one rank
   int rank = 0, size = 1;
