@@ -37,9 +37,8 @@ struct Weights {
 /// A mode phi of vibration, scaled to phi^T M phi = 1.
 struct VibrationMode {
   double value = 0;  ///< the eigenvalue
-  double stiffness = 0,
-         /// phi^T K phi [1/s^2] and phi^T C phi [1/s].
-      damping = 0;
+  /// phi^T K phi [1/s^2] and phi^T C phi [1/s].
+  double stiffness = 0, damping = 0;
   int evaluations = 0;    ///< number of evaluations of all forces in the search
   std::string where;      ///< the body that moves most in the mode, and how
   Eigen::VectorXd shape;  ///< M^1/2 phi, this rank's share

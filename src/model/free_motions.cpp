@@ -83,9 +83,8 @@ Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(gram);
   const double largest = solver.eigenvalues()[5];
-  constexpr double relative_zero =
-      // Relative to squares: supports 1e-7 of the piece's size apart still hold the piece.
-      1e-14;
+  // Relative to squares: supports 1e-7 of the piece's size apart still hold the piece.
+  constexpr double relative_zero = 1e-14;
   Basis basis;
   for (; basis.count < 6 && solver.eigenvalues()[basis.count] <= relative_zero * largest;
        ++basis.count)

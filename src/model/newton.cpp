@@ -48,10 +48,9 @@ void set_newton_defaults(SNES snes) {
   check(SNESSetType(snes, SNESNEWTONLS));
   SNESLineSearch search = nullptr;
   check(SNESGetLineSearch(snes, &search));
-  check(SNESLineSearchSetType(
-      // A line search would reject good steps: where beams stretch, |F| grows on the way to the
-      // solution.
-      search, SNESLINESEARCHBASIC));
+  // A line search would reject good steps: where beams stretch, |F| grows on the way to the
+  // solution.
+  check(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
   KSP ksp = nullptr;
   check(SNESGetKSP(snes, &ksp));
   set_cholesky(ksp);

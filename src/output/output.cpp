@@ -40,9 +40,8 @@ struct Output<Space>::Impl {
   const Part& part;
   Lattice lattice;  ///< rank 0
   std::vector<LoadPoint> loads;
-  std::vector<std::pair<std::size_t, Point3>>
-      /// Per boundary: number of bodies, mean position at rest.
-      sets;
+  /// Per boundary: number of bodies, mean position at rest.
+  std::vector<std::pair<std::size_t, Point3>> sets;
   Gather bodies, beams;
   std::vector<std::int32_t> counted;  ///< local beams that this rank reports
   std::optional<Fields> fields;       ///< rank 0
@@ -310,9 +309,8 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   const Timed timed(Event::output);
   Impl& me = *impl_;
   const double time = accepted.state.time;
-  constexpr double early =
-      // Part of an interval, so that rounding does not miss a sample that is due at a step's end.
-      1e-9;
+  // Part of an interval, so that rounding does not miss a sample that is due at a step's end.
+  constexpr double early = 1e-9;
   OutputArchive& archive = me.memory;
   archive.last = me.sample(accepted);
   if (accepted.step == 0) archive.first = archive.last;

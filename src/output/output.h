@@ -36,9 +36,8 @@ struct Sample {
   double time = 0;
   std::map<std::string, BoundarySample> boundaries;
   std::map<std::string, Point3> loads;  ///< mean displacement of the points where loads act [m]
-  std::vector<std::pair<std::string, double>>
-      /// Energies and counts that the forces report.
-      forces;
+  /// Energies and counts that the forces report.
+  std::vector<std::pair<std::string, double>> forces;
 };
 
 /// Returns a sample with the columns of a run's rows and values of 0.

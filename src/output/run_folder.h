@@ -15,9 +15,8 @@ namespace floe {
 struct FolderWish {
   std::string dir;
   std::string scene;  ///< the scene file; may be the folder's own options.yaml
-  std::vector<std::pair<std::string, std::string>>
-      /// Key and path of other files that the run reads.
-      inputs;
+  /// Key and path of other files that the run reads.
+  std::vector<std::pair<std::string, std::string>> inputs;
   bool overwrite = false;  ///< results of an interrupted run or of others may be lost
   bool goes_on = false;    ///< a restart, which needs the folder's files
 };

@@ -23,7 +23,7 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
       checkpoints_(options_.checkpoint, model.part()),
       what_(what),
       type_(type) {
-  // Floor of the energies: what strains of 1e-12 in all beams would store.
+  // Floor of the energies: the strain energy of strains of 1e-12 in all beams.
   double energy = 0;
   const double strain = 1e-12 * model.length_scale();
   for (std::int32_t b = 0; b < model.part().owned; ++b) {

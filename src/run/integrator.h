@@ -21,14 +21,12 @@ struct Accepted {
   const State<Space>& state;
   const Wrenches<Space>& wrenches;  ///< of all forces, on owned bodies
   std::int64_t step;                ///< 0: the initial state
-  std::vector<std::pair<std::string, double>> columns =
-      /// Columns of the integrator itself (energies).
-      {};
+  /// Columns of the integrator itself (energies).
+  std::vector<std::pair<std::string, double>> columns = {};
   bool last = false;  ///< no further state follows
-  std::vector<std::pair<std::string, double>> forces =
-      /// What the forces reported at this state; empty: the forces still have the evaluation and
-      /// can be asked.
-      {};
+  /// Columns of the forces at this state; empty: the forces still have the evaluation and can be
+  /// asked.
+  std::vector<std::pair<std::string, double>> forces = {};
 };
 
 template <class Space>

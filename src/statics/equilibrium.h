@@ -130,17 +130,15 @@ class Equilibrium {
   /// quaternion returns to rest, so a full turn counts as one.
   std::vector<double> turned2_;
   std::vector<double> stiffness_;  ///< per owned body, for the rounding level [N/m]
-  bool adaptive_ =
-      /// Whether to keep a factorisation that still converges (not if the user set a lag).
-      true;
+  /// Whether to keep a factorisation that still converges (not if the user set a lag).
+  bool adaptive_ = true;
   bool small_turns_ = false;  ///< the prediction of this step turned no body far
   /// Norm of the residual [N], and its ratio to that of the iteration before.
   double last_norm_ = 0, contraction_ = 1;
   /// Squared norms of the wrenches of each external force, summed, on this rank [N^2].
   double external2_ = 0;
-  double extent_ = 0,
-         /// Extent of the lattice [m]; largest prescribed displacement [m].
-      prescribed_ = 0;
+  /// Extent of the lattice [m]; largest prescribed displacement [m].
+  double extent_ = 0, prescribed_ = 0;
   Tangent<Space> tangent_;
   Handle<Vec> x_, f_, step_;
   Handle<SNES> snes_;

@@ -17,9 +17,8 @@ namespace {
 constexpr double smallest_fraction = 1.0 / 4096;
 /// Steps that would load a beam beyond its strength by more than this part are halved first.
 constexpr double overload_tolerance = 0.005;
-constexpr double pin_tolerance =
-    // Of the forces in balance; larger pin reactions mean that a free motion is loaded.
-    1e-6;
+// Of the forces in balance; larger pin reactions mean that a free motion is loaded.
+constexpr double pin_tolerance = 1e-6;
 
 /// Adds expected time and memory to a plan, by whether the tangent is constant.
 template <class Space>
