@@ -10,7 +10,7 @@ namespace {
 struct Cell {
   std::array<std::int32_t, 3> place;
   std::int32_t body;
-  /// x outermost: along z cells of a column stand one after the other.
+  /// Sorts by x first and z last, so that the cells of a column along z follow each other.
   bool operator<(const Cell& other) const {
     return place != other.place ? place < other.place : body < other.body;
   }
@@ -21,8 +21,8 @@ struct Cell {
 void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
                 std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs) {
   pairs.clear();
-  // The few bodies far larger than the mean are tested against all: cells as large as they are
-  // would hold too many of the others.
+  // The few bodies that are far larger than the mean are tested against all others: cells of their
+  // size would hold too many of the other bodies.
   constexpr double far_larger = 4;
   double mean = 0, size = 0;
   for (const double r : radii) mean += std::max(r, 0.0) / static_cast<double>(radii.size());
@@ -35,7 +35,7 @@ void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> r
     low = {std::min(low.x, c.x), std::min(low.y, c.y), std::min(low.z, c.z)};
   std::vector<Cell> cells;
   cells.reserve(centres.size());
-  constexpr double farthest = 1e9;  // what flies off to infinity shares the last cell
+  constexpr double farthest = 1e9;  // bodies that fly off to infinity share the last cell
   const auto place = [&](double x) {
     return static_cast<std::int32_t>(std::min(std::floor(x / size), farthest));
   };
@@ -60,8 +60,9 @@ void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> r
       test(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
     }
   }
-  // Each cell with itself and with half of its neighbours: the one above, and the columns beside
-  // it. For each column offset a pointer runs along, since both go through cells in order.
+  // Each cell is tested with itself and with half of its neighbours: the cell above it and four
+  // columns beside it. For each of these columns an index runs through the sorted cells, since the
+  // cells and their neighbours come in the same order.
   const std::array<std::array<std::int32_t, 2>, 4> columns{{{0, 1}, {1, -1}, {1, 0}, {1, 1}}};
   std::array<std::size_t, 4> at{};
   for (std::size_t k = 0; k < cells.size(); ++k) {

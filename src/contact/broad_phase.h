@@ -1,5 +1,5 @@
 /// \file
-/// Which bodies are near each other: a uniform grid of cells, filled by sorting.
+/// Pairs of neighbouring bodies, by a uniform grid of cells that is filled by sorting.
 #pragma once
 
 #include <array>
@@ -14,8 +14,12 @@ namespace floe {
 
 using BodyPair = std::array<std::int32_t, 2>;  ///< the smaller index first
 
-/// Pairs of spheres whose surfaces are no farther apart than `reach`, unsorted, of those where
-/// `wanted` is set for one at least. \param centres, radii  of all; a radius < 0 leaves one out
+/// Finds the pairs of spheres whose surfaces are no farther apart than `reach`.
+/// \param centres     of all spheres [m]
+/// \param radii       of all spheres [m]; one with a radius < 0 is left out
+/// \param reach       [m]
+/// \param wanted      per sphere; a pair needs one sphere at least with a value other than 0
+/// \param[out] pairs  unsorted
 void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
                 std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs);
 

@@ -1,4 +1,4 @@
-// One step of all contacts: evaluation, and what a step leaves behind.
+// One step of all contacts: evaluation and commit.
 
 #include "contact/contacts.h"
 
@@ -10,7 +10,8 @@
 namespace floe {
 namespace {
 
-/// Of the body's size: below, a gap is rounding; and of its cube: an overlap.
+/// Gaps below this part of the size of a body, and overlaps below this part of its cube, are
+/// rounding.
 constexpr double rounding = 1e-13, rounding_volume = 1e-15;
 
 Vec3<double> moved(const Triad<double>& axes, const Vec3<double>& x, const Vec3<double>& r) {
@@ -19,7 +20,8 @@ Vec3<double> moved(const Triad<double>& axes, const Vec3<double>& x, const Vec3<
 
 }  // namespace
 
-/// Gap along the pair's axis, or along one that is then found [m]; not positive: perhaps none.
+/// Gap of a pair along its axis, or along a better axis that replaces it [m]. Not positive: no gap
+/// was found, which does not prove an overlap.
 double Contacts::gap(Pair& pair, const Placed& a, const Placed& b, int tries) {
   const Vec3<double> apart = a.x - b.x;
   const auto points_a = vertices(pair.a), points_b = vertices(pair.b);
@@ -50,14 +52,15 @@ PairConstants Contacts::constants(std::int32_t a, std::int32_t b) const {
           i.mass * j.mass / (i.mass + j.mass), options_.friction, false};
 }
 
-/// Of A against B at a point of both. \param centre  from A's centroid
+/// Motion of A relative to B at a point of both.
+/// \param centre  the point, from the centroid of A
 RelativeMotion Contacts::relative(const Placed& a, const Placed& b, const Vec3<double>& centre) {
   const Vec3<double> arm = centre + (a.x - b.x);
   return {(a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, arm)),
           a.spin - b.spin};
 }
 
-/// Of the elastic, viscous and friction terms.
+/// Adds the power of the elastic, viscous and friction terms of a contact.
 void Contacts::add_power(const ActiveContact& touch, const RelativeMotion& motion,
                          ContactPower& power) {
   const ContactForce& c = touch.contact;
@@ -67,7 +70,7 @@ void Contacts::add_power(const ActiveContact& touch, const RelativeMotion& motio
   power.friction += dot(c.memory.tangential, motion.velocity);
 }
 
-/// What a moving obstacle gives [W].
+/// Power of a moving obstacle on a body [W].
 double Contacts::power_of_obstacle(const ActiveContact& touch, const Placed& a,
                                    const Placed& obstacle) {
   const Vec3<double> arm = touch.centre + (a.x - obstacle.x);
@@ -93,7 +96,8 @@ Contacts::PairOverlap Contacts::overlap_of(const Pair& pair, const Placed& a, co
   return {o, depth};
 }
 
-/// Takes up a contact. \param memory  null: the pair remembers nothing
+/// Adds a contact: its wrenches, its power and stored energy.
+/// \param memory  null: the pair has no history
 void Contacts::touch(std::int32_t index, const Placed& b, const PairOverlap& met,
                      const PairHistory* memory, std::span<ContactWrench> wrenches) {
   const Pair& pair = pairs_[static_cast<std::size_t>(index)];
@@ -107,7 +111,7 @@ void Contacts::touch(std::int32_t index, const Placed& b, const PairOverlap& met
                      memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible, stored),
        false});
   const ContactForce& contact = active_.back().contact;
-  // The mean depth V/|S| of what is elastic.
+  // Compares the mean elastic depth (V - V_p)/|S| with the width.
   constexpr double holds = 0.25;
   const double elastic = met.overlap.volume - contact.memory.plastic;
   const double most = holds * std::min(width_of(pair.a), width_of(pair.b));
@@ -140,7 +144,7 @@ void Contacts::place(std::span<const MovingPose> bodies, double time) {
     move(placed_[s],
          {bodies[s].pose.x, triad(bodies[s].pose.q), bodies[s].velocity, bodies[s].spin},
          radius(involved_[s]));
-  const double half_a_step_ago = time - 0.5 * books_.last_dt;  // as the bodies' velocities
+  const double half_a_step_ago = time - 0.5 * books_.last_dt;  // the time of the velocities
   for (std::size_t k = 0; k < obstacles_.size(); ++k)
     move(obstacles_at_[k], at_time(-1 - static_cast<std::int32_t>(k), time, half_a_step_ago),
          obstacle_radius_[k]);
@@ -148,7 +152,7 @@ void Contacts::place(std::span<const MovingPose> bodies, double time) {
   placed_before_ = true;
 }
 
-/// Bound of the way of any point of a body within `radius` of its centroid [m].
+/// Bound of the travel of all points within `radius` of the centroid of a body [m].
 double Contacts::farthest_travel(const Placed& from, const Placed& to, double radius) {
   const Vec3<double> d1 = to.axes.e1 - from.axes.e1, d2 = to.axes.e2 - from.axes.e2,
                      d3 = to.axes.e3 - from.axes.e3, x = to.x - from.x;
@@ -168,8 +172,8 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
   active_.clear();
   touching_ = 0;
   totals_ = {};
-  auto memory = histories_.cbegin();   // in the order of the pairs
-  std::span<const PairOverlap> given;  // to the offloaded pairs, in their order
+  auto memory = histories_.cbegin();   // in list order
+  std::span<const PairOverlap> given;  // overlaps of the offloaded pairs, in their order
   std::size_t taken = 0;
   constexpr int tries = 8;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -189,7 +193,7 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches,
       const double travels = a.travelled + b.travelled;
       if (travels < pair.safe) continue;
       if (const double apart = gap(pair, a, b, tries); apart > rounding * radius(pair.a)) {
-        pair.safe = travels + (1 - 1e-6) * apart;  // less what travels lose by rounding
+        pair.safe = travels + (1 - 1e-6) * apart;  // with a margin for the rounding of travels
         continue;
       }
     }
@@ -217,7 +221,7 @@ void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
   ContactPower power;
   for (const ActiveContact& t : active_) {
     const Pair& pair = pairs_[static_cast<std::size_t>(t.pair)];
-    const auto moving = [&](std::int32_t slot) {  // where it was, as it moves now
+    const auto moving = [&](std::int32_t slot) {  // place of the evaluation, velocities of now
       const auto s = static_cast<std::size_t>(slot);
       return Placed{placed_[s].x, {}, bodies[s].velocity, bodies[s].spin};
     };

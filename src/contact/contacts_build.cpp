@@ -1,4 +1,4 @@
-// Which pairs are looked at: eligibility, neighbours, the list and what it keeps of the one before.
+// The pair list: eligibility, neighbours, and the histories of the pairs that stay in the list.
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
     widest_.push_back(widest);
     faces_.push_back(shapes_.face_of[body + 1] - shapes_.face_of[body]);
   }
-  // Enough for a few hundred steps of slow bodies, and no more pairs than necessary.
+  // The reach lasts a few hundred steps of slow bodies without listing many more pairs.
   constexpr double part_of_radius = 0.15;
   double mean = 0;
   for (const Solid& s : solids_) mean += s.radius / static_cast<double>(solids_.size());
@@ -118,14 +118,14 @@ Contacts::Placed Contacts::at_time(std::int32_t obstacle, double position, doubl
 void Contacts::release(std::array<std::int32_t, 2> pair) {
   if (pair[0] > pair[1]) std::swap(pair[0], pair[1]);
   const auto at = std::lower_bound(joined_.begin(), joined_.end(), pair);
-  if (at == joined_.end() || *at != pair) return;  // it is free already
+  if (at == joined_.end() || *at != pair) return;  // released before
   joined_.erase(at);
   released_.push_back(pair);
   changed_ = true;
 }
 
-/// Pieces joined by beams (their smallest body's index), and the bodies on their surfaces: those
-/// with fewer beams than a prism has sides, or that have lost one.
+/// Finds the pieces that beams join (named by their smallest body), and the bodies on the surfaces
+/// of pieces: those that have fewer beams than a prism has sides, or that have lost a beam.
 void Contacts::find_pieces() {
   const auto n = static_cast<std::size_t>(shapes_.bodies());
   std::vector<std::int32_t> beams(n, 0);
@@ -144,7 +144,8 @@ void Contacts::find_pieces() {
     outer_[static_cast<std::size_t>(a)] = outer_[static_cast<std::size_t>(b)] = 1;
 }
 
-/// Bodies of different pieces may touch, and of one piece those on its surface.
+/// Bodies of different pieces may touch. Bodies of one piece may touch if both are on its surface
+/// and no beam joins them.
 bool Contacts::may_touch(std::int32_t a, std::int32_t b) const {
   const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
   if (piece_[i] != piece_[j]) return true;
@@ -219,7 +220,7 @@ void Contacts::list_bodies(std::span<const Placed> placed, std::span<const std::
   std::vector<double> radii;
   radii.reserve(solids_.size());
   for (const Solid& s : solids_) radii.push_back(s.radius);
-  if (pieces_ == 1) {  // an intact sheet: all but its edges is left out
+  if (pieces_ == 1) {  // an intact sheet: only bodies on its surface may touch
     for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
       if (!on_surface(b)) radii[static_cast<std::size_t>(b)] = -1;
     }
@@ -253,7 +254,7 @@ bool Contacts::obstacle_listed() const {
   return std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return p.b < 0; });
 }
 
-/// Lists a pair unless there is a wide gap.
+/// Lists a pair unless its gap exceeds the reach.
 void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Placed& at_b,
                     bool counted) {
   const bool newly_eligible = at_rest_ || (changed_ && !first_);
@@ -265,7 +266,8 @@ void Contacts::list(std::int32_t a, std::int32_t b, const Placed& at_a, const Pl
   if (gap(pair, at_a, at_b, tries) <= reach_) pairs_.push_back(pair);
 }
 
-/// Memories of the list before, or of a checkpoint, by pair; both are sorted.
+/// Assigns the histories of the previous list, or of a checkpoint, to the pairs of the new list.
+/// Both are sorted by pair.
 void Contacts::take_histories() {
   next_histories_.clear();
   std::size_t at = 0;
@@ -308,7 +310,7 @@ void Contacts::restore(std::span<const double> rows, bool changed) {
 }
 
 Contacts::Rates Contacts::rates() const {
-  // L of the stiffest partner.
+  // L of the partner with the stiffest contacts: the smallest body, or 0 for an obstacle.
   double smallest = obstacles_.empty() ? std::numeric_limits<double>::max() : 0.0;
   for (const Solid& s : solids_) smallest = std::min(smallest, 0.5 * s.size);
   double most = 0;

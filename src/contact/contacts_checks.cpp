@@ -1,4 +1,4 @@
-// What a user should know of contacts: how deep bodies lie in each other, and which lost their way.
+// Checks of contacts: depths of overlaps, and bodies that enclose or pass through each other.
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@ double Contacts::width_of(std::int32_t body) const {
                   : solids_[static_cast<std::size_t>(body)].width;
 }
 
-/// Along the normal n from B to A, B reaches up to `high` and A down to `low`, both from A's
-/// centroid: the overlap's extent along n where only corners or edges meet, and the way by which
-/// two faces would have to part.
+/// Along the normal n from B to A, B reaches up to `high` and A down to `low`; both are taken from
+/// the centroid of A. The depth is the extent of the overlap along n where only corners or edges
+/// overlap, and the distance by which two faces would have to part.
 std::vector<Contacts::Penetration> Contacts::penetrations() const {
   std::vector<Penetration> found;
   for (const ActiveContact& touch : active_) {

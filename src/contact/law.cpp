@@ -6,8 +6,8 @@
 namespace floe {
 namespace {
 
-/// The stored force in the tangent plane of today's normal, as long as it was; falls with the
-/// stiffness.
+/// The stored tangential force, turned into the tangent plane of the present normal at equal size;
+/// scaled down if the stiffness has fallen.
 Vec3<double> carried(const PairHistory& memory, const Vec3<double>& normal, double shear) {
   const Vec3<double>& f = memory.tangential;
   const double before = length(f);
@@ -45,7 +45,7 @@ ContactForce contact_force(const ContactOptions& options, const PairConstants& p
   c.memory = memory;
   if (newly_eligible) c.memory.plastic = o.volume;
   const double area = length(o.area);
-  if (area <= 1e-12 * pair.area) {  // one lies inside the other: there is no way out to prefer
+  if (area <= 1e-12 * pair.area) {  // one body lies inside the other: no direction for a force
     c.memory.tangential = {};
     return c;
   }

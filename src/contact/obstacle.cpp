@@ -9,7 +9,7 @@
 namespace floe {
 namespace {
 
-/// Appends a face given by its corners, counter-clockwise seen from outside.
+/// Appends a face. \param corners  counter-clockwise seen from outside
 void add_face(Shapes& shapes, const std::vector<std::int32_t>& corners) {
   shapes.corners.insert(shapes.corners.end(), corners.begin(), corners.end());
   shapes.corner_of.push_back(static_cast<std::int32_t>(shapes.corners.size()));
@@ -20,7 +20,8 @@ void finish(Shapes& shapes) {
   shapes.vertex_of.push_back(static_cast<std::int32_t>(shapes.vertices.size()));
 }
 
-/// Two polygons of equally many corners, the second above the first; or a polygon and an apex.
+/// The polyhedron between two polygons of equally many corners, the second above the first, or
+/// between a polygon and an apex.
 Shapes between(const std::vector<Point3>& low, const std::vector<Point3>& high) {
   Shapes s;
   s.vertices = low;
@@ -85,7 +86,7 @@ Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double
               int facets) {
   std::vector<Point3> low, high;
   for (int k = 0; k < facets; ++k) {
-    const double a = 2 * std::numbers::pi * (k + 0.5) / facets;  // a facet looks along x
+    const double a = 2 * std::numbers::pi * (k + 0.5) / facets;  // one facet faces along x
     low.push_back({radius * std::cos(a), radius * std::sin(a), 0});
     if (top_radius > 0)
       high.push_back({top_radius * std::cos(a), top_radius * std::sin(a), height});

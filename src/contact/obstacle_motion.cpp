@@ -9,7 +9,7 @@ namespace {
 bool is_zero(const Vec3<double>& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 }  // namespace
 
-// Most obstacles rest or move steadily: they ask for no sine.
+// Most obstacles rest or move steadily, so sines and cosines are computed only if needed.
 
 Vec3<double> ObstacleMotion::way(double time) const {
   const Vec3<double> steady = ramp.integral(time) * velocity;
@@ -39,7 +39,7 @@ bool ObstacleMotion::at_rest() const {
 }
 
 double ObstacleMotion::largest_speed(double radius) const {
-  // While the amplitude rises, sin(2 pi f t)/t <= 2 pi f: at most as much again.
+  // While the amplitude rises, sin(2 pi f t)/t <= 2 pi f: the rise at most doubles the speed.
   const double rising = ramp.seconds > 0 ? 2 : 1;
   return length(velocity) + rising * 2 * std::numbers::pi * frequency * length(amplitude) +
          (is_zero(angular_velocity) ? 0.0 : radius * length(angular_velocity));

@@ -6,7 +6,8 @@
 namespace floe {
 namespace {
 
-/// The nearest point to B of A, the nearest point to A of B, along the axis.
+/// Along an axis from B to A: the point of A nearest to B, the point of B nearest to A, and the gap
+/// between them [m].
 struct Nearest {
   std::size_t a = 0, b = 0;
   double gap = 0;

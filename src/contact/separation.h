@@ -1,5 +1,5 @@
 /// \file
-/// Planes between convex polyhedra: the cheap way to see that two do not touch.
+/// Planes between convex polyhedra: a cheap proof that two polyhedra do not touch.
 #pragma once
 
 #include <span>
@@ -13,10 +13,13 @@ namespace floe {
 double gap_along(std::span<const Vec3<double>> a, std::span<const Vec3<double>> b,
                  const Vec3<double>& axis);
 
-/// Looks for an axis along which there is a gap, from a guess (Chung & Wang 1996: the axis is
-/// mirrored on the pair of vertices that contradicts it most). Returns the gap along the axis as it
-/// is then, a lower bound of the distance [m]; not positive if none was found, which proves
-/// nothing. \param tries  mirrorings at the most
+/// Searches for an axis along which there is a gap (Chung & Wang 1996: the axis is mirrored on the
+/// pair of vertices that contradicts it most).
+/// \param a, b          points of A and of B [m]
+/// \param[in,out] axis  unit vector from B to A: a guess, then the last axis of the search
+/// \param tries         largest number of mirrorings
+/// \returns the gap along the last axis [m], a lower bound of the distance. Not positive: no gap
+/// was found, which does not prove an overlap
 double separate(std::span<const Vec3<double>> a, std::span<const Vec3<double>> b,
                 Vec3<double>& axis, int tries);
 

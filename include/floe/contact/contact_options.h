@@ -1,22 +1,24 @@
 /// \file
-/// The law of contacts and its numbers, as a scene states them (docs/model.md, "Contact").
+/// The law of contacts and its constants, as a scene states them (model.md, "Contact").
 #pragma once
 
 #include <limits>
 
 namespace floe {
 
+/// Rule from an overlap to a wrench.
 enum class ContactLaw {
   overlap,    ///< F = k_v (V - V_p) at the overlap's centroid
   potential,  ///< the gradient of k_v (V - V_p)^2/(2 A_r) (Feng 2021)
 };
 
-/// What bodies that overlap at the start do.
+/// Treatment of bodies that overlap at the start.
 enum class InitialOverlap {
-  press,        ///< press apart; deep overlaps are refused
-  stress_free,  ///< what overlaps at the start is taken as rest
+  press,        ///< the bodies press each other apart; deep overlaps are refused
+  stress_free,  ///< the overlap at the start is stress-free
 };
 
+/// Options of all contacts.
 struct ContactOptions {
   ContactLaw law = ContactLaw::overlap;
   double young = 1e8;                                              ///< E_c [Pa]

@@ -11,29 +11,37 @@
 
 namespace floe {
 
-/// Its frame is that of the world at time 0, moved to `point`; it goes on as `motion` says. A
-/// half-space does not turn.
+/// An obstacle. At time 0 its frame has the axes of the world and its origin at `point`; from then
+/// on it follows `motion`. A half-space does not turn.
 struct Obstacle {
   std::string name;
   Vec3<double> point{};  ///< origin of its frame at time 0 [m]
   ObstacleMotion motion;
-  double friction = 0;  ///< mu against bodies
-  std::vector<HalfSpace> planes;
-  std::vector<Vec3<double>> vertices;  ///< empty: a half-space, which has none
+  double friction = 0;                 ///< mu against bodies
+  std::vector<HalfSpace> planes;       ///< of its faces, in its frame
+  std::vector<Vec3<double>> vertices;  ///< in its frame [m]; empty for a half-space
 
-  /// Distance of the farthest vertex from the origin of its frame [m].
+  /// Distance of the farthest vertex from the origin of the frame [m].
   double radius() const;
 };
 
+/// A half-space.
+/// \param point   on its surface [m]
 /// \param normal  out of the obstacle, of any length but 0
 Obstacle half_space(const Vec3<double>& point, const Vec3<double>& normal);
+/// A box.
+/// \param centre    [m]
+/// \param size      lengths of its sides [m]
 /// \param rotation  degrees about x, then y, then z
 Obstacle box(const Vec3<double>& centre, const Vec3<double>& size, const Vec3<double>& rotation);
-/// A frustum on a vertical axis with regular polygons of `facets` sides inside its two circles;
-/// top_radius 0 makes a pyramid, radius = top_radius a cylinder. \param base  centre of the foot
+/// A frustum on a vertical axis, with regular polygons inside its two circles; top_radius 0 makes a
+/// pyramid, radius = top_radius a cylinder.
+/// \param base                        centre of the foot [m]
+/// \param radius, top_radius, height  [m]
+/// \param facets                      number of sides of the polygons
 Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double height,
               int facets);
-/// Body `body` of `shapes`, its frame moved to `point`.
+/// Body `body` of `shapes`, with the origin of its frame at `point` [m].
 Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>& point);
 
 }  // namespace floe

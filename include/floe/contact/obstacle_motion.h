@@ -1,5 +1,5 @@
 /// \file
-/// How an obstacle moves: a function of time alone.
+/// The motion of an obstacle: a function of time alone.
 ///
 /// Notation: r ramp, R its integral, v velocity, w angular velocity, a amplitude, f frequency.
 #pragma once
@@ -9,8 +9,8 @@
 
 namespace floe {
 
-/// Of the obstacle's frame: its origin goes R v + r a sin(2 pi f t), and it turns about its origin
-/// by R w, an axis that keeps its direction. At rest unless something is given.
+/// Motion of the frame of an obstacle: its origin is displaced by R v + r a sin(2 pi f t), and the
+/// frame turns about its origin by R w, about an axis of fixed direction. By default at rest.
 struct ObstacleMotion {
   Vec3<double> velocity{};          ///< after the ramp [m/s]
   Vec3<double> angular_velocity{};  ///< after the ramp [rad/s]
@@ -18,13 +18,14 @@ struct ObstacleMotion {
   double frequency = 0;             ///< of the harmonic part [Hz]
   Ramp ramp{};
 
-  Vec3<double> way(double time) const;   ///< of the origin since time 0 [m]
-  Vec3<double> rate(double time) const;  ///< of the way [m/s], from the right
-  Quat<double> turn(double time) const;  ///< since time 0
-  Vec3<double> spin(double time) const;  ///< spatial [rad/s]
+  Vec3<double> way(double time) const;   ///< displacement of the origin since time 0 [m]
+  Vec3<double> rate(double time) const;  ///< velocity of the origin [m/s], from the right
+  Quat<double> turn(double time) const;  ///< rotation since time 0
+  Vec3<double> spin(double time) const;  ///< angular velocity in world axes [rad/s]
 
+  /// Whether the obstacle never moves.
   bool at_rest() const;
-  /// What no point within `radius` of the origin exceeds, ever [m/s].
+  /// Upper bound, for all times, of the speed of points within `radius` [m] of the origin [m/s].
   double largest_speed(double radius) const;
 };
 
