@@ -23,7 +23,7 @@ void refuse_enclosed(const Contacts& contacts, MPI_Comm comm) {
   for (const auto& pair : contacts.enclosed()) mine.insert(mine.end(), pair.begin(), pair.end());
   const std::vector<std::int32_t> all = all_gathered(mine, comm);
   if (all.empty()) return;
-  std::array<std::int32_t, 2> first{all[0], all[1]};  // whatever the ranks
+  std::array<std::int32_t, 2> first{all[0], all[1]};  // the first pair, independent of the ranks
   for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
   const std::string body = "body " + std::to_string(first[0]);
   if (first[1] >= 0)
@@ -47,7 +47,7 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
   std::array<double, 4> worst{};
   for (std::size_t k = 0; k < all.size(); k += 4) {
     const std::array row{all[k], all[k + 1], all[k + 2], all[k + 3]};
-    // Of equal ones the first pair, whatever the ranks.
+    // Of equal shares the first pair is taken, independent of the ranks.
     if (row[0] > worst[0] ||
         (row[0] == worst[0] &&
          std::lexicographical_compare(row.begin() + 2, row.end(), worst.begin() + 2, worst.end())))

@@ -85,7 +85,8 @@ class DistributedContact final : public Contact,
     return remarks;
   }
 
-  /// At rest; the run makes its own list. Collective.
+  /// Checks the contacts of the state at rest. The pair list is made anew when the run starts.
+  /// Collective. \throws InputError as for make_contact()
   void check_start() {
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
@@ -121,7 +122,7 @@ class DistributedContact final : public Contact,
     if (moving) columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
     columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosed().size()));
-    const bool first = rank(part_.comm) == 0;  // of what all ranks know alike
+    const bool first = rank(part_.comm) == 0;  // peaks and means are alike on all ranks
     for (std::size_t k = 0; k < contacts_.obstacles().size(); ++k) {
       const std::string& obstacle = contacts_.obstacles()[k].name;
       const ContactWrench& w = contacts_.on_obstacle(k);
@@ -158,7 +159,8 @@ class DistributedContact final : public Contact,
     expiry_.start(state, part_.owned);
   }
 
-  /// Peak and impulse of the forces on obstacles; with several ranks a sum over them per step.
+  /// Updates peak and impulse of the forces on obstacles. With several ranks this takes one sum
+  /// over the ranks per step.
   void watch_obstacles(double dt) {
     const std::size_t n = peak_.size();
     if (n == 0) return;
@@ -183,18 +185,19 @@ class DistributedContact final : public Contact,
   std::vector<std::uint8_t> here_;
   std::vector<Vec3<double>> peak_, impulse_, forces_;
   Contacts::Rates rates_;
-  /// Whether the stable step must bear contacts: with more than one piece or a lone body (no beam
-  /// keeps its step short), and once an obstacle has come near or bodies of the one piece have met.
+  /// Whether the stable step allows for contacts: with more than one piece or without beams (which
+  /// would keep the step short), and once an obstacle is listed or bodies of the one piece overlap.
   bool possible_;
-  bool near_ = false;  ///< pairs are listed, on some rank
-  double dt_ = 0, time_ = 0;
+  bool near_ = false;         ///< pairs are listed, on some rank
+  double dt_ = 0, time_ = 0;  ///< last step, and sum of all steps [s]
   std::string overlap_at_start_;
   bool overlap_told_ = false;
   ContactRemarks remarks_;
 };
 
-/// The list of pairs is made anew, from the state once contacts are possible: then it does not show
-/// in the results; what a pair remembers goes with it.
+/// The histories of pairs are saved and loaded. Once contacts are possible, a restart builds the
+/// pair list from the state, since results do not depend on the list any more; before that the list
+/// of the run is built again, since it decides when contacts become possible.
 void DistributedContact::persist(Archive& archive) {
   ContactBooks& books = contacts_.books();
   archive.share("work_elastic", books.work.elastic);
@@ -209,7 +212,7 @@ void DistributedContact::persist(Archive& archive) {
   std::vector<double> rows = contacts_.history(), pairs;
   if (!archive.loading()) {
     const std::vector<double> all = all_gathered(rows, part_.comm);
-    // In list order, whatever the ranks.
+    // In list order, independent of the ranks.
     std::vector<std::array<double, Contacts::width>> in_order(all.size() / Contacts::width);
     for (std::size_t k = 0; k < in_order.size(); ++k)
       std::copy_n(&all[k * Contacts::width], Contacts::width, in_order[k].begin());
@@ -223,7 +226,7 @@ void DistributedContact::persist(Archive& archive) {
   archive.common("changed", changed);
   archive.common("possible", possible_);
   PairListExpiry watch = expiry_;
-  if (!possible_) watch.persist(archive, part_);  // what is listed decides when it becomes so
+  if (!possible_) watch.persist(archive, part_);  // the list decides when contacts are possible
   archive.common("pairs", rows);
   archive.common("released", pairs);
   for (std::size_t k = 0; k < peak_.size(); ++k) {
@@ -236,14 +239,14 @@ void DistributedContact::persist(Archive& archive) {
     }
   }
   if (!archive.loading()) return;
-  overlap_told_ = true;  // when the run began
+  overlap_told_ = true;  // the run has given this remark at its start
   for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
     contacts_.release(
         {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
   contacts_.restore(rows, changed);
   expiry_ = PairListExpiry(contacts_, part_.global_bodies);
   if (possible_ || changed) return;
-  build(watch.at_build(part_));  // the list that the run had
+  build(watch.at_build(part_));  // the same list as before the restart
   expiry_ = watch;
 }
 

@@ -31,7 +31,7 @@ void PairListExpiry::start(const State<Spatial>& state, std::int32_t owned) {
 }
 
 void PairListExpiry::after_step(const State<Spatial>& state, double dt) {
-  // Spins change within a step as a body tumbles; that half as much again is far more.
+  // The spin of a tumbling body changes within a step, by far less than this factor.
   constexpr double tumbling = 1.5;
   speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
   travelled_ += dt * speed_;
@@ -43,23 +43,24 @@ bool PairListExpiry::is_due(const State<Spatial>& state, const Part& part, const
   const auto [theirs, their_speed] = of_obstacles(contacts, state.time);
   std::array<double, 2> all =
       largest({std::max(travelled_, theirs), std::max(speed_, their_speed)}, part.comm);
-  if (!std::isfinite(all[0])) return false;  // the run has blown up: places are no numbers
+  if (!std::isfinite(all[0])) return false;  // the run has blown up: places are not finite
   const double slack = contacts.slack();
   if (all[0] > slack) {
     travelled_ = travels(state, part, contacts);
     all[0] = largest({std::max(travelled_, theirs), 0}, part.comm)[0];
-    constexpr double enough = 0.8;  // of the slack: what is left is not worth another look
+    constexpr double enough = 0.8;  // of the slack; the rest would not last long
     if (all[0] > enough * slack) return true;
   }
-  if (size(part.comm) > 1) {        // a look costs a message
-    constexpr double sudden = 100;  // what a body may gain between two looks [m/s]
+  if (size(part.comm) > 1) {        // each comparison costs a message
+    constexpr double sudden = 100;  // gain of speed of a body between two comparisons [m/s]
     const double per_step = dt > 0 ? dt * (2 * all[1] + sudden) : slack;
     asks_in_ = static_cast<std::int64_t>(std::clamp((slack - all[0]) / per_step, 0.0, 1000.0));
   }
   return false;
 }
 
-/// The farthest way of an obstacle's vertex since the list was made, and their largest speed.
+/// Largest travel of a vertex of an obstacle since the list was made [m], and the largest speed of
+/// such a vertex [m/s].
 std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, double time) const {
   std::array<double, 2> most{};
   for (std::size_t k = 0; k < contacts.obstacles().size(); ++k) {
@@ -74,7 +75,7 @@ std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, dou
   return most;
 }
 
-/// The farthest way of a vertex of an owned body since the list was made.
+/// Largest travel of a vertex of an owned body since the list was made [m].
 double PairListExpiry::travels(const State<Spatial>& state, const Part& part,
                                const Contacts& contacts) const {
   double farthest = 0;
@@ -97,13 +98,14 @@ void PairListExpiry::persist(Archive& archive, const Part& part) {
   at_build_.resize(owned.size() * Spatial::record);
   archive.rows("at_build", owned, at_build_, Spatial::record);
   archive.common("build_time", time_);
-  archive.common("asks_in", asks_in_, -(std::int64_t{1} << 53));  // it goes on counting
+  archive.common("asks_in", asks_in_, -(std::int64_t{1} << 53));  // below 0 on a single rank
   std::vector<double> all = all_gathered(std::vector{travelled_, speed_}, part.comm);
   const std::size_t numbers = all.size();
   archive.common("ways_of_ranks", all);
   started_ = true;
   if (!archive.loading()) return;
-  // On another number of ranks decisions may differ: each takes the largest.
+  // On another number of ranks each rank takes the largest bounds of all; the list may then be made
+  // at another step.
   const auto me = static_cast<std::size_t>(rank(part.comm));
   for (const std::size_t k : {0UL, 1UL}) {
     double& mine = k == 0 ? travelled_ : speed_;

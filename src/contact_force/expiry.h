@@ -1,5 +1,5 @@
 /// \file
-/// When the list of pairs that may touch must be made anew.
+/// Decides when the pair list must be made anew.
 #pragma once
 
 #include <array>
@@ -13,38 +13,42 @@
 
 namespace floe {
 
-/// Before a vertex has moved by the list's slack. Steps say how fast the fastest body was, which
-/// bounds all travels; only when that bound has reached the slack are the travels themselves looked
-/// at. A scene in which little moves pays next to nothing.
+/// A pair list expires before any vertex has travelled by its slack. The largest speed times dt,
+/// summed over the steps, bounds the travel of every vertex; the true travels are computed only
+/// when this bound exceeds the slack. So a scene in which little moves pays next to nothing.
 class PairListExpiry {
  public:
-  /// \param bodies  of all ranks
+  /// \param bodies  number of bodies of all ranks
   PairListExpiry(const Contacts& contacts, std::int32_t bodies);
-  /// The list was made from this state.
+  /// Notes the state from which a list was made.
+  /// \param owned  number of owned bodies
   void start(const State<Spatial>& state, std::int32_t owned);
   bool started() const { return started_; }
-  /// A step was made. \param dt  [s]
+  /// Adds the travel of a step to the bound.
+  /// \param state  after the step
+  /// \param dt     length of the step [s]
   void after_step(const State<Spatial>& state, double dt);
-  /// The same on every rank. Collective.
+  /// Whether a new list is due; the same on all ranks. Collective.
+  /// \param dt  length of the last step [s]
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt);
 
-  /// Where bodies were when the list was made, and what is known of their travels since.
+  /// Saves or loads the poses from which the list was made, and the bounds of the travels since.
   /// Collective.
   void persist(Archive& archive, const Part& part);
-  /// The state that the list was made from; of owned bodies.
+  /// The state from which the list was made, of owned bodies only.
   State<Spatial> at_build(const Part& part) const;
 
  private:
   std::array<double, 2> of_obstacles(const Contacts& contacts, double time) const;
   double travels(const State<Spatial>& state, const Part& part, const Contacts& contacts) const;
 
-  double radius_ = 0;  ///< of the farthest vertex of a body from its centroid [m]
-  std::vector<double> at_build_;
-  double time_ = 0;
+  double radius_ = 0;             ///< largest distance of a vertex from its centroid [m]
+  std::vector<double> at_build_;  ///< records of owned bodies when the list was made
+  double time_ = 0;               ///< when the list was made [s]
   double travelled_ =
-      0;              ///< bound of the way of any vertex of this rank since the list was made [m]
-  double speed_ = 0;  ///< bound of their speeds in the last step [m/s]
-  std::int64_t asks_in_ = 0;  ///< evaluations until ranks ask each other again
+      0;              ///< bound of the travel of this rank's vertices since the list was made [m]
+  double speed_ = 0;  ///< bound of the speeds of this rank's vertices in the last step [m/s]
+  std::int64_t asks_in_ = 0;  ///< evaluations until the ranks compare their bounds again
   bool started_ = false;
 };
 

@@ -64,14 +64,14 @@ void ContactHalo::choose(std::span<const std::int32_t> wanted) {
   }
   if (alone_) return;
   std::vector<std::int32_t> all = all_gathered(foreign, part_.comm);
-  // Each rank sends what any other wants of it, in order of owner and index; all ranks know that
-  // order.
+  // A rank sends those of its bodies that any other rank wants, in global order. All ranks know the
+  // bodies that are sent, sorted by owner and index.
   std::sort(all.begin(), all.end(), [&](std::int32_t a, std::int32_t b) {
     return std::pair(owner_[static_cast<std::size_t>(a)], a) <
            std::pair(owner_[static_cast<std::size_t>(b)], b);
   });
   all.erase(std::unique(all.begin(), all.end()), all.end());
-  std::map<std::int32_t, std::int32_t> place;  // in its owner's buffer
+  std::map<std::int32_t, std::int32_t> place;  // of a body in the buffer of its owner
   std::int32_t owner = -1, next = 0;
   sent_.clear();
   for (const std::int32_t body : all) {

@@ -1,5 +1,5 @@
 /// \file
-/// Which bodies of other ranks the contacts of this one need, and how their records come here.
+/// The halo of contacts: bodies of other ranks that this rank's contacts need.
 #pragma once
 
 #include <cstdint>
@@ -13,30 +13,33 @@
 
 namespace floe {
 
+/// Gathers poses and velocities of owned bodies and of bodies of other ranks.
 class ContactHalo {
  public:
-  /// Collective. \param part  must outlive this
+  /// Collective. \param part  must outlive this object
   explicit ContactHalo(const Part& part);
 
   /// Poses of all bodies, in global order. Collective.
   std::vector<Pose> poses(const State<Spatial>& state) const;
-  /// Bodies whose records are wanted here from now on. Collective. \param wanted  global, sorted
+  /// Chooses the bodies that gather() returns from now on. Collective.
+  /// \param wanted  global bodies, sorted
   void choose(std::span<const std::int32_t> wanted);
-  /// Poses and velocities of these bodies, as wanted. Collective.
+  /// Poses and velocities of the wanted bodies. Collective.
+  /// \param bodies  filled, in the order of choose()
   void gather(const State<Spatial>& state, std::span<MovingPose> bodies);
-  /// Local index of each wanted body, or -1 if another rank owns it.
+  /// Local index of each wanted body; -1 if another rank owns the body.
   const std::vector<std::int32_t>& local() const { return local_; }
 
  private:
   const Part& part_;
-  bool alone_;
-  std::vector<std::int32_t> global_;  ///< bodies rank after rank
-  std::vector<std::int32_t> owner_;   ///< per body
-  std::vector<Vec3<double>> rest_;    ///< per body: centroid at rest
+  bool alone_;                        ///< one rank only
+  std::vector<std::int32_t> global_;  ///< all bodies, rank after rank
+  std::vector<std::int32_t> owner_;   ///< per body: the rank that owns it
+  std::vector<Vec3<double>> rest_;    ///< per body: centroid at rest [m]
   std::vector<Quat<double>> axes_;    ///< per body: orientation at rest
   std::vector<std::int32_t> wanted_, local_;
-  std::vector<std::int32_t> sent_;  ///< owned bodies that some rank wants
-  std::vector<std::int32_t> from_;  ///< per wanted body: its record in the buffer, or -1
+  std::vector<std::int32_t> sent_;  ///< owned bodies that another rank wants
+  std::vector<std::int32_t> from_;  ///< per wanted body: index of its record in buffer_; -1: owned
   std::vector<double> buffer_;      ///< records sent, then records received
   Ghosts ghosts_;
 };

@@ -9,10 +9,10 @@
 namespace floe {
 namespace {
 
-/// Part of a contact's time that its overlap takes: the rest stays with the pair
-/// (bench/contact_bench).
+/// Part of the time of a contact that its overlap takes (measured by bench/contact_bench); the rest
+/// stays on the rank of the pair.
 constexpr double part_of_overlap = 0.7;
-/// Fewer pairs are not worth a message.
+/// Sharing fewer pairs is not worth a message.
 constexpr double fewest = 64;
 constexpr int numbers = sizeof(Contacts::PairOverlap) / sizeof(double);
 static_assert(sizeof(Contacts::PairOverlap) == numbers * sizeof(double));
@@ -24,7 +24,8 @@ std::vector<std::vector<std::int64_t>> shared_pairs(std::span<const std::int64_t
   std::vector<std::vector<std::int64_t>> shares(n, std::vector<std::int64_t>(n, 0));
   double mean = 0;
   for (const std::int64_t p : pairs) mean += static_cast<double>(p) / static_cast<double>(n);
-  // What a rank should work out: what is missing to the mean beside what stays with its pairs.
+  // A rank should compute as many overlaps as bring its work to the mean, together with the work
+  // that stays with its own pairs.
   std::vector<double> spare(n);
   for (std::size_t r = 0; r < n; ++r) {
     const auto own = static_cast<double>(pairs[r]);
@@ -67,7 +68,8 @@ void ContactLoadBalance::plan(Contacts& contacts) {
   for (const auto& pair : contacts.offload(static_cast<std::size_t>(mine)))
     offloaded.insert(offloaded.end(), pair.begin(), pair.end());
   offloaded_ = static_cast<std::size_t>(mine);
-  // All ranks know all offloaded pairs, giver by giver; each giver's go to its takers in turn.
+  // All ranks know all offloaded pairs, giver by giver. The pairs of a giver go to its takers in
+  // the order of the takers.
   const std::vector<std::int32_t> all = all_gathered(offloaded, comm_);
   std::vector<std::array<std::int32_t, 2>> taken_on;
   std::vector<std::int32_t> takers, places;

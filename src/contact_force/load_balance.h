@@ -1,5 +1,5 @@
 /// \file
-/// Ranks with many contacts have part of their overlaps worked out by ranks with few.
+/// Load balance of contacts: ranks with few contacts compute overlaps for ranks with many.
 #pragma once
 
 #include <mpi.h>
@@ -12,28 +12,30 @@
 
 namespace floe {
 
-/// How many pairs each rank works out for each other one: shares[giver][taker]. \param pairs  of
-/// each rank
+/// Numbers of pairs whose overlaps one rank computes for another: shares[giver][taker].
+/// \param pairs  number of pairs with history of each rank
 std::vector<std::vector<std::int64_t>> shared_pairs(std::span<const std::int64_t> pairs);
 
-/// Forces do not depend on who works out an overlap: pairs stay where their bodies are, with their
-/// history and in their order, and only overlaps travel.
+/// Distributes the overlaps of contacts over ranks. Forces do not depend on the rank that computes
+/// an overlap: pairs stay on the ranks of their bodies, with their history and in their order, and
+/// only overlaps are sent.
 class ContactLoadBalance {
  public:
   explicit ContactLoadBalance(MPI_Comm comm);
 
-  /// After each build of the list: decides anew. Collective.
+  /// Distributes overlaps anew, after each build of the pair list. Collective.
   void plan(Contacts& contacts);
-  /// contacts.evaluate, with what is shared. Collective.
+  /// Calls contacts.evaluate(), with the overlaps that other ranks have computed. Collective.
+  /// \param wrenches  on the involved bodies, by slot
   void evaluate(Contacts& contacts, std::span<ContactWrench> wrenches);
 
  private:
   std::span<Contacts::PairOverlap> overlaps(std::size_t first, std::size_t count);
 
   MPI_Comm comm_;
-  bool shared_ = false;  ///< on any rank
-  std::size_t taken_on_ = 0, offloaded_ = 0;
-  std::vector<Contacts::PairOverlap> buffer_;  ///< of taken_on pairs, then of offloaded ones
+  bool shared_ = false;                        ///< some rank has offloaded pairs
+  std::size_t taken_on_ = 0, offloaded_ = 0;   ///< numbers of pairs
+  std::vector<Contacts::PairOverlap> buffer_;  ///< of pairs taken on, then of offloaded pairs
   Ghosts ghosts_;
 };
 
