@@ -114,10 +114,12 @@ class DynamicRun {
   /// Progress is shown after so many steps.
   void show_every(std::int64_t steps) { show_every_ = steps; }
   /// Progress within a step.
-  void show(const std::string& what) { progress_->update(time_, step_text() + ", " + what); }
+  void show(const std::string& what) {
+    if (progress_) progress_->update(time_, step_text() + ", " + what);
+  }
   /// The same before work that takes about so long.
   void announce_work(const std::string& what, double seconds) {
-    progress_->announce(time_, step_text() + ", " + what, seconds);
+    if (progress_) progress_->announce(time_, step_text() + ", " + what, seconds);
   }
   /// The next step [s].
   void set_dt(double dt) { dt_ = dt; }

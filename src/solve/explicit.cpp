@@ -53,7 +53,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     if (any != 0) contact_->release(pairs);
   }
   StableStep find_stable_step() override {
-    const StableStep stable = stable_step(this->model(), this->state());
+    StableStep stable = stable_step(this->model(), this->state());
     this->evaluate();  // forces keep by-products of their last evaluation: the power they take
     return stable;
   }

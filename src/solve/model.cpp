@@ -152,6 +152,7 @@ auto Model<Space>::evaluate_apart(const State<Space>& state, Wrenches<Space>& wr
 template <class Space>
 std::vector<double> Model<Space>::ramp_ends() const {
   std::vector<double> ends;
+  ends.reserve(boundaries_.size() + forces_.size());
   for (const PlacedBoundary& placed : boundaries_) ends.push_back(placed.boundary.ramp.seconds);
   for (const auto& force : forces_) ends.push_back(force->settles());
   std::sort(ends.begin(), ends.end());

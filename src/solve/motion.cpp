@@ -107,8 +107,10 @@ void Motion::stagger(State<Spatial>& state, const Wrenches<Spatial>& wrenches, d
 /// Whole blocks one after the other. In one copy, for all ranks: contraction to fused operations
 /// may differ between two copies of a loop, and a body must not depend on whether its block is
 /// whole. \param records, wrenches  of the first block's bodies
-[[gnu::noinline, gnu::noclone, gnu::flatten]] Motion::Extremes Motion::step_blocks(
-    std::span<const Block> blocks, double* records, const double* wrenches, double dt) {
+[[FLOE_ONE_COPY, gnu::flatten]] Motion::Extremes Motion::step_blocks(std::span<const Block> blocks,
+                                                                     double* records,
+                                                                     const double* wrenches,
+                                                                     double dt) {
   Extremes largest;
   for (const Block& block : blocks) {
     const auto four = [](const double* first, std::size_t width) {
