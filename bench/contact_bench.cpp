@@ -34,8 +34,8 @@ struct Blocks {
       shapes.face_of.push_back(shapes.face_of.back() + 6);
       shapes.vertex_of.push_back(base + 8);
       masses.push_back(920);
-      poses.push_back({(1 + gap) * Vec3<double>{1.0 * (k % n), 1.0 * (k / n % n),
-                                                1.0 * static_cast<double>(k / n / n)},
+      const int layer = k / (n * n), row = k / n % n, column = k % n;
+      poses.push_back({(1 + gap) * Vec3<double>{1.0 * column, 1.0 * row, 1.0 * layer},
                        exp_rotation({turn * random(), turn * random(), turn * random()})});
     }
   }

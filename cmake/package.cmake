@@ -45,9 +45,13 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake")
 # What Debian asks of each package, and of no other installation.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  set(changelog ${PROJECT_BINARY_DIR}/changelog.gz)
+  file(ARCHIVE_CREATE OUTPUT ${changelog} PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+       FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9)
   foreach(package program:floe development:libfloe-dev)
     string(REGEX MATCH "(.*):(.*)" _ ${package})
-    install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian/copyright COMPONENT ${CMAKE_MATCH_1}
+    install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian/copyright ${changelog}
+            COMPONENT ${CMAKE_MATCH_1}
             DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_2})
   endforeach()
 endif()

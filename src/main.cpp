@@ -22,6 +22,7 @@
 #include "output/output.h"
 #include "output/run_folder.h"
 #include "program/go_on.h"
+#include "program/ignored_signals.h"
 #include "program/log_heading.h"
 #include "program/program.h"
 #include "scene/build.h"
@@ -327,7 +328,7 @@ int main(int argc, char** argv) {
   if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
     return floe::program::print_options(help);
   const floe::program::Words words(argv, argv + argc);
-  floe::StopSignals signals;
+  floe::StopSignals signals(floe::program::ignored_at_start());
   floe::Mpi mpi(argc, argv);
   if (floe::rank(MPI_COMM_WORLD) == 0) floe::keep_log(floe::program::log_heading(argc, argv));
   const int code = run_command(argc, argv, words, signals);

@@ -93,7 +93,7 @@ CommandLine read_command_line(int argc, const char* const* argv) {
     const std::string value = has_value ? argv[k + 1] : "";
     check_option(word, value);
     if (word == "-skip_petscrc") {
-      line.petscrc = !to_flag(value).value();
+      line.petscrc = !to_flag(value).value_or(true);  // check_option() has seen that it is one
     } else {
       line.options[petsc_name(word.substr(1))] = {value, Source::command_line, {}};
     }

@@ -43,8 +43,9 @@ void Options::record(const Reading& reading, std::string value) {
 
 bool Options::flag(std::string_view key, std::string_view name) {
   const Reading reading = read(key, name);
-  const auto value = to_flag(reading.value.value_or("false"));
-  if (!value) refuse_value(reading.spec, reading.label, *reading.value, reading.place);
+  const std::string given = reading.value.value_or("false");
+  const auto value = to_flag(given);
+  if (!value) refuse_value(reading.spec, reading.label, given, reading.place);
   record(reading, *value ? "true" : "false");
   return *value;
 }

@@ -29,7 +29,7 @@ std::string quoted(std::string_view value) {
 std::string yaml_value(Kind kind, const std::string& value) {
   if (kind != Kind::numbers && kind != Kind::choices && kind != Kind::names)
     return kind == Kind::text || kind == Kind::duration ? quoted(value) : value;
-  const auto items = to_list(value).value();
+  const auto items = to_list(value).value_or(std::vector<std::string>{});
   std::string list;
   for (const std::string& item : items) list += (list.empty() ? "" : ", ") + item;
   return "[" + list + "]";

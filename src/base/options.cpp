@@ -253,7 +253,8 @@ void Options::refuse_unread() {
   for (const auto& [option, given] : given_) {
     if (read_.contains(option) || idle_options_.contains(option)) continue;
     const auto [line, name] = match(option);
-    keep_idle(option, given, option_label(line->key, name), "would have no effect in this scene");
+    if (line != nullptr)  // all that were given are in the table
+      keep_idle(option, given, option_label(line->key, name), "would have no effect in this scene");
   }
 }
 std::vector<std::string> Options::read_and_given() const {

@@ -13,6 +13,14 @@
 #include <cstddef>
 #include <experimental/simd>
 
+/// Attributes of a function of which there must be one copy: contraction to fused operations may
+/// differ between two copies of a loop.
+#if defined(__clang__)
+#define FLOE_ONE_COPY gnu::noinline
+#else
+#define FLOE_ONE_COPY gnu::noinline, gnu::noclone
+#endif
+
 namespace floe {
 
 #if defined(__AVX512F__)

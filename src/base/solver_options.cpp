@@ -165,7 +165,7 @@ bool within(double value, std::string_view allowed) {
     const std::string_view term = allowed.substr(0, comma);
     const auto blank = term.find(' ');
     const std::string_view sign = term.substr(0, blank);
-    const double bound = to_number(term.substr(blank + 1)).value();
+    const double bound = to_number(term.substr(blank + 1)).value_or(0);
     if (sign == ">"    ? !(value > bound)
         : sign == ">=" ? !(value >= bound)
         : sign == "<"  ? !(value < bound)

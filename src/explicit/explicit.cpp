@@ -41,7 +41,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
 
  private:
   StableStep find_stable_step() override {
-    const StableStep stable = stable_step(this->model(), this->state());
+    StableStep stable = stable_step(this->model(), this->state());
     // Forces keep by-products of their last evaluation (their power), which the search has changed.
     this->evaluate();
     return stable;

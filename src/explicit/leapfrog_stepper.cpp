@@ -105,60 +105,75 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
   }
 }
 
-/// \param count  number of bodies in the block; lanes beyond the last body repeat it, and are not
-///   written
-template <class Count>
-[[gnu::always_inline]] inline LeapfrogStepper::Squares LeapfrogStepper::step_block(
-    std::size_t block, Count count, State<Spatial>& state, const Wrenches<Spatial>& wrenches,
-    double dt) const {
-  const auto body_of = [&](std::size_t lane) {
-    return block * lanes + (count == lanes ? lane : std::min(lane, count - 1));
-  };
-  const auto four = [&](std::size_t offset) {
-    return gather_four([&](std::size_t lane) { return state.record(body_of(lane)) + offset; });
-  };
-  const auto wrench = [&](std::size_t offset) {
-    return gather_four([&](std::size_t lane) { return wrenches.of(body_of(lane)) + offset; });
-  };
-  const auto a = four(0), b = four(4), c = four(8), d = four(12), f = wrench(0), g = wrench(4);
-  BodyMotion<Lanes> m{{a[0], a[1], a[2]},
-                      {a[3], b[0], b[1], b[2]},
-                      {b[3], c[0], c[1]},
-                      {c[2], c[3], d[0]},
-                      {d[1], d[2], d[3]}};
-  leap<Lanes>(blocks_[block].get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
+/// Whole blocks one after the other. In one copy, for all ranks: contraction to fused operations
+/// may differ between two copies of a loop, and a body must not depend on whether its block is
+/// whole. \param records, wrenches  of the first block's bodies
+[[FLOE_ONE_COPY, gnu::flatten]] LeapfrogStepper::Extremes LeapfrogStepper::step_blocks(
+    std::span<const Block> blocks, double* records, const double* wrenches, double dt) {
+  Extremes largest;
+  for (const Block& block : blocks) {
+    const auto four = [](const double* first, std::size_t width) {
+      return gather_four([&](std::size_t lane) { return first + lane * width; });
+    };
+    constexpr std::size_t n = Spatial::record, w = Spatial::wrench;
+    const auto a = four(records, n), b = four(records + 4, n), c = four(records + 8, n),
+               d = four(records + 12, n), f = four(wrenches, w), g = four(wrenches + 4, w);
+    BodyMotion<Lanes> m{{a[0], a[1], a[2]},
+                        {a[3], b[0], b[1], b[2]},
+                        {b[3], c[0], c[1]},
+                        {c[2], c[3], d[0]},
+                        {d[1], d[2], d[3]}};
+    leap<Lanes>(block.get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
 
-  std::array<Row, lanes> rows;
-  const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
-    scatter_four(values, rows);
-    for (std::size_t lane = 0; lane < count; ++lane)
-      store_row(state.record(block * lanes + lane) + offset, rows[lane]);
-  };
-  put(0, {m.u.x, m.u.y, m.u.z, m.q.w});
-  put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
-  put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
-  put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
-  return {dot(m.v, m.v), dot(m.w, m.w)};
+    std::array<Row, lanes> rows;
+    const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
+      scatter_four(values, rows);
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        store_row(records + lane * n + offset, rows[lane]);
+    };
+    put(0, {m.u.x, m.u.y, m.u.z, m.q.w});
+    put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
+    put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
+    put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
+    const Lanes speed2 = dot(m.v, m.v);
+    largest.speed2 = max(largest.speed2, speed2);
+    largest.spin2 = max(largest.spin2, dot(m.w, m.w));
+    largest.sum += speed2;
+    records += lanes * n;
+    wrenches += lanes * w;
+  }
+  return largest;
 }
 
-[[gnu::flatten]] std::array<double, 2> LeapfrogStepper::step_blocks(
-    State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) const {
+/// The bodies of the last block, if they do not fill it, are stepped in a block of their own that
+/// is filled up with the last of them.
+std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
+                                                const Wrenches<Spatial>& wrenches,
+                                                double dt) const {
+  constexpr std::size_t n = Spatial::record, w = Spatial::wrench;
   const auto owned = static_cast<std::size_t>(part_.owned);
   const std::size_t whole = owned / lanes, left = owned % lanes;
-  // The sum keeps numbers that are not finite, which a maximum would lose.
-  Squares largest;
-  Lanes sum(0.0);
-  const auto take = [&](const Squares& squares) {
-    largest.speed = max(largest.speed, squares.speed);
-    largest.spin = max(largest.spin, squares.spin);
-    sum += squares.speed;
-  };
-  for (std::size_t block = 0; block < whole; ++block)
-    take(step_block(block, std::integral_constant<std::size_t, lanes>{}, state, wrenches, dt));
-  if (left > 0) take(step_block(whole, left, state, wrenches, dt));
-  return {
-      std::isfinite(reduce(sum)) ? hmax(largest.speed) : std::numeric_limits<double>::quiet_NaN(),
-      hmax(largest.spin)};
+  const std::span<const Block> blocks(blocks_);
+  Extremes largest =
+      step_blocks(blocks.first(whole), state.records.data(), wrenches.values.data(), dt);
+  if (left > 0) {
+    alignas(64) std::array<double, lanes * n> records;
+    alignas(64) std::array<double, lanes * w> forces;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t body = whole * lanes + std::min(lane, left - 1);
+      std::copy_n(state.record(body), n, &records[lane * n]);
+      std::copy_n(wrenches.of(body), w, &forces[lane * w]);
+    }
+    const Extremes last = step_blocks(blocks.last(1), records.data(), forces.data(), dt);
+    std::copy_n(records.data(), left * n, state.record(whole * lanes));
+    largest.speed2 = max(largest.speed2, last.speed2);
+    largest.spin2 = max(largest.spin2, last.spin2);
+    largest.sum += last.sum;
+  }
+  // A maximum would lose what is not a number, a sum keeps it.
+  return {std::isfinite(reduce(largest.sum)) ? hmax(largest.speed2)
+                                             : std::numeric_limits<double>::quiet_NaN(),
+          hmax(largest.spin2)};
 }
 
 double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {
@@ -167,7 +182,7 @@ double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wre
     std::copy_n(record, Spatial::record,
                 saved_.begin() + static_cast<std::ptrdiff_t>(k * Spatial::record));
   }
-  auto [speed2, spin2] = step_blocks(state, wrenches, dt);
+  auto [speed2, spin2] = step_all(state, wrenches, dt);
   if (!held_.empty()) {
     model_.prescribe(state.time, now_, rows_);
     model_.prescribe(state.time + dt, next_, rows_);

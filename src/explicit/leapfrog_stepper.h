@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -57,14 +58,13 @@ class LeapfrogStepper {
     std::array<std::array<double, lanes>, 8> values;  ///< 1/m, 1/I, axes
     BodyConstants<Lanes> get() const;
   };
-  struct Squares {
-    Lanes speed{0.0}, spin{0.0};
+  struct Extremes {
+    Lanes speed2{0.0}, spin2{0.0}, sum{0.0};  ///< largest squares; sum of those of speeds
   };
-  template <class Count>
-  Squares step_block(std::size_t block, Count count, State<Spatial>& state,
-                     const Wrenches<Spatial>& wrenches, double dt) const;
-  std::array<double, 2> step_blocks(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
-                                    double dt) const;
+  static Extremes step_blocks(std::span<const Block> blocks, double* records,
+                              const double* wrenches, double dt);
+  std::array<double, 2> step_all(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
+                                 double dt) const;
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
                  const Wrenches<Spatial>& wrenches, std::span<const double> now,
                  std::span<const double> next, double dt);

@@ -154,6 +154,7 @@ auto Model<Space>::evaluate_apart(const State<Space>& state, Wrenches<Space>& wr
 template <class Space>
 std::vector<double> Model<Space>::ramp_ends() const {
   std::vector<double> ends;
+  ends.reserve(boundaries_.size() + forces_.size());
   for (const PlacedBoundary& placed : boundaries_) ends.push_back(placed.boundary.ramp.seconds);
   for (const auto& force : forces_) {
     if (const auto* role = force->roles().time) ends.push_back(role->time_dependent_until());

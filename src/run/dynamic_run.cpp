@@ -260,7 +260,7 @@ void DynamicRun<Space>::audit(const char* where) const {
 
 template <class Space>
 bool DynamicRun<Space>::look_around() {
-  if (done_ % show_every_ == 0) progress_->update(state_.time, step_text());
+  if (progress_ && done_ % show_every_ == 0) progress_->update(state_.time, step_text());
   const auto wish = checkpoints_.wish(done_);
   if (wish == Checkpoints::Wish::none) return true;
   if (!within_limits()) return false;  // a state beyond the limits gets no checkpoint

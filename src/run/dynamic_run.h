@@ -119,10 +119,12 @@ class DynamicRun {
   /// Sets the number of steps between lines of progress.
   void show_every(std::int64_t steps) { show_every_ = steps; }
   /// Shows progress within a step.
-  void show(const std::string& what) { progress_->update(time_, step_text() + ", " + what); }
+  void show(const std::string& what) {
+    if (progress_) progress_->update(time_, step_text() + ", " + what);
+  }
   /// Shows progress before work that takes about `seconds`.
   void announce_work(const std::string& what, double seconds) {
-    progress_->announce(time_, step_text() + ", " + what, seconds);
+    if (progress_) progress_->announce(time_, step_text() + ", " + what, seconds);
   }
   /// Sets the next step [s].
   void set_dt(double dt) { dt_ = dt; }

@@ -67,7 +67,8 @@ def on_ranks(ranks, command):
 def own_words(error):
     """Standard error of a run, without what the launcher adds and without lines of progress, which
     come when a machine is slow."""
-    return PROGRESS.sub("", BANNER.sub("", error))
+    # prterun (Open MPI 5) puts a zero byte beside what a rank said that has crashed.
+    return PROGRESS.sub("", BANNER.sub("", error.replace("\0", "")))
 
 
 @functools.cache

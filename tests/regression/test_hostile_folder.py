@@ -128,8 +128,9 @@ class HostileFolder(RunningTest):
                          "root may become somebody else")
     def test_a_folder_that_may_not_be_made(self):
         self.folder.chmod(0o755)
-        (self.folder / "out").chmod(0o555)
         self.out.rmdir()
+        (self.folder / "out").chmod(0o555)
+        self.addCleanup((self.folder / "out").chmod, 0o755)
         code, said = self.as_nobody()
         self.assertEqual((code, said.count("\n")), (2, 1), said)
         self.assertIn("Permission denied", said)

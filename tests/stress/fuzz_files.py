@@ -207,13 +207,3 @@ def names_in(folder):
             names.update(file.attrs)
             file.visititems(lambda name, item: names.update([*name.split("/"), *item.attrs]))
     return " ".join(sorted(names))
-
-
-def has_checksums(folder):
-    """Whether this floe refuses a checkpoint of which one number is another: then no damage may
-    change a run."""
-    shutil.copytree(folder / "c", folder / "e")
-    with h5py.File(folder / "e/out/s/checkpoint.h5", "a") as file:
-        records = file["bodies/records"]
-        records[0, 0] *= 1 + 1e-9
-    return launch.run("s.yaml", *RESTART, cwd=folder / "e").returncode != 0

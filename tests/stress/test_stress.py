@@ -5,6 +5,7 @@ silent wrong number.
 Short by default; FLOE_FULL=1 (tools/bench stress) takes the long forms: 10 million steps, more
 seeds and ratios.
 """
+import math
 import sys
 import tempfile
 import unittest
@@ -305,8 +306,8 @@ class Stress(unittest.TestCase):
         for words in (scaled(length=1e6), scaled(length=1e-6), scaled(young=1e6),
                       scaled(young=1e-6), scaled(density=1e6)):
             given = dict(zip(words[::2], words[1::2]))
-            slow = float(given["-sheet_length"]) / 10 * np.sqrt(float(given["-ice_density"]) / 920
-                                                                * 4e9 / float(given["-ice_young"]))
+            slow = float(given["-sheet_length"]) / 10 * math.sqrt(
+                float(given["-ice_density"]) / 920 * 4e9 / float(given["-ice_young"]))
             for integrator in ("quasistatic", "implicit"):
                 options = () if integrator == "quasistatic" else (
                     "-beam_damping_ratio", "1", "-boundary_right_ramp", repr(0.05 * slow),
