@@ -22,7 +22,7 @@ class Operators {
   using Vector = Eigen::VectorXd;
   static constexpr int n = Space::unknowns;
   using Components = std::array<double, static_cast<std::size_t>(n)>;
-  using Rates = typename Force<Space>::Rates;
+  using Rates = typename LimitsStep<Space>::Rates;
 
   /// \param state  must outlive this object
   Operators(const Model<Space>& model, const State<Space>& state)
