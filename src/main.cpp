@@ -24,9 +24,9 @@
 #include "floe/output/run_folder.h"
 #include "floe/restart.h"
 #include "program/go_on.h"
-#include "program/ignored_signals.h"
 #include "program/log_heading.h"
 #include "program/program.h"
+#include "program/signals_at_start.h"
 
 namespace {
 
@@ -322,12 +322,13 @@ int run_command(int argc, char** argv, const floe::program::Words& words,
 }  // namespace
 
 int main(int argc, char** argv) {
+  floe::program::restore_signals();
   floe::open_closed_streams();
   if (const auto code = floe::program::answer(argc, argv)) return *code;
   if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
     return floe::program::print_options(help);
   const floe::program::Words words(argv, argv + argc);
-  floe::StopSignals signals(floe::program::ignored_at_start());
+  floe::StopSignals signals;
   floe::Mpi mpi(argc, argv);
   if (floe::rank(MPI_COMM_WORLD) == 0) floe::keep_log(floe::program::log_heading(argc, argv));
   const int code = run_command(argc, argv, words, signals);

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "floe/base/on_root.h"
 #include "floe/base/options.h"
 #include "option_names.h"
 
@@ -52,10 +53,7 @@ std::string text_of(const std::string& path) {
 
 /// Rank 0's text on all ranks.
 std::string shared(std::string text, MPI_Comm comm) {
-  auto length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  text.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
+  share(text, comm);
   return text;
 }
 

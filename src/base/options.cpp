@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "floe/base/on_root.h"
 #include "option_names.h"
 #include "option_values.h"
 
@@ -271,10 +272,7 @@ std::string some_of(const std::vector<std::string>& items) {
   return text;
 }
 void throw_verdict(std::string verdict, MPI_Comm comm) {
-  auto length = static_cast<int>(verdict.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  verdict.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(verdict.data(), length, MPI_CHAR, 0, comm);
+  share(verdict, comm);
   if (!verdict.empty()) throw InputError(verdict);
 }
 }  // namespace floe

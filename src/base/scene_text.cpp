@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "floe/base/on_root.h"
 #include "floe/base/options.h"
 #include "option_names.h"
 #include "option_values.h"
@@ -336,10 +337,7 @@ GivenOptions read_scene_text(const std::string& path, MPI_Comm comm, const NearT
     }
   }
   throw_verdict(std::move(verdict), comm);
-  auto length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, 0, comm);
-  text.resize(static_cast<std::size_t>(length));
-  MPI_Bcast(text.data(), length, MPI_CHAR, 0, comm);
+  share(text, comm);
   return parse_scene(path, text);
 }
 

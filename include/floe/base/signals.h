@@ -4,8 +4,6 @@
 
 #include <mpi.h>
 
-#include <cstdint>
-
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -23,9 +21,7 @@ class Stopped : public Verdict {
 /// standard output is nothing that a run minds.
 class StopSignals {
  public:
-  /// \param ignored  signals that were ignored when the process began, bit k for signal k:
-  /// libraries may have taken them since
-  explicit StopSignals(std::uint64_t ignored = 0);
+  StopSignals();
   ~StopSignals();
   /// Again, after PETSc has begun and installed handlers of its own.
   void arm();
@@ -35,9 +31,6 @@ class StopSignals {
   static bool came();
   /// Whether one came on any rank. Collective.
   static bool came(MPI_Comm comm);
-
- private:
-  std::uint64_t ignored_;
 };
 
 /// \throws Stopped if a signal has come on any rank. Collective; for what happens before the first
