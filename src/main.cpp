@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -117,7 +118,7 @@ int run(const floe::Scene& scene, Start& start) {
   // 4. Output, opened once every option is known to be understood: bad input leaves no folder
   // behind. Solvers read some of theirs during the first step.
   RunFolder* const folder = start.folder ? &*start.folder : nullptr;
-  std::optional<Output<Space>> output;
+  std::unique_ptr<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
   const auto open = [&](const std::vector<std::string>& columns) {
@@ -133,9 +134,9 @@ int run(const floe::Scene& scene, Start& start) {
     start.mesh.keep();
     start.mesh.keep = [] {};
     if (rank() == 0) folded.unfold(lattice);  // others need no geometry but places
-    output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
-                   std::move(lattice), model, loads, scene.options_yaml,
-                   restart ? &*restart : nullptr);
+    output = std::make_unique<Output<Space>>(
+        OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
+        std::move(lattice), model, loads, scene.options_yaml, restart ? &*restart : nullptr);
     if (first)
       output->accept({first->state, first->wrenches, 0, first->columns, false, first->forces});
     first.reset();
