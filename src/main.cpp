@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,9 +23,9 @@
 #include "output/output.h"
 #include "output/run_folder.h"
 #include "program/go_on.h"
-#include "program/ignored_signals.h"
 #include "program/log_heading.h"
 #include "program/program.h"
+#include "program/signals_at_start.h"
 #include "scene/build.h"
 #include "scene/restart.h"
 
@@ -117,7 +118,7 @@ int run(const floe::Scene& scene, Start& start) {
   // 4. Output. The folder is opened when all options are known to be understood, so that bad input
   // leaves no folder behind: solvers read some of their options in the first step.
   RunFolder* const folder = start.folder ? &*start.folder : nullptr;
-  std::optional<Output<Space>> output;
+  std::unique_ptr<Output<Space>> output;
   std::optional<OutputArchive> restart;  // history of the files to go on with, from a checkpoint
   std::optional<First<Space>> first;
   const auto open = [&](const std::vector<std::string>& columns) {
@@ -133,9 +134,9 @@ int run(const floe::Scene& scene, Start& start) {
     start.mesh.keep();
     start.mesh.keep = [] {};
     if (rank() == 0) packed.unpack(lattice);  // other ranks need positions only
-    output.emplace(OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
-                   std::move(lattice), model, loads, scene.options_yaml,
-                   restart ? &*restart : nullptr);
+    output = std::make_unique<Output<Space>>(
+        OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
+        std::move(lattice), model, loads, scene.options_yaml, restart ? &*restart : nullptr);
     if (first)
       output->accept({first->state, first->wrenches, 0, first->columns, false, first->forces});
     first.reset();
@@ -323,12 +324,13 @@ int run_command(int argc, char** argv, const floe::program::Words& words,
 }  // namespace
 
 int main(int argc, char** argv) {
+  floe::program::restore_signals();
   floe::open_closed_streams();
   if (const auto code = floe::program::answer(argc, argv)) return *code;
   if (const floe::Help help = floe::wants_help(argc, argv); help.kind != floe::Help::none)
     return floe::program::print_options(help);
   const floe::program::Words words(argv, argv + argc);
-  floe::StopSignals signals(floe::program::ignored_at_start());
+  floe::StopSignals signals;
   floe::Mpi mpi(argc, argv);
   if (floe::rank(MPI_COMM_WORLD) == 0) floe::keep_log(floe::program::log_heading(argc, argv));
   const int code = run_command(argc, argv, words, signals);

@@ -31,7 +31,7 @@ void handle(int signal, void (*handler)(int)) {
 
 }  // namespace
 
-StopSignals::StopSignals(std::uint64_t ignored) : ignored_(ignored) {
+StopSignals::StopSignals() {
   signal_came = 0;
   std::size_t k = 0;
   for (const int signal : asking) sigaction(signal, nullptr, &earlier()[k++]);
@@ -40,10 +40,8 @@ StopSignals::StopSignals(std::uint64_t ignored) : ignored_(ignored) {
 }
 
 void StopSignals::arm() {
-  for (std::size_t k = 0; k < asking.size(); ++k) {
-    const bool is_ignored = earlier()[k].sa_handler == SIG_IGN || (ignored_ >> asking[k] & 1U) != 0;
-    handle(asking[k], is_ignored ? SIG_IGN : note_signal);
-  }
+  for (std::size_t k = 0; k < asking.size(); ++k)
+    handle(asking[k], earlier()[k].sa_handler == SIG_IGN ? SIG_IGN : note_signal);
   for (const int signal : unwanted) handle(signal, SIG_IGN);
 }
 

@@ -4,8 +4,6 @@
 
 #include <mpi.h>
 
-#include <cstdint>
-
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -24,10 +22,7 @@ class Stopped : public Verdict {
 /// standard output is closed.
 class StopSignals {
  public:
-  /// \param ignored  signals that were ignored when the process began, bit k for signal k:
-  /// libraries
-  ///   may have taken them since
-  explicit StopSignals(std::uint64_t ignored = 0);
+  StopSignals();
   ~StopSignals();
   /// Installs the handlers again, after PetscInitialize has installed its own.
   void arm();
@@ -37,9 +32,6 @@ class StopSignals {
   static bool came();
   /// Whether a signal has come on any rank. Collective.
   static bool came(MPI_Comm comm);
-
- private:
-  std::uint64_t ignored_;
 };
 
 /// Throws if a signal has come before the first state. Collective.

@@ -121,15 +121,6 @@ class Chain(Killing):
             pass
         return (INTERRUPTED,)
 
-    @staticmethod
-    def ends(process, within=2):
-        """Whether a process ends within some seconds."""
-        try:
-            process.wait(within)
-        except subprocess.TimeoutExpired:
-            return False
-        return True
-
     def check_event(self, event, early, process, codes):
         """What the run left and said."""
         out, error = process.communicate()
@@ -181,11 +172,7 @@ class Chain(Killing):
                 self.wait_for_rows(process, self.results,
                                    min(before, rows_of(self.results)) + chance.randrange(1, 60))
                 time.sleep(chance.uniform(0, 0.05))
-            codes = self.happen(event, process, ranks, chance)
-            # UCX, under Open MPI 5, swallows a SIGHUP that comes while libraries are loaded.
-            while early and codes == (INTERRUPTED,) and not self.ends(process):
-                self.happen(event, process, ranks, chance)
-            self.check_event(event, early, process, codes)
+            self.check_event(event, early, process, self.happen(event, process, ranks, chance))
         before = rows_of(self.results)
         process = self.begin(*ENDLESS, *self.newest(), dir="b", ranks=ranks)
         self.addCleanup(self.end, process)

@@ -92,7 +92,7 @@ TEST(FreeTop, EnergyStaysOverAMillionSteps) {
     if (block >= blocks - blocks / 10) last += mean / (blocks / 10.0);
   }
   const std::array<double, 6> after = run.momentum();
-  const std::string note = text("1e6 steps, |omega| dt = 0.006, moments 1, 2, 2.9");
+  const std::string note = "1e6 steps, |omega| dt = 0.006, moments 1, 2, 2.9";
   verify({.section = section_name,
           .quantity = "free top: largest relative error of the energy",
           .value = largest,
