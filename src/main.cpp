@@ -2,32 +2,24 @@
 
 #include <malloc.h>
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "base/environment.h"
 #include "base/files.h"
 #include "base/run_log.h"
-#include "base/run_place.h"
-#include "base/scene_text.h"
 #include "base/signals.h"
 #include "floe/base/command_line.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "floe/base/petsc.h"
-#include "floe/base/version.h"
-#include "lattice/packed_lattice.h"
-#include "output/output.h"
-#include "output/run_folder.h"
+#include "floe/simulation.h"
 #include "program/go_on.h"
 #include "program/log_heading.h"
 #include "program/program.h"
 #include "program/signals_at_start.h"
-#include "scene/build.h"
 #include "scene/restart.h"
+#include "simulation/build.h"
 
 namespace {
 
@@ -46,163 +38,6 @@ void say_error(const std::string& text) {
 void give_memory_back() {
   mallopt(M_MMAP_MAX, 1 << 16);
   mallopt(M_MMAP_THRESHOLD, 1 << 20);
-}
-
-/// The initial state, kept until the output folder exists.
-template <class Space>
-struct First {
-  floe::State<Space> state;
-  floe::Wrenches<Space> wrenches;
-  std::vector<std::pair<std::string, double>> columns, forces;
-};
-
-/// The state of the program before a run.
-struct Start {
-  double time;
-  std::optional<floe::RunFolder>& folder;
-  floe::MeshReport mesh;
-  floe::Lattice lattice;
-  floe::ModelChoice choice;
-  std::string go_on;  ///< the command that goes on after this run has stopped
-};
-
-using Columns = std::vector<std::pair<std::string, double>>;
-
-std::vector<std::string> names_of(const Columns& forces, const Columns& integrator) {
-  std::vector<std::string> names;
-  for (const Columns* columns : {&forces, &integrator}) {
-    for (const auto& [name, value] : *columns) names.push_back(name);
-  }
-  return names;
-}
-
-/// Refuses a folder with files of another run, which would be cut back.
-void require_same_run(const floe::Scene& scene, const floe::RunFolder& folder,
-                      const std::string& run) {
-  if (run.empty())
-    throw floe::InputError("checkpoint: restart: '" + scene.checkpoint.restart +
-                           "': output/run is empty");
-  if (folder.run().empty() || folder.run() == run) return;  // empty: copied without its .lock
-  throw floe::InputError("checkpoint: restart: '" + scene.checkpoint.restart +
-                         "' is of another run than the files in " + scene.output.dir +
-                         "; a run goes on in the folder where it began");
-}
-
-template <class Space>
-int run(const floe::Scene& scene, Start& start) {
-  using namespace floe;
-  Lattice& lattice = start.lattice;
-
-  run_place().stage = "before the first state";
-  const std::string lattice_id = fingerprint(lattice);
-  const OutputSize size_of_output =
-      output_size(lattice, scene.forces.fracture, scene.boundaries.size(), scene.loads.size(),
-                  scene.obstacles.size());
-  PackedLattice packed;
-  if (!needs_shapes(scene)) packed.pack_shapes(lattice);
-
-  // 3. The model: this rank's part of the lattice, boundaries, forces
-  const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
-  Model<Space> model(lattice, PETSC_COMM_WORLD, scene.boundaries);
-  add_forces(scene, loads, model);
-  add_contact(scene, lattice, model);
-  const bool is_static = scene.integrator == Integrator::quasistatic;
-  if (is_static) hold_free_motions(scene, lattice, model);
-  std::optional<OutOfPlane> rest;
-  if (is_static && start.choice.planar) rest = out_of_plane(scene, lattice, loads, model.part());
-  release_setup(scene, model);
-  packed.pack_shapes(lattice);
-  packed.pack_beams(lattice);
-  if (size() == 1) packed.pack_bodies(lattice, model.part().bodies);
-
-  // 4. Output. The folder is opened when all options are known to be understood, so that bad input
-  // leaves no folder behind: solvers read some of their options in the first step.
-  RunFolder* const folder = start.folder ? &*start.folder : nullptr;
-  std::unique_ptr<Output<Space>> output;
-  std::optional<OutputArchive> restart;  // history of the files to go on with, from a checkpoint
-  std::optional<First<Space>> first;
-  const auto open = [&](const std::vector<std::string>& columns) {
-    reject_unused_options(scene.unused_options);
-    if (restart) {
-      require_same_run(scene, *folder, restart->run);
-      require_files(scene.output.dir, *restart,
-                    columns_of(scene.boundaries, scene.loads, columns, scene.forces.fracture),
-                    PETSC_COMM_WORLD);
-    }
-    folder->begin(restart ? restart->run : "");
-    if (restart) make_newest(scene.checkpoint.restart, checkpoint_file(scene), PETSC_COMM_WORLD);
-    start.mesh.keep();
-    start.mesh.keep = [] {};
-    if (rank() == 0) packed.unpack(lattice);  // other ranks need positions only
-    output = std::make_unique<Output<Space>>(
-        OutputOptions{scene.output.dir, scene.output.history, scene.output.fields},
-        std::move(lattice), model, loads, scene.options_yaml, restart ? &*restart : nullptr);
-    if (first)
-      output->accept({first->state, first->wrenches, 0, first->columns, false, first->forces});
-    first.reset();
-  };
-
-  // 5. Run
-  const auto prepare = [&](const std::vector<std::string>& columns) {
-    if (!output) open(columns);
-  };
-  const auto observe = [&](const Accepted<Space>& accepted) {
-    if (accepted.step == 0 && scene.integrator != Integrator::explicit_) {
-      first = First<Space>{accepted.state, accepted.wrenches, accepted.columns, accepted.forces};
-      return;
-    }
-    prepare(names_of(accepted.forces, accepted.columns));
-    output->accept(accepted);
-    folder->note(accepted.state.time, accepted.step);
-    run_place() = {"", accepted.state.time, accepted.step, 0};
-  };
-  const auto remember = [&](Archive& archive) {
-    if (archive.loading()) {
-      restart.emplace().persist(archive);
-    } else {
-      OutputArchive files = output->archive();
-      files.run = folder->run();
-      files.persist(archive);
-    }
-  };
-  // The files must be on disk before a checkpoint that refers to them.
-  const auto before_checkpoint = [&](const std::vector<std::string>& columns) {
-    prepare(columns);
-    output->sync();
-  };
-  // Bad input ends with a single line, so warnings are printed only when the run is known to be
-  // possible.
-  const auto on_plan = [&](const RunPlan& plan) {
-    for (const std::string& warning : scene.warnings) say_error("floe: warning: " + warning + "\n");
-    say(plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD)));
-    return !scene.check_only;
-  };
-  const RunResult result = integrate(scene, model, rest ? &*rest : nullptr, lattice_id, on_plan,
-                                     observe, before_checkpoint, remember);
-  if (scene.check_only) {
-    say("scene is valid: " + std::to_string(model.part().global_bodies) + " bodies, " +
-        std::to_string(model.part().global_beams) + " beams\n");
-    return done;
-  }
-  prepare({});  // a run without even a first state leaves a summary that says so
-  const bool goes_on = result.stopped && !is_static;  // from its checkpoint
-  if (!goes_on) output->finish();
-
-  // 6. Results
-  const Summary summary = summarise(scene, start.choice, model, start.mesh, result, output->first(),
-                                    output->last(), MPI_Wtime() - start.time);
-  folder->finish(summary.json);
-  say(summary.text);
-  say("results: " + scene.output.dir +
-      "/ (summary.json, history.csv, floe.log; fields.xmf for ParaView)\n");
-  const std::string how = goes_on ? "; go on with: " + start.go_on : "";
-  if (!result.done) say_error("floe: " + result.message + how + "\n");
-  if (result.unstable_modes > 0)
-    say_error("floe: warning: the equilibrium is unstable (" +
-              std::to_string(result.unstable_modes) +
-              " negative eigenvalues of its tangent): the least disturbance would end it\n");
-  warn_unused_options();
-  return result.done ? done : result.stopped ? stopped : failed;
 }
 
 /// The user's request.
@@ -227,71 +62,55 @@ bool is_done(const floe::Scene& scene, const floe::Restart& restart) {
   return true;
 }
 
-/// Makes a run. \param folder  set to the output folder, for the caller that ends the run; stays
-/// empty if the scene is only checked
-int run(const Wish& user, std::optional<floe::RunFolder>& folder) {
-  using namespace floe;
-  Start start{MPI_Wtime(), folder, {}, {}, {}, {}};
+/// Prints how a run ended. \return the exit code
+int report(const floe::Results& results, const floe::Scene& scene, const std::string& go_on) {
+  const floe::RunResult& run = results.run;
+  say(results.text);
+  say("results: " + scene.output.dir +
+      "/ (summary.json, history.csv, floe.log; fields.xmf for ParaView)\n");
+  const bool goes_on = run.stopped && scene.integrator != floe::Integrator::quasistatic;
+  const std::string how = goes_on ? "; go on with: " + go_on : "";
+  if (!run.done) say_error("floe: " + run.message + how + "\n");
+  if (run.unstable_modes > 0)
+    say_error("floe: warning: the equilibrium is unstable (" + std::to_string(run.unstable_modes) +
+              " negative eigenvalues of its tangent): the least disturbance would end it\n");
+  floe::warn_unused_options();
+  return run.done ? done : run.stopped ? stopped : failed;
+}
 
-  // 1. The scene, and the lock of its output folder
+/// Makes a run. \param simulation  set, for the caller that says how an error ended the run
+int run(const Wish& user, std::optional<floe::Simulation>& simulation) {
+  using namespace floe;
+  const double began = MPI_Wtime();
+
+  // 1. The scene
   Scene scene = read_scene(user.restart.scene, user.options);
   if (is_done(scene, user.restart)) return done;
   check_reports(scene);
   for (const std::string& remark : user.restart.remarks) scene.remarks.push_back(remark);
-  start.go_on = program::command_to_go_on(user.words, checkpoint_file(scene), size());
-  const FolderWish wish{scene.output.dir, scene.path, scene.inputs, scene.output.overwrite,
-                        !scene.checkpoint.restart.empty()};
-  if (!scene.check_only) {
-    folder.emplace(wish, PETSC_COMM_WORLD);
-    set_last_words([&folder](const std::string& why) {
-      if (folder && (folder->has_begun() || run_place().code == failed)) {
-        folder->fail(why);
-      } else {
-        folder.reset();  // removes all that was made
-      }
-    });
-  }
 
-  // 2. Sheet -> lattice, and the choice of the model
-  run_place().stage = "while the lattice was made";
-  start.lattice = make_lattice(scene, PETSC_COMM_WORLD, start.mesh);
-  stop_if_asked(PETSC_COMM_WORLD);
-  set_initial(scene, start.lattice);
-  if (start.mesh.strength) strengthen(scene, *start.mesh.strength);
-  start.choice = choose_model(scene, start.lattice);
-  for (const std::string& remark : scene.remarks) say(remark + "\n");
-  const std::string& why = start.choice.needs_space;
-  say("model: " + start.choice.text + (why.empty() ? "" : " (" + why + ")") + "\n");
-  const std::string processors = built_for(PETSC_COMM_WORLD);
-  const bool mixed = processors != built_for();
-  say("library: built for " + processors +
-      (mixed ? "; results differ by rounding from those of one level\n" : "\n"));
+  // 2. The lattice and the model
+  simulation.emplace(std::move(scene), SimulationSettings{.talks = true, .began = began});
 
-  if (start.mesh.strength) say("strength: " + text_of(*start.mesh.strength) + "\n");
+  // 3. The run
+  const Results& results = simulation->run();
+  if (simulation->scene().check_only) return done;
 
-  const int code = start.choice.planar ? run<Planar>(scene, start) : run<Spatial>(scene, start);
-  if (scene.check_only) {
-    const std::string problem = RunFolder::problem(wish, PETSC_COMM_WORLD);
-    if (!problem.empty()) say("but a run would be refused now: " + problem + "\n");
-  }
-  return code;
+  // 4. The results
+  const std::string go_on =
+      program::command_to_go_on(user.words, checkpoint_file(simulation->scene()), size());
+  return report(results, simulation->scene(), go_on);
 }
 
-/// Makes the run. If an error ends it, prints one line and writes the summary of the failure.
+/// Makes the run. If an error ends it, prints one line; its folder says so already.
 int run_to_an_end(const Wish& user) {
-  std::optional<floe::RunFolder> folder;
+  std::optional<floe::Simulation> simulation;
   const auto end = [&](const floe::Verdict& why, int code) {
-    if (folder && floe::rank() == 0 && (folder->has_begun() || code == failed))
-      folder->fail(why.what());
     say_error(std::string("floe: ") + why.what() + "\n");
-    folder.reset();
-    floe::set_last_words({});
     return code;
   };
   try {
-    const int code = run(user, folder);
-    floe::set_last_words({});
-    return code;
+    return run(user, simulation);
   } catch (const floe::InputError& error) {
     return end(error, bad_input);
   } catch (const floe::Stopped& error) {
@@ -306,9 +125,7 @@ int run_command(int argc, char** argv, const floe::program::Words& words,
                 floe::StopSignals& signals) {
   try {
     const floe::CommandLine line = floe::read_command_line(argc, argv);
-    floe::UserOptions options{floe::read_environment(line.petscrc), {}, line.options};
-    if (!line.scene.empty())
-      options.scene = floe::read_scene_text(line.scene, MPI_COMM_WORLD, floe::program::near_scene);
+    floe::UserOptions options = floe::options_of(line, floe::program::near_scene);
     const floe::Restart restart = floe::find_restart(line.scene, options);
     floe::Session session(argv[0], options);
     signals.arm();

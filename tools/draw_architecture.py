@@ -37,7 +37,8 @@ ROLES = {
     "explicit": ("leapfrog, Runge-Kutta,", "stable step"),
     "implicit": ("generalised-alpha", "method"),
     "output": ("history, frames,", "output folder"),
-    "scene": ("table of keys; from a scene to a model,", "and from a run to summary.json"),
+    "scene": ("table of keys,", "restart"),
+    "simulation": ("from a scene to a model,", "and from a run to summary.json"),
 }
 # Names of libraries in CMakeLists.txt and on the picture.
 LIBRARIES = {"PkgConfig::HDF5": "HDF5", "PkgConfig::YAML": "libyaml", "Eigen3::Eigen": "Eigen",

@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "base/environment.h"
 #include "base/scene_text.h"
 #include "floe/base/petsc.h"
 #include "option_names.h"
@@ -100,6 +101,13 @@ CommandLine read_command_line(int argc, const char* const* argv) {
     if (has_value) ++k;
   }
   return line;
+}
+
+UserOptions options_of(const CommandLine& line,
+                       const std::function<std::string(const std::string&)>& near_to) {
+  UserOptions options{read_environment(line.petscrc), {}, line.options};
+  if (!line.scene.empty()) options.scene = read_scene_text(line.scene, MPI_COMM_WORLD, near_to);
+  return options;
 }
 
 }  // namespace floe

@@ -7,7 +7,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "floe/base/on_root.h"
 #include "option_names.h"
 #include "option_values.h"
 

@@ -15,12 +15,28 @@ class LeapfrogRun final : public ExplicitRun<Space> {
   using Base = ExplicitRun<Space>;
 
  public:
-  LeapfrogRun(Model<Space>& model, const ExplicitOptions& options, const Observer<Space>& observer)
-      : Base(ts_leapfrog, model, options, observer), step_(model, this->state(), this->wrenches()) {
+  LeapfrogRun(Model<Space>& model, const ExplicitOptions& options, Observer<Space> observer)
+      : Base(ts_leapfrog, model, options, std::move(observer)),
+        step_(model, this->state(), this->wrenches()) {
     this->result().stepper = ts_leapfrog;
     step_.start();
+    register_leapfrog();
+    const Part& part = model.part();
+    check(VecCreateMPIWithArray(part.comm, Space::record, part.owned * Space::record,
+                                PETSC_DETERMINE, this->state().records.data(), solution_.put()));
+    check(TSCreate(part.comm, this->ts_.put()));
+    check(TSSetType(this->ts_, ts_leapfrog));
+    check(TSSetSolution(this->ts_, solution_));
+    this->read_options();
   }
 
+  bool prepare() override {
+    if (!this->restart()) begin();
+    set_leapfrog_step(this->ts_, &make_step_);
+    return this->announce();
+  }
+
+ private:
   void begin() {
     this->choose_step();
     step_.stagger(this->dt());
@@ -29,17 +45,16 @@ class LeapfrogRun final : public ExplicitRun<Space> {
 
   /// Makes a step. The forces at t_n are known; a sample that is due gets them before the bodies
   /// move to t_n+1.
-  bool step(TS ts) {
+  bool step() {
     if (this->done() > 0) step_.evaluate();
     if (!this->sample_if_due()) return false;
-    if (!this->keep_step_stable(ts)) return false;
+    if (!this->keep_step_stable()) return false;
     const double speed2 = step_.advance(this->dt());
     step_.commit(this->dt());
     step_.release();
     return this->moved(this->next_time(), speed2) && this->look_around();
   }
 
- private:
   StableStep find_stable_step() override {
     StableStep stable = stable_step(this->model(), this->state());
     // Forces keep by-products of their last evaluation (their power), which the search has changed.
@@ -47,7 +62,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     return stable;
   }
   /// Keeps velocities half of the next step behind.
-  void step_changed(TS, double before) override { step_.stagger(this->dt() - before); }
+  void step_changed(double before) override { step_.stagger(this->dt() - before); }
   typename Base::Energies energies() const override {
     const auto [kinetic, boundary] = step_.energies(this->dt());
     return {kinetic, boundary};
@@ -60,28 +75,9 @@ class LeapfrogRun final : public ExplicitRun<Space> {
   }
 
   ExplicitStep<Space> step_;
+  Handle<Vec> solution_;
+  LeapfrogStep make_step_ = [this](double) { return this->guarded([this] { return step(); }); };
 };
-
-template <class Space>
-RunResult run_leapfrog(Model<Space>& model, const ExplicitOptions& options,
-                       const Observer<Space>& observer) {
-  register_leapfrog();
-  LeapfrogRun<Space> run(model, options, observer);
-  const Part& part = model.part();
-  Handle<Vec> solution;
-  check(VecCreateMPIWithArray(part.comm, Space::record, part.owned * Space::record, PETSC_DETERMINE,
-                              run.state().records.data(), solution.put()));
-  Handle<TS> ts;
-  check(TSCreate(part.comm, ts.put()));
-  check(TSSetType(ts, ts_leapfrog));
-  check(TSSetSolution(ts, solution));
-  run.read_options(ts);
-  if (!run.restart()) run.begin();
-  if (!run.announce()) return {};
-  LeapfrogStep step = [&](double) { return run.guarded([&] { return run.step(ts); }); };
-  set_leapfrog_step(ts, &step);
-  return run.solve(ts);
-}
 
 }  // namespace
 
@@ -90,17 +86,20 @@ std::string explicit_needs_space() {
 }
 
 template <class Space>
-RunResult run_explicit(Model<Space>& model, const ExplicitOptions& options,
-                       const ObserverOf<Space>& observer) {
-  if (explicit_type() != TSRK) return run_leapfrog(model, options, observer);
+std::unique_ptr<Run> make_explicit_run(Model<Space>& model, const ExplicitOptions& options,
+                                       ObserverOf<Space> observer) {
+  if (explicit_type() != TSRK)
+    return std::make_unique<LeapfrogRun<Space>>(model, options, std::move(observer));
   if constexpr (std::is_same_v<Space, Spatial>) {
-    return run_rk(model, options, observer);
+    return make_rk_run(model, options, std::move(observer));
   } else {
     throw InputError("model: planar: " + explicit_needs_space());
   }
 }
 
-template RunResult run_explicit(Model<Spatial>&, const ExplicitOptions&, const Observer<Spatial>&);
-template RunResult run_explicit(Model<Planar>&, const ExplicitOptions&, const Observer<Planar>&);
+template std::unique_ptr<Run> make_explicit_run(Model<Spatial>&, const ExplicitOptions&,
+                                                Observer<Spatial>);
+template std::unique_ptr<Run> make_explicit_run(Model<Planar>&, const ExplicitOptions&,
+                                                Observer<Planar>);
 
 }  // namespace floe

@@ -18,8 +18,9 @@ constexpr double moving = 0.25;
 
 template <class Space>
 ExplicitRun<Space>::ExplicitRun(std::string_view type, Model<Space>& model,
-                                const ExplicitOptions& options, const Observer<Space>& observer)
-    : DynamicRun<Space>("explicit", type, model, options, observer), explicit_options_(options) {
+                                const ExplicitOptions& options, Observer<Space> observer)
+    : DynamicRun<Space>("explicit", type, model, options, std::move(observer)),
+      explicit_options_(options) {
   this->show_every(50);
 }
 
@@ -117,7 +118,7 @@ bool ExplicitRun<Space>::look_is_due() {
 }
 
 template <class Space>
-bool ExplicitRun<Space>::keep_step_stable(TS ts) {
+bool ExplicitRun<Space>::keep_step_stable() {
   if (!look_is_due()) return true;
   const StableStep stable = look();
   if (stable.dt < this->result().stable_dt) {
@@ -140,8 +141,8 @@ bool ExplicitRun<Space>::keep_step_stable(TS ts) {
     return false;
   }
   const double before = this->dt();
-  this->replan(ts, explicit_options_.safety * stable.dt);
-  step_changed(ts, before);
+  this->replan(explicit_options_.safety * stable.dt);
+  step_changed(before);
   return true;
 }
 

@@ -20,14 +20,14 @@ template <class Space>
 class ExplicitRun : public DynamicRun<Space> {
  public:
   ExplicitRun(std::string_view type, Model<Space>& model, const ExplicitOptions& options,
-              const Observer<Space>& observer);
+              Observer<Space> observer);
 
  protected:
   /// Searches the stable step at the state; the state's wrenches must be known afterwards as
   /// before.
   virtual StableStep find_stable_step() = 0;
   /// Called when the next step differs from `before` [s]; the state's wrenches are known.
-  virtual void step_changed(TS ts, double before) = 0;
+  virtual void step_changed(double before) = 0;
   void persist_own(Archive& archive) override;
   void add_to(RunPlan& plan) const override;
   virtual int evaluations_a_step() const { return 1; }
@@ -37,7 +37,7 @@ class ExplicitRun : public DynamicRun<Space> {
   ///   neither a given nor a stable step exists
   void choose_step();
   /// Searches the stable step between two steps if that is due. False: the run ends here.
-  bool keep_step_stable(TS ts);
+  bool keep_step_stable();
 
   const ExplicitOptions& explicit_options() const { return explicit_options_; }
 
@@ -49,7 +49,7 @@ class ExplicitRun : public DynamicRun<Space> {
   double own_stiffness();
   double needed() const;
 
-  const ExplicitOptions& explicit_options_;
+  const ExplicitOptions explicit_options_;
   // Results of the last search:
   std::int64_t last_look_ = 0, evaluations_ = 0;
   double last_stable_ = 0, last_rate_ = 0, last_own_ = 0, seconds_an_evaluation_ = 0;
@@ -58,7 +58,7 @@ class ExplicitRun : public DynamicRun<Space> {
 /// Integrates Newton's equations by PETSc's explicit Runge-Kutta methods (all -ts_rk_type) on
 /// bodies' records as vectors, with a fixed step or PETSc's -ts_adapt_type basic (model.md,
 /// "Explicit dynamics"). Collective. \throws InputError
-RunResult run_rk(Model<Spatial>& model, const ExplicitOptions& options,
-                 const Observer<Spatial>& observer);
+std::unique_ptr<Run> make_rk_run(Model<Spatial>& model, const ExplicitOptions& options,
+                                 Observer<Spatial> observer);
 
 }  // namespace floe

@@ -21,8 +21,8 @@ namespace {
 
 class RkRun final : public ExplicitRun<Spatial> {
  public:
-  RkRun(Model<Spatial>& model, const ExplicitOptions& options, const Observer<Spatial>& observer)
-      : ExplicitRun(TSRK, model, options, observer), equations_(model) {
+  RkRun(Model<Spatial>& model, const ExplicitOptions& options, Observer<Spatial> observer)
+      : ExplicitRun(TSRK, model, options, std::move(observer)), equations_(model) {
     check(VecCreateMPI(model.part().comm, static_cast<PetscInt>(equations_.size()), PETSC_DETERMINE,
                        solution_.put()));
     check(TSCreate(model.part().comm, ts_.put()));
@@ -34,25 +34,25 @@ class RkRun final : public ExplicitRun<Spatial> {
     TSAdapt adapt = nullptr;
     check(TSGetAdapt(ts_, &adapt));
     check(TSAdaptSetType(adapt, TSADAPTNONE));
-    read_options(ts_);
+    read_options();
     read_types();
   }
 
-  RunResult run() {
+  bool prepare() override {
     if (restart()) {
       equations_.go_on(state());
     } else {
       boundary_work_ = equations_.begin(state());
       choose_step();
     }
-    if (!announce()) return {};
+    if (!announce()) return false;
     if (is_adaptive()) {
       set_tolerances();
       limit_steps();
     }
     equations_.from_records(state(), *Numbers(solution_));
     check(TSRestartStep(ts_));  // or a method that reuses its last stage would do so at step n > 0
-    return solve(ts_);
+    return true;
   }
 
  private:
@@ -78,7 +78,7 @@ class RkRun final : public ExplicitRun<Spatial> {
   }
   StableStep find_stable_step() override;
   std::vector<PetscObject> objects() const override { return {object_of(solution_.get())}; }
-  void step_changed(TS, double) override {
+  void step_changed(double) override {
     if (is_adaptive()) limit_steps();
   }
 
@@ -99,14 +99,12 @@ class RkRun final : public ExplicitRun<Spatial> {
   }
   static PetscErrorCode post_step(TS ts) noexcept {
     RkRun& run = of(ts);
-    if (!run.guarded([&] { return run.stepped(); }))
-      check(TSSetConvergedReason(ts, TS_DIVERGED_STEP_REJECTED));
+    run.after_step([&] { return run.stepped(); });
     return 0;
   }
 
   FirstOrderSystem equations_;
   Handle<Vec> solution_;
-  Handle<TS> ts_;
   double boundary_work_ = 0;  ///< less the part that follows from the state [J]
 };
 
@@ -239,21 +237,21 @@ bool RkRun::stepped() {
   }
   if (!moved(now, equations_.largest_speed2(state()))) return false;
   // The run samples the last state itself.
-  if (!is_last(reason) && !(evaluate_and_sample_if_due() && keep_step_stable(ts_))) return false;
+  if (!is_last(reason) && !(evaluate_and_sample_if_due() && keep_step_stable())) return false;
   return look_around();
 }
 
 }  // namespace
 
-RunResult run_rk(Model<Spatial>& model, const ExplicitOptions& options,
-                 const Observer<Spatial>& observer) {
+std::unique_ptr<Run> make_rk_run(Model<Spatial>& model, const ExplicitOptions& options,
+                                 Observer<Spatial> observer) {
   for (const auto& force : model.forces()) {
     if (const auto* role = force->roles().commits; role != nullptr && role->has_history())
       throw InputError("ts_type: 'rk' cannot step force '" + std::string(force->name()) +
                        "': it remembers what happened, and stages of a step have not happened "
                        "(integrator: explicit steps it with leapfrog)");
   }
-  return RkRun(model, options, observer).run();
+  return std::make_unique<RkRun>(model, options, std::move(observer));
 }
 
 }  // namespace floe

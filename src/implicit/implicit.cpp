@@ -28,11 +28,11 @@ class ImplicitRun final : public DynamicRun<Space> {
   using Base = DynamicRun<Space>;
   using Equations = SecondOrderSystem<Space>;
   using Base::done, Base::dt, Base::give_up, Base::model, Base::options, Base::result, Base::set_dt,
-      Base::state, Base::wrenches;
+      Base::state, Base::ts_, Base::wrenches;
 
  public:
-  ImplicitRun(Model<Space>& the_model, const DynamicOptions& given, const Observer<Space>& observer)
-      : Base("implicit", ts_liealpha, the_model, given, observer),
+  ImplicitRun(Model<Space>& the_model, const DynamicOptions& given, Observer<Space> observer)
+      : Base("implicit", ts_liealpha, the_model, given, std::move(observer)),
         equations_(the_model, this->state()),
         plan_(Base::options(), the_model.ramp_ends()) {
     for (Handle<Vec>* v : {&x_, &v_, &x_before_, &v_before_, &expected_})
@@ -44,18 +44,18 @@ class ImplicitRun final : public DynamicRun<Space> {
       problem_.prescribe = [this](double t, const LieAlphaStage& s) { equations_.prescribe(t, s); };
     set_up_ts();
     set_up_newton();
-    this->read_options(ts_);
+    this->read_options();
     read_types();
   }
 
-  RunResult run() {
+  bool prepare() override {
     check(TSSetUp(ts_));
     const double first = plan_.begin(fixed_, options().dt);
     if (fixed_) this->require_few_steps(options().end / first, first);
     if (!this->restart()) this->plan(first);
-    if (!this->announce()) return {};
+    if (!this->announce()) return false;
     land();
-    return this->solve(ts_);
+    return true;
   }
 
  private:
@@ -118,8 +118,7 @@ class ImplicitRun final : public DynamicRun<Space> {
                                   SNESConvergedReason* reason, void* self) noexcept;
   static PetscErrorCode post_step(TS ts) noexcept {
     ImplicitRun& run = of(ts);
-    if (!run.guarded([&] { return run.stepped(); }))
-      check(TSSetConvergedReason(ts, TS_DIVERGED_STEP_REJECTED));
+    run.after_step([&] { return run.stepped(); });
     return 0;
   }
   static PetscErrorCode in_domain(TS ts, PetscReal, Vec, PetscBool* good) noexcept;
@@ -139,7 +138,6 @@ class ImplicitRun final : public DynamicRun<Space> {
   const double unknowns_ = static_cast<double>(this->model().part().global_bodies) * Equations::n;
   const FactorisationCost cost_ = factorisation_cost(unknowns_, size(this->model().part().comm));
   Handle<Vec> x_, v_, x_before_, v_before_, expected_;
-  Handle<TS> ts_;
   bool adaptive_ =
       true;             // whether this class decides on factorisations (not if the user set a lag)
   bool fixed_ = false;  // whether the step is fixed
@@ -425,8 +423,8 @@ void ImplicitRun<Space>::persist_own(Archive& archive) {
 
 }  // namespace
 
-RunResult run_implicit(Model<Spatial>& model, const DynamicOptions& options,
-                       const Observer<Spatial>& observer) {
+std::unique_ptr<Run> make_implicit_run(Model<Spatial>& model, const DynamicOptions& options,
+                                       Observer<Spatial> observer) {
   for (const auto& force : model.forces()) {
     if (const auto* role = force->roles().commits; role != nullptr && role->has_history())
       throw InputError("integrator: implicit cannot step force '" + std::string(force->name()) +
@@ -434,7 +432,7 @@ RunResult run_implicit(Model<Spatial>& model, const DynamicOptions& options,
                        "(integrator: explicit steps it)");
   }
   check_implicit_options();
-  return ImplicitRun<Spatial>(model, options, observer).run();
+  return std::make_unique<ImplicitRun<Spatial>>(model, options, std::move(observer));
 }
 
 }  // namespace floe

@@ -203,19 +203,26 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
   return s;
 }
 
+std::vector<std::pair<std::string, double>> columns_of(const Sample& sample) {
+  constexpr std::array axes{"_x", "_y", "_z"};
+  std::vector<std::pair<std::string, double>> columns;
+  const auto add = [&](const std::string& name, const Point3& p) {
+    for (std::size_t k = 0; k < axes.size(); ++k) columns.emplace_back(name + axes[k], p[k]);
+  };
+  for (const auto& [name, b] : sample.boundaries) {
+    add(name + "_force", b.force);
+    add(name + "_moment", b.moment);
+    add(name + "_displacement", b.displacement);
+  }
+  for (const auto& [name, u] : sample.loads) add(name + "_load_displacement", u);
+  columns.insert(columns.end(), sample.forces.begin(), sample.forces.end());
+  return columns;
+}
+
 /// The first line of history.csv: names of a sample's columns.
 std::string header_of(const Sample& s) {
-  constexpr const char* axes[] = {"x", "y", "z"};
   std::string line = "time";
-  for (const auto& [name, b] : s.boundaries) {
-    for (const char* what : {"force", "moment", "displacement"}) {
-      for (const char* axis : axes) line += "," + name + "_" + what + "_" + axis;
-    }
-  }
-  for (const auto& [name, u] : s.loads) {
-    for (const char* axis : axes) line += "," + name + "_load_displacement_" + axis;
-  }
-  for (const auto& [name, value] : s.forces) line += "," + name;
+  for (const auto& [name, value] : columns_of(s)) line += "," + name;
   return line + "\n";
 }
 
@@ -252,20 +259,13 @@ void Output<Space>::Impl::write_row(const Sample& s) {
 template <class Space>
 void Output<Space>::Impl::put_row(const Sample& s) {
   if (history->header().empty()) history->write_header(header_of(s));
-  char text[32];
-  std::string line;
-  const auto put = [&](double value) {
-    std::snprintf(text, sizeof text, ",%.12g", value);
-    line += text;
-  };
-  std::snprintf(text, sizeof text, "%.12g", s.time);
-  line += text;
-  for (const auto& [name, b] : s.boundaries) {
-    for (const Point3* p : {&b.force, &b.moment, &b.displacement})
-      std::for_each(p->begin(), p->end(), put);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.12g", s.time);
+  std::string line = text.data();
+  for (const auto& [name, value] : columns_of(s)) {
+    std::snprintf(text.data(), text.size(), ",%.12g", value);
+    line += text.data();
   }
-  for (const auto& [name, u] : s.loads) std::for_each(u.begin(), u.end(), put);
-  for (const auto& [name, value] : s.forces) put(value);
   history->write(line + "\n");
 }
 

@@ -40,6 +40,9 @@ struct Sample {
   std::vector<std::pair<std::string, double>> forces;
 };
 
+/// Names and values of a sample's columns after the time, in the order of history.csv.
+std::vector<std::pair<std::string, double>> columns_of(const Sample& sample);
+
 /// Returns a sample with the columns of a run's rows and values of 0.
 /// \param names  columns of forces and integrator
 /// \param breakable  whether beams may break

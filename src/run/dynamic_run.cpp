@@ -14,10 +14,10 @@ namespace floe {
 
 template <class Space>
 DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Model<Space>& model,
-                              const DynamicOptions& options, const Observer<Space>& observer)
+                              const DynamicOptions& options, Observer<Space> observer)
     : model_(model),
       options_(options),
-      observer_(observer),
+      observer_(std::move(observer)),
       state_(static_cast<std::size_t>(model.part().local)),
       wrenches_(static_cast<std::size_t>(model.part().local)),
       checkpoints_(options_.checkpoint, model.part()),
@@ -37,19 +37,19 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
 }
 
 template <class Space>
-void DynamicRun<Space>::read_options(TS ts) {
-  check(TSSetTimeStep(ts, options_.dt > 0 ? options_.dt : -1.0));
-  check(TSSetMaxTime(ts, options_.end));
-  check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
+void DynamicRun<Space>::read_options() {
+  check(TSSetTimeStep(ts_, options_.dt > 0 ? options_.dt : -1.0));
+  check(TSSetMaxTime(ts_, options_.end));
+  check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));
   if (const auto given = given_max_steps()) most_steps_ = *given;
   {
     const HiddenMaxSteps hidden;
-    check(TSSetFromOptions(ts));
+    check(TSSetFromOptions(ts_));
   }
   const double of_scene = options_.dt;
-  check(TSGetTimeStep(ts, &options_.dt));
+  check(TSGetTimeStep(ts_, &options_.dt));
   if (options_.dt > 0 && options_.dt != of_scene) dt_key_ = "ts_dt";
-  check(TSGetMaxTime(ts, &options_.end));
+  check(TSGetMaxTime(ts_, &options_.end));
   given_ = options_.dt > 0;
 }
 
@@ -95,7 +95,7 @@ bool DynamicRun<Space>::announce() const {
 }
 
 template <class Space>
-void DynamicRun<Space>::replan(TS ts, double wanted) {
+void DynamicRun<Space>::replan(double wanted) {
   if (adaptive_) {
     dt_ = std::min(dt_, wanted);
   } else {
@@ -105,10 +105,10 @@ void DynamicRun<Space>::replan(TS ts, double wanted) {
     steps_ = static_cast<std::int64_t>(std::ceil(left / wanted * (1 - 1e-12)));
     dt_ = left / static_cast<double>(steps_);
     steps_ += done_;
-    limit_steps(ts);
+    limit_steps();
   }
   result_.dt = dt_;
-  check(TSSetTimeStep(ts, dt_));
+  check(TSSetTimeStep(ts_, dt_));
 }
 
 /// Saves or loads the whole history of the run. Collective.
@@ -174,65 +174,101 @@ bool DynamicRun<Space>::restart() {
 }
 
 template <class Space>
-RunResult DynamicRun<Space>::solve(TS ts) {
-  check(TSSetTime(ts, state_.time));
-  check(TSSetTimeStep(ts, dt_));
-  if (adaptive_) {
-    check(TSSetMaxTime(ts, options_.end));
-    check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_MATCHSTEP));
-  } else {
-    check(TSSetMaxTime(ts, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
-  }
-  check(TSSetErrorIfStepFails(ts, PETSC_FALSE));
-  progress_.emplace(what_, options_.end);
+bool DynamicRun<Space>::advance(double until) {
+  if (stand_ == Stand::ended) return false;
+  pause_ = until;
   {
     const Timed timed(Event::solve);
-    result_.done = first() && step(ts) && finish();
+    if (stand_ == Stand::prepared) begin_steps();
+    const Return back = stand_ == Stand::running ? make_steps() : Return::failure;
+    count_steps();
+    if (back == Return::pause) return true;
+    result_.done = back == Return::end && finish();
   }
-  if (result_.done && options_.checkpoint.at_end) save();
-  take_remarks();
-  result_.steps = done_;
-  result_.steps_now = done_ - before_;
-  result_.message = why_;
-  if (result_.stopped)
-    result_.message = stopped_by_ + " at time " + text(state_.time) + " s, " + step_text();
-  return result_;
+  end();
+  return false;
 }
 
-/// Makes all steps. False if the run did not reach its end.
+/// Prepares the TS, and does the integrator's work before the first step.
 template <class Space>
-bool DynamicRun<Space>::step(TS ts) {
-  for (;;) {
-    begin_piece(ts);
-    const int ierr = TSSolve(ts, nullptr);
+void DynamicRun<Space>::begin_steps() {
+  check(TSSetTime(ts_, state_.time));
+  check(TSSetTimeStep(ts_, dt_));
+  if (adaptive_) {
+    check(TSSetMaxTime(ts_, options_.end));
+    check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_MATCHSTEP));
+  } else {
+    check(TSSetMaxTime(ts_, std::numeric_limits<PetscReal>::max()));  // the number of steps decides
+  }
+  check(TSSetErrorIfStepFails(ts_, PETSC_FALSE));
+  progress_.emplace(what_, options_.end);
+  if (first()) stand_ = Stand::running;
+}
+
+/// Makes steps up to the pause or the end of the run.
+template <class Space>
+typename DynamicRun<Space>::Return DynamicRun<Space>::make_steps() {
+  while (!is_paused()) {
+    begin_piece();
+    const int ierr = TSSolve(ts_, nullptr);
     if (error_) std::rethrow_exception(error_);
     if (ierr == PETSC_ERR_FP) {  // from the error estimate of an adaptive step
       why_ = "a number that is not finite after time " + text(time_) + " s";
-      return false;
+      return Return::failure;
     }
     check(ierr);
     TSConvergedReason reason = TS_CONVERGED_ITERATING;
-    check(TSGetConvergedReason(ts, &reason));
-    if (reason < 0 || is_last(reason)) return reason > 0;
+    check(TSGetConvergedReason(ts_, &reason));
+    if (reason < 0) return Return::failure;
+    if (is_last(reason)) return Return::end;
   }
+  return Return::pause;
+}
+
+template <class Space>
+void DynamicRun<Space>::count_steps() {
+  result_.steps = done_;
+  result_.steps_now = done_ - before_;
+}
+
+/// Takes down how the run ended.
+template <class Space>
+void DynamicRun<Space>::end() {
+  stand_ = Stand::ended;
+  if (result_.done && options_.checkpoint.at_end) save();
+  take_remarks();
+  progress_.reset();
+  count_steps();
+  result_.message = why_;
+  if (result_.stopped)
+    result_.message = stopped_by_ + " at time " + text(state_.time) + " s, " + step_text();
 }
 
 /// In the first piece the TS counts steps as the run does. Later pieces begin with step 1, since at
 /// step 0 a TS starts anew and forgets the steps before.
 template <class Space>
-void DynamicRun<Space>::begin_piece(TS ts) {
+void DynamicRun<Space>::begin_piece() {
   const std::int64_t pieces = done_ / steps_of_a_piece;
   piece_ = pieces == 0 ? 0 : pieces * steps_of_a_piece - 1;
-  check(TSSetStepNumber(ts, static_cast<PetscInt>(done_ - piece_)));
-  limit_steps(ts);
+  check(TSSetStepNumber(ts_, static_cast<PetscInt>(done_ - piece_)));
+  limit_steps();
 }
 
-/// Lets the TS step to the end of the piece or of the run.
+/// Lets the TS step to the end of the piece or of the run, or to the pause.
 template <class Space>
-void DynamicRun<Space>::limit_steps(TS ts) {
+void DynamicRun<Space>::limit_steps() {
   const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
-  const std::int64_t last = std::max(std::min(last_step(), end), done_);
-  check(TSSetMaxSteps(ts, static_cast<PetscInt>(last - piece_)));
+  const std::int64_t last = std::max(std::min({last_step(), end, pause_step()}), done_);
+  check(TSSetMaxSteps(ts_, static_cast<PetscInt>(last - piece_)));
+}
+
+/// First step of equal steps that ends at or after the pause; rounding aside.
+template <class Space>
+std::int64_t DynamicRun<Space>::pause_step() const {
+  constexpr double countable = 1e18;  // fits 64 bits
+  const double steps = std::ceil((pause_ - time_base_) / dt_ - early);
+  if (adaptive_ || !(steps < countable)) return std::numeric_limits<std::int64_t>::max();
+  return step_base_ + static_cast<std::int64_t>(steps);
 }
 
 template <class Space>

@@ -20,6 +20,7 @@
 #include "floe/base/petsc.h"
 #include "run/integrator.h"
 #include "run/ledger.h"
+#include "run/run.h"
 
 namespace floe {
 
@@ -28,32 +29,31 @@ namespace floe {
 inline std::int64_t steps_of_a_piece = std::int64_t{1} << 30;  // NOLINT
 
 /// A run with equal steps that divide its time, or with adaptive steps. An integrator derives from
-/// this class and calls in each step
+/// this class, makes the TS and calls in each step
 ///   evaluate()        to compute the forces at t_n, unless they are known,
 ///   sample_if_due()   false: the run ends here,
 ///   moved()           when the state is that of t_n+1; false: the run ends here,
 ///   look_around()     false: the run ends here, on request.
 template <class Space>
-class DynamicRun {
+class DynamicRun : public Run {
  public:
   /// \param what  a word for the progress line
   /// \param type  type of PETSc's TS; checkpoints of other types are refused
-  /// \param model, observer  must outlive this object
+  /// \param model  must outlive this object
   DynamicRun(std::string_view what, std::string_view type, Model<Space>& model,
-             const DynamicOptions& options, const Observer<Space>& observer);
-  virtual ~DynamicRun() = default;
-  DynamicRun(const DynamicRun&) = delete;
-  DynamicRun& operator=(const DynamicRun&) = delete;
+             const DynamicOptions& options, Observer<Space> observer);
+
+  bool advance(double until) final;
+  double time() const final { return time_; }
+  const RunResult& outcome() const final { return result_; }
 
   State<Space>& state() { return state_; }
   double dt() const { return dt_; }
-  /// Time of the last accepted state [s]; state() may be that of a stage.
-  double time() const { return time_; }
   std::int64_t done() const { return done_; }
 
-  /// Gives a TS the run's times and reads the TS options; -ts_dt, -ts_max_time and -ts_max_steps
+  /// Gives the TS the run's times and reads the TS options; -ts_dt, -ts_max_time and -ts_max_steps
   /// (of 64 bits) override the scene.
-  void read_options(TS ts);
+  void read_options();
   /// Goes on from the checkpoint that the options name and takes over its step. False if they name
   /// none. Collective. \throws InputError if the checkpoint does not fit the run
   bool restart();
@@ -64,17 +64,13 @@ class DynamicRun {
   /// Passes the plan to options().on_plan. False if the run is not to be made.
   bool announce() const;
   /// Plans the rest of a run anew from the present time.
-  void replan(TS ts, double wanted);
+  void replan(double wanted);
   /// End time of the next step [s]; not for adaptive steps.
   double next_time() const {
     return time_base_ + static_cast<double>(done_ + 1 - step_base_) * dt_;
   }
-  /// Solves from the run's present state and step, with a TS whose steps call the run's functions
-  /// through guarded(). Returns how the run ended. Collective.
-  RunResult solve(TS ts);
-
   /// Does work inside a callback of PETSc, which no exception may cross. A verdict is kept and
-  /// thrown by solve(). False if there was one, or if the work returned false.
+  /// thrown by advance(). False if there was one, or if the work returned false.
   template <class Work>
   bool guarded(Work&& work) {
     try {
@@ -83,6 +79,19 @@ class DynamicRun {
       error_ = std::current_exception();
       return false;
     }
+  }
+  /// Does the work after a step inside the TS's post-step callback, and ends the solve if the run
+  /// ends or pauses here.
+  template <class Work>
+  void after_step(Work&& work) {
+    TSConvergedReason reason = TS_CONVERGED_ITERATING;
+    if (!guarded(std::forward<Work>(work))) {
+      check(TSSetConvergedReason(ts_, TS_DIVERGED_STEP_REJECTED));
+      return;
+    }
+    check(TSGetConvergedReason(ts_, &reason));
+    if (reason == TS_CONVERGED_ITERATING && adaptive_ && is_paused())
+      check(TSSetConvergedReason(ts_, TS_CONVERGED_USER));
   }
 
  protected:
@@ -158,16 +167,30 @@ class DynamicRun {
   /// Shows progress; writes a checkpoint or stops if that is due. False: the run ends here.
   bool look_around();
 
+  Handle<TS> ts_;
+
  private:
+  /// Where advance() has left the run.
+  enum class Stand { prepared, running, ended };
+  /// Why a TS has come back.
+  enum class Return { pause, end, failure };
+
   void save();
   std::vector<std::string> column_names() const;
   // Steps between checks of the velocity limit.
   static constexpr std::int64_t check_every = 100;
   static constexpr double early = 1e-6;  // a sample may be early by this part of a step
 
-  bool step(TS ts);
-  void begin_piece(TS ts);
-  void limit_steps(TS ts);
+  void begin_steps();
+  Return make_steps();
+  void begin_piece();
+  void limit_steps();
+  std::int64_t pause_step() const;
+  bool is_paused() const {
+    return adaptive_ ? time_ >= pause_ - early * dt_ : done_ >= pause_step();
+  }
+  void count_steps();
+  void end();
   /// Last step of the run, unless its end time comes first.
   std::int64_t last_step() const { return adaptive_ ? most_steps_ : std::min(steps_, most_steps_); }
   void set_sampling();
@@ -182,7 +205,7 @@ class DynamicRun {
 
   Model<Space>& model_;
   DynamicOptions options_;  // with the command line's -ts_* options
-  const Observer<Space>& observer_;
+  const Observer<Space> observer_;
   State<Space> state_;
   Wrenches<Space> wrenches_;
   Ledger ledger_;
@@ -203,6 +226,8 @@ class DynamicRun {
   std::int64_t show_every_ = 1;
   std::int64_t piece_ = 0;  // step of the run that is the TS's step 0
   std::string why_, stopped_by_;
+  Stand stand_ = Stand::prepared;
+  double pause_ = std::numeric_limits<double>::infinity();  // time of the next pause
 };
 
 }  // namespace floe

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <optional>
+#include <utility>
 
 #include "base/format.h"
 #include "floe/base/log.h"
@@ -38,118 +39,204 @@ void add_cost(const Model<Space>& model, const FactorisationCost& cost, RunPlan&
                       : "what sheets of this size take while no beam breaks, roughly";
 }
 
+/// A static run: load steps, which are halved where Newton fails or a beam would be overloaded.
+template <class Space>
+class QuasistaticRun final : public Run {
+ public:
+  QuasistaticRun(Model<Space>& model, TimeSpan span, Observer<Space> observer,
+                 const OutOfPlane* rest)
+      : model_(model),
+        span_(std::move(span)),
+        observer_(std::move(observer)),
+        rest_(rest),
+        given_(span_.dt > 0 ? std::min(span_.dt, span_.end) : span_.end),
+        dt_(given_) {}
+
+  bool prepare() override;
+  bool advance(double until) override;
+  double time() const override { return now_; }
+  const RunResult& outcome() const override { return result_; }
+
+ private:
+  enum class Stand { prepared, running, ended };
+
+  RunPlan plan() const;
+  void begin();
+  void load_step();
+  void accept();
+  bool is_balanced(double at);
+  void not_solved(double step, double next, bool divisible);
+  void stop(double at);
+  void end_with(std::string message);
+  void finish();
+  void announce(const std::string& what) {
+    progress_->announce(now_, what + ", factorising " + text(unknowns_) + " unknowns",
+                        cost_.seconds);
+  }
+  std::string next_step() const { return "step " + std::to_string(result_.steps + 1); }
+
+  Model<Space>& model_;
+  const TimeSpan span_;
+  const Observer<Space> observer_;
+  const OutOfPlane* rest_;
+  const double given_;   // load step of the user [s]
+  double now_ = 0, dt_;  // time of the last equilibrium, next load step [s]
+  const double unknowns_ = static_cast<double>(model_.part().global_bodies) * Space::unknowns;
+  const FactorisationCost cost_ = factorisation_cost(unknowns_, size(model_.part().comm));
+  std::optional<Equilibrium<Space>> equilibrium_;
+  std::optional<Progress> progress_;
+  RunResult result_;
+  Stand stand_ = Stand::prepared;
+};
+
+template <class Space>
+RunPlan QuasistaticRun<Space>::plan() const {
+  RunPlan plan;
+  plan.end = span_.end;
+  plan.dt = given_;
+  plan.given = span_.dt > 0;
+  plan.steps = std::ceil(span_.end / given_ * (1 - 1e-12));
+  add_cost(model_, cost_, plan);
+  return plan;
+}
+
+template <class Space>
+bool QuasistaticRun<Space>::prepare() {
+  const RunPlan planned = plan();
+  if (!(planned.steps <= span_.most_steps))
+    throw InputError("time: dt: " + text(given_) + " would take " + text(planned.steps) +
+                     " load steps to time: end " + text(span_.end) + ", at most " +
+                     text(span_.most_steps) + " are made (limit: steps)");
+  equilibrium_.emplace(model_);
+  return !span_.on_plan || span_.on_plan(planned);
+}
+
+template <class Space>
+bool QuasistaticRun<Space>::advance(double until) {
+  constexpr double rounding = 1e-12;  // a shorter remainder, in parts of a step, is no step
+  if (stand_ == Stand::prepared) begin();
+  while (stand_ == Stand::running && span_.end - now_ > rounding * given_) {
+    if (now_ >= until - rounding * given_) return true;
+    load_step();
+  }
+  if (stand_ == Stand::running) finish();
+  return false;
+}
+
+/// Finds the equilibrium at time 0.
+template <class Space>
+void QuasistaticRun<Space>::begin() {
+  stand_ = Stand::running;
+  progress_.emplace("load steps", span_.end);
+  equilibrium_->set_on_factorisation([this] { announce(next_step()); });
+  equilibrium_->set_on_iteration([this](std::int64_t it) {
+    progress_->update(now_, next_step() + ", iteration " + std::to_string(it));
+  });
+  if (!equilibrium_->solve(0.0)) {
+    if (equilibrium_->stopped()) return stop(0);
+    return end_with("no equilibrium at time 0: " + equilibrium_->why() +
+                    "; a ramp on loads and motions would let them come in steps");
+  }
+  if (is_balanced(0.0)) accept();
+}
+
+/// Finds the next equilibrium, or halves the load step.
+template <class Space>
+void QuasistaticRun<Space>::load_step() {
+  constexpr double rounding = 1e-12;
+  const double left = span_.end - now_;
+  // Steps are equal and the last one ends at the end: a remainder within rounding of a step is a
+  // step.
+  const double step = dt_ >= left * (1 - rounding) ? left : dt_;
+  const double next = step == left ? span_.end : now_ + step;
+  const bool divisible = 0.5 * step >= smallest_fraction * given_;
+  const double overload_limit =
+      divisible ? 1 + overload_tolerance : std::numeric_limits<double>::infinity();
+  if (!equilibrium_->solve(next, overload_limit)) return not_solved(step, next, divisible);
+  if (!is_balanced(next)) return;
+  now_ = next;
+  ++result_.steps;
+  result_.dt = step;
+  accept();
+  progress_->update(now_, "step " + std::to_string(result_.steps) + ", " +
+                              std::to_string(equilibrium_->newton_iterations()) + " iterations");
+  dt_ = std::min(given_, 2 * dt_);
+}
+
+/// Halves the load step if Newton's method failed and a shorter step may help; else ends the run.
+template <class Space>
+void QuasistaticRun<Space>::not_solved(double step, double next, bool divisible) {
+  if (equilibrium_->stopped()) return stop(now_);
+  dt_ = 0.5 * step;
+  if (equilibrium_->collapsed())
+    return end_with("dynamic failure at load factor " + text(next / span_.end) +
+                    ": continue with integrator: explicit (no equilibrium once beams break: " +
+                    equilibrium_->why() + ")");
+  if (!divisible)
+    end_with("no equilibrium beyond time " + text(now_) + " (load step cut to " + text(step) +
+             "): " + equilibrium_->why());
+}
+
+template <class Space>
+void QuasistaticRun<Space>::accept() {
+  result_.newton_iterations = equilibrium_->newton_iterations();
+  observer_({equilibrium_->state(), equilibrium_->wrenches(), result_.steps});
+}
+
+/// Whether the pins carry nothing; else the run ends here.
+template <class Space>
+bool QuasistaticRun<Space>::is_balanced(double at) {
+  const double reaction = equilibrium_->pin_reaction();
+  if (reaction <= pin_tolerance) return true;
+  const std::string begin = "no equilibrium at time " + text(at) + ": ";
+  if (equilibrium_->is_stopped_early(pin_tolerance)) {
+    end_with(begin + "Newton's method stopped where " + text(reaction) +
+             " of the forces were not in balance (" + equilibrium_->tolerances() + "); at most " +
+             text(pin_tolerance) +
+             " may be: take a smaller tolerance (the default: -snes_rtol 1e-10)");
+  } else {
+    end_with(begin + "a motion that nothing holds is loaded (by " + text(reaction) +
+             " of the forces), or has gone far; prescribe it with `fix`");
+  }
+  return false;
+}
+
+template <class Space>
+void QuasistaticRun<Space>::stop(double at) {
+  result_.stopped = true;
+  end_with("stopped on request at time " + text(at) + ", load step " +
+           std::to_string(result_.steps) + "; a static run keeps no checkpoint");
+}
+
+template <class Space>
+void QuasistaticRun<Space>::end_with(std::string message) {
+  stand_ = Stand::ended;
+  result_.message = std::move(message);
+  progress_.reset();
+}
+
+/// Decides whether the last equilibrium is stable.
+template <class Space>
+void QuasistaticRun<Space>::finish() {
+  stand_ = Stand::ended;
+  result_.done = true;
+  equilibrium_->set_on_factorisation([this] { announce("stability of the last state"); });
+  result_.unstable_modes = equilibrium_->unstable_modes(rest_);
+  result_.factorisations = equilibrium_->factorisations();
+  progress_.reset();
+}
+
 }  // namespace
 
 template <class Space>
-RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
-                          const ObserverOf<Space>& observer, const OutOfPlane* rest) {
-  RunResult result;
-  const double given = time.dt > 0 ? std::min(time.dt, time.end) : time.end;
-  RunPlan plan;
-  plan.end = time.end;
-  plan.dt = given;
-  plan.given = time.dt > 0;
-  plan.steps = std::ceil(time.end / given * (1 - 1e-12));
-  const double unknowns = static_cast<double>(model.part().global_bodies) * Space::unknowns;
-  const FactorisationCost cost = factorisation_cost(unknowns, size(model.part().comm));
-  add_cost(model, cost, plan);
-  if (!(plan.steps <= time.most_steps))
-    throw InputError("time: dt: " + text(given) + " would take " + text(plan.steps) +
-                     " load steps to time: end " + text(time.end) + ", at most " +
-                     text(time.most_steps) + " are made (limit: steps)");
-  Equilibrium<Space> equilibrium(model);
-  if (time.on_plan && !time.on_plan(plan)) return result;
-  const auto accept = [&](std::int64_t step) {
-    result.newton_iterations = equilibrium.newton_iterations();
-    observer({equilibrium.state(), equilibrium.wrenches(), step});
-  };
-
-  const auto balanced = [&](double at) {
-    const double reaction = equilibrium.pin_reaction();
-    if (reaction <= pin_tolerance) return true;
-    const std::string tolerances = equilibrium.tolerances();
-    result.message = "no equilibrium at time " + text(at) + ": ";
-    if (equilibrium.is_stopped_early(pin_tolerance)) {
-      result.message += "Newton's method stopped where " + text(reaction) +
-                        " of the forces were not in balance (" + tolerances + "); at most " +
-                        text(pin_tolerance) +
-                        " may be: take a smaller tolerance (the default: -snes_rtol 1e-10)";
-    } else {
-      result.message += "a motion that nothing holds is loaded (by " + text(reaction) +
-                        " of the forces), or has gone far; prescribe it with `fix`";
-    }
-    return false;
-  };
-
-  Progress progress("load steps", time.end);
-  double now = 0, dt = given;
-  const auto announce = [&](const std::string& what) {
-    progress.announce(now, what + ", factorising " + text(unknowns) + " unknowns", cost.seconds);
-  };
-  equilibrium.set_on_factorisation([&] { announce("step " + std::to_string(result.steps + 1)); });
-  equilibrium.set_on_iteration([&](std::int64_t it) {
-    progress.update(
-        now, "step " + std::to_string(result.steps + 1) + ", iteration " + std::to_string(it));
-  });
-  const auto stop = [&](double at) {
-    result.stopped = true;
-    result.message = "stopped on request at time " + text(at) + ", load step " +
-                     std::to_string(result.steps) + "; a static run keeps no checkpoint";
-    return result;
-  };
-  if (!equilibrium.solve(0.0)) {
-    if (equilibrium.stopped()) return stop(0);
-    result.message = "no equilibrium at time 0: " + equilibrium.why() +
-                     "; a ramp on loads and motions would let them come in steps";
-    return result;
-  }
-  if (!balanced(0.0)) return result;
-  accept(0);
-  constexpr double rounding = 1e-12;  // a shorter remainder, in parts of a step, is no step
-  while (time.end - now > rounding * given) {
-    const double left = time.end - now;
-    // Steps are equal and the last one ends at the end: a remainder within rounding of a step is a
-    // step.
-    const double step = dt >= left * (1 - rounding) ? left : dt;
-    const double next = step == left ? time.end : now + step;
-    const bool divisible = 0.5 * step >= smallest_fraction * given;
-    const double overload_limit =
-        divisible ? 1 + overload_tolerance : std::numeric_limits<double>::infinity();
-    if (!equilibrium.solve(next, overload_limit)) {
-      if (equilibrium.stopped()) return stop(now);
-      dt = 0.5 * step;
-      if (equilibrium.collapsed()) {
-        result.message = "dynamic failure at load factor " + text(next / time.end) +
-                         ": continue with integrator: explicit (no equilibrium once beams break: " +
-                         equilibrium.why() + ")";
-        return result;
-      }
-      if (!divisible) {
-        result.message = "no equilibrium beyond time " + text(now) + " (load step cut to " +
-                         text(step) + "): " + equilibrium.why();
-        return result;
-      }
-      continue;
-    }
-    if (!balanced(next)) return result;
-    now = next;
-    ++result.steps;
-    result.dt = step;
-    accept(result.steps);
-    progress.update(now, "step " + std::to_string(result.steps) + ", " +
-                             std::to_string(equilibrium.newton_iterations()) + " iterations");
-    dt = std::min(given, 2 * dt);
-  }
-  result.done = true;
-  equilibrium.set_on_factorisation([&] { announce("stability of the last state"); });
-  result.unstable_modes = equilibrium.unstable_modes(rest);
-  result.factorisations = equilibrium.factorisations();
-  return result;
+std::unique_ptr<Run> make_quasistatic_run(Model<Space>& model, TimeSpan span,
+                                          ObserverOf<Space> observer, const OutOfPlane* rest) {
+  return std::make_unique<QuasistaticRun<Space>>(model, std::move(span), std::move(observer), rest);
 }
 
-template RunResult run_quasistatic(Model<Spatial>&, const TimeSpan&, const Observer<Spatial>&,
-                                   const OutOfPlane*);
-template RunResult run_quasistatic(Model<Planar>&, const TimeSpan&, const Observer<Planar>&,
-                                   const OutOfPlane*);
+template std::unique_ptr<Run> make_quasistatic_run(Model<Spatial>&, TimeSpan, Observer<Spatial>,
+                                                   const OutOfPlane*);
+template std::unique_ptr<Run> make_quasistatic_run(Model<Planar>&, TimeSpan, Observer<Planar>,
+                                                   const OutOfPlane*);
 
 }  // namespace floe

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "run/integrator.h"
+#include "run/run.h"
 
 namespace floe {
 
@@ -24,13 +25,22 @@ struct OutOfPlane {
   std::vector<std::uint8_t> held;  ///< per local body, bits of x y z rx ry rz: prescribed or pinned
 };
 
-/// Finds equilibrium at pseudo-time 0 and after each load step up to the end: SNES Newton with the
-/// exact tangent; the step is halved when Newton fails (model.md, "Static solution"). All of
-/// PETSc's -snes_*, -ksp_*, -pc_*, -mat_* options apply; the default is Newton with preonly +
-/// Cholesky by MUMPS on blocked symmetric storage. Collective.
-/// \param rest  for a planar model: the part whose unstable modes count too; else null
+/// Makes a run that finds equilibrium at pseudo-time 0 and after each load step up to the end: SNES
+/// Newton with the exact tangent; the step is halved when Newton fails (model.md, "Static
+/// solution"). All of PETSc's -snes_*, -ksp_*, -pc_*, -mat_* options apply; the default is Newton
+/// with preonly + Cholesky by MUMPS on blocked symmetric storage. Collective. \param rest  for a
+/// planar model: the part whose unstable modes count too; else null
+///   must outlive the run, as the model
 template <class Space>
-RunResult run_quasistatic(Model<Space>& model, const TimeSpan& time,
-                          const ObserverOf<Space>& observer, const OutOfPlane* rest = nullptr);
+std::unique_ptr<Run> make_quasistatic_run(Model<Space>& model, TimeSpan span,
+                                          ObserverOf<Space> observer,
+                                          const OutOfPlane* rest = nullptr);
+
+/// Makes the whole run. Collective.
+template <class Space>
+RunResult run_quasistatic(Model<Space>& model, const TimeSpan& span, ObserverOf<Space> observer,
+                          const OutOfPlane* rest = nullptr) {
+  return run_to_end(*make_quasistatic_run(model, span, std::move(observer), rest));
+}
 
 }  // namespace floe

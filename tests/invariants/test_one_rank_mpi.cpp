@@ -15,7 +15,7 @@
 #include "explicit/explicit.h"
 #include "floe/base/petsc.h"
 #include "implicit/implicit.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"
 

@@ -2,6 +2,7 @@
 """What `cmake --install` leaves: a floe that needs neither the source tree nor its first place, and
 a library that other projects find. The build folder is that of $FLOE, built as a whole (its man
 page too)."""
+import json
 import os
 import re
 import shutil
@@ -33,6 +34,16 @@ get_target_property(built floe BINARY_DIR)
 message(STATUS "tests of floe: ${{FLOE_TESTS}}, rules to install: ${{FLOE_INSTALL}}, "
                "source: ${{CMAKE_SOURCE_DIR}}")
 """
+
+SHEET = "sheet: {length: 8, thickness: 1, element_size: 2, iterations: 5}\n"
+STEPPED = {
+    "tension": "forces: [beam]\n" + SHEET + "time: {end: 0.02, dt: 0.002}\n"
+               "boundary: {names: [a, b], a: {set: left, fix: x y z rx ry rz},\n"
+               "           b: {set: right, fix: x, displacement: [0.01, 0, 0], ramp: 0.02}}\n",
+    "explicit": "integrator: explicit\nforces: [beam, gravity, buoyancy]\n" + SHEET
+                + "time: {end: 0.02}\ninitial: {names: [i], i: {set: right, velocity: [0, 0, 1]}}\n",
+    "implicit": "integrator: implicit\nforces: [beam, gravity, buoyancy]\n" + SHEET
+                + "time: {end: 0.02, dt: 0.001}\n"}
 
 
 def run(*words, cwd, code=0):
@@ -113,6 +124,33 @@ class Installed(launch.FolderTest):
                         "a cut through 20 cells meets about two beams of each")
         error = run(build / "measure_lattice", "none.h5", cwd=self.folder, code=2)
         self.assertIn("none.h5", error)
+
+    def test_simulation(self):
+        """A program steps a scene, and its results are those of the program floe."""
+        examples, build = self.prefix / "share/doc/floe/examples", self.folder / "examples"
+        run(CMAKE, "-S", examples, "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            cwd=self.folder)
+        run(CMAKE, "--build", build, cwd=self.folder)
+        for name in ("tension", "explicit", "implicit"):
+            with self.subTest(scene=name):
+                scene = self.folder / f"{name}.yaml"
+                scene.write_text(STEPPED[name])
+                run(self.floe, scene.name, "-output_dir", "whole", cwd=self.folder)
+                said = run(build / "library", scene.name, "-output_dir", "stepped",
+                           cwd=self.folder).splitlines()
+                times = [float(line.split(" s:")[0]) for line in said if " samples, " in line]
+                for tenth, time in enumerate(times, 1):
+                    self.assertGreaterEqual(time, 0.1 * tenth * 0.02 * (1 - 1e-6))
+                self.assertGreaterEqual(len(times), 9)
+                whole, stepped = (self.folder / where / "history.csv"
+                                  for where in ("whole", "stepped"))
+                self.assertEqual(whole.read_bytes(), stepped.read_bytes())
+                summary = json.loads((self.folder / "stepped/summary.json").read_text())
+                self.assertEqual(summary["status"], "done")
+        error = run(build / "library", "tension.yaml", "-sheet_length", "x", cwd=self.folder,
+                    code=2)
+        self.assertEqual(error.count("\n"), 1, error)
+        self.assertIn("sheet: length", error)
 
     def test_headers(self):
         """They need nothing but floe::floe, on the oldest processor and without a warning."""

@@ -11,7 +11,7 @@
 
 #include "explicit/explicit.h"
 #include "explicit/step.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 #include "support/frames.h"
 
 namespace floe::test {

@@ -14,7 +14,7 @@ namespace floe::test {
 using Dense = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Six per body, without the padding.
-inline std::vector<double> wrenches_of(const Force<Spatial>& force, const State<Spatial>& state) {
+inline std::vector<double> wrenches_of(Force<Spatial>& force, const State<Spatial>& state) {
   Wrenches<Spatial> w(state.records.size() / Spatial::record);
   force.add(state, w);
   std::vector<double> values(state.records.size() / Spatial::record * Spatial::unknowns);
@@ -23,7 +23,7 @@ inline std::vector<double> wrenches_of(const Force<Spatial>& force, const State<
 }
 
 /// Sum of the energies that a force reports [J].
-inline double potential_of(const Force<Spatial>& force, const State<Spatial>& state) {
+inline double potential_of(Force<Spatial>& force, const State<Spatial>& state) {
   Columns columns;
   force.report(state, columns);
   double sum = 0;
@@ -48,7 +48,7 @@ inline Dense dense(Mat matrix) {
 }
 
 /// The force's tangent with rotations in rad (length scale 1) and nothing held, on one rank.
-inline Dense tangent_of(const Force<Spatial>& force, const Part& part, const State<Spatial>& state,
+inline Dense tangent_of(Force<Spatial>& force, const Part& part, const State<Spatial>& state,
                         const TangentOptions& options) {
   const std::vector<std::uint8_t> held(static_cast<std::size_t>(part.local), 0);
   Tangent<Spatial> tangent(part, held, 1.0, 0.0, options);
@@ -59,7 +59,7 @@ inline Dense tangent_of(const Force<Spatial>& force, const Part& part, const Sta
 }
 
 /// Minus the derivative of a force's wrenches by finite differences: K on spins q -> exp(t) q.
-inline Dense jacobian_of(const Force<Spatial>& force, const State<Spatial>& state, double step) {
+inline Dense jacobian_of(Force<Spatial>& force, const State<Spatial>& state, double step) {
   const auto n = static_cast<Eigen::Index>(state.records.size() / Spatial::record * 6);
   Dense k(n, n);
   for (Eigen::Index c = 0; c < n; ++c) {
@@ -75,7 +75,7 @@ inline Dense jacobian_of(const Force<Spatial>& force, const State<Spatial>& stat
 }
 
 /// Wrenches = -gradient of the reported potential.
-inline void expect_wrenches_from_potential(const Force<Spatial>& force, const State<Spatial>& state,
+inline void expect_wrenches_from_potential(Force<Spatial>& force, const State<Spatial>& state,
                                            double step, double tolerance) {
   const std::vector<double> w = wrenches_of(force, state);
   const double scale =
@@ -92,7 +92,7 @@ inline void expect_wrenches_from_potential(const Force<Spatial>& force, const St
 
 /// The exact form of the tangent is the Jacobian K; the symmetric one is K + skew(m)/2, m = minus
 /// the moment, in every storage.
-inline void expect_tangent_from_wrenches(const Force<Spatial>& force, const Part& part,
+inline void expect_tangent_from_wrenches(Force<Spatial>& force, const Part& part,
                                          const State<Spatial>& state, double step,
                                          double tolerance) {
   const Dense k = jacobian_of(force, state, step);

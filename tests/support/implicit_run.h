@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "implicit/implicit.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 #include "support/static_solution.h"
 
 namespace floe::test {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/build.h"
+#include "simulation/build.h"
 
 namespace floe::test {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "run/checkpoint.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 #include "support/lattices.h"
 #include "support/roles.h"
 

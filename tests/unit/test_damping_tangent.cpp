@@ -46,7 +46,7 @@ std::vector<std::unique_ptr<Force<Spatial>>> forces_of(const Part& part,
 }
 
 /// Minus the derivative of the wrenches to the velocities.
-Dense damping_by_differences(const Force<Spatial>& force, const State<Spatial>& state) {
+Dense damping_by_differences(Force<Spatial>& force, const State<Spatial>& state) {
   const auto n = static_cast<Eigen::Index>(state.records.size() / Spatial::record * 6);
   Dense c(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -61,7 +61,7 @@ Dense damping_by_differences(const Force<Spatial>& force, const State<Spatial>& 
   return c;
 }
 
-Dense damping_of(const Force<Spatial>& force, const Part& part, const State<Spatial>& state,
+Dense damping_of(Force<Spatial>& force, const Part& part, const State<Spatial>& state,
                  const TangentOptions& options, double factor = 1,
                  std::span<const TurnFrame> frames = {}) {
   const std::vector<std::uint8_t> held(static_cast<std::size_t>(part.local), 0);

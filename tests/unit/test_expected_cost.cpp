@@ -6,7 +6,7 @@
 
 #include "floe/base/given.h"
 #include "run/expected_cost.h"
-#include "scene/plan.h"
+#include "simulation/plan.h"
 
 namespace floe {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "scene/lattice_command.h"
+#include "simulation/lattice_command.h"
 #include "scene/units.h"
 
 namespace floe {

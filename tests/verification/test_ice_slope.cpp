@@ -10,7 +10,7 @@
 #include "contact/law.h"
 #include "explicit/explicit.h"
 #include "fracture/fracture.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 #include "support/blocks.h"
 #include "support/record.h"
 

@@ -2,6 +2,7 @@
 /// The command line: "floe SCENE.yaml -key value ...".
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "floe/base/given.h"
@@ -31,5 +32,13 @@ struct CommandLine {
 /// words, --key, -key=value, and options with which PETSc would read further options from a file or
 /// a string (-options_file and similar).
 CommandLine read_command_line(int argc, const char* const* argv);
+
+/// Collects the options of a run: those of the environment, of the scene's file and of the command
+/// line. Collective, after Mpi and before Session.
+/// \param near_to  returns words for the message if the scene does not exist, for example a similar
+///   name
+/// \throws InputError if the scene cannot be read
+UserOptions options_of(const CommandLine& line,
+                       const std::function<std::string(const std::string&)>& near_to = {});
 
 }  // namespace floe

@@ -1,4 +1,4 @@
-#include "scene/plan.h"
+#include "simulation/plan.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "run/expected_cost.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 
 namespace floe {
 namespace {

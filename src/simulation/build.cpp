@@ -1,4 +1,4 @@
-#include "scene/build.h"
+#include "simulation/build.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +11,11 @@
 #include "floe/base/petsc.h"
 #include "forces/gravity.h"
 #include "implicit/implicit.h"
-#include "lattice_command.h"
-#include "mesh_file.h"
-#include "reading.h"
 #include "run/expected_cost.h"
-#include "scene/plan.h"
+#include "scene/reading.h"
+#include "simulation/lattice_command.h"
+#include "simulation/mesh_file.h"
+#include "simulation/plan.h"
 #include "water/buoyancy.h"
 #include "water/drag.h"
 
@@ -134,14 +134,13 @@ void set_initial(const Scene& scene, Lattice& lattice) {
 std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/checkpoint.h5"; }
 
 template <class Space>
-RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
-                    const std::string& lattice_id, const OnPlan& on_plan,
-                    const ObserverOf<Space>& observer,
-                    const std::function<void(const std::vector<std::string>&)>& prepare,
-                    const std::function<void(Archive&)>& others) {
+std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
+                              const OutOfPlane* out_of_plane, const RunHooks& hooks,
+                              ObserverOf<Space> observer) {
   if (scene.integrator == Integrator::quasistatic)
-    return run_quasistatic(model, {scene.time.end, scene.time.dt, scene.limit.steps, on_plan},
-                           observer, rest);
+    return make_quasistatic_run(model,
+                                {scene.time.end, scene.time.dt, scene.limit.steps, hooks.on_plan},
+                                std::move(observer), out_of_plane);
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = scene.time.dt;
@@ -150,25 +149,26 @@ RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* r
   options.history = scene.output.history;
   options.fields = scene.output.fields;
   options.most_steps = scene.limit.steps;
-  options.on_plan = on_plan;
+  options.on_plan = hooks.on_plan;
   options.checkpoint = {scene.check_only ? "" : checkpoint_file(scene),
                         scene.checkpoint.every,
                         scene.checkpoint.at_end,
                         scene.output.dir + "/STOP",
                         scene.checkpoint.restart,
-                        lattice_id,
+                        hooks.lattice_id,
                         fingerprint(scene.obstacles),
                         scene.options_yaml,
                         scene.path,
                         scene.checkpoint.wall_time,
-                        prepare,
-                        others};
+                        hooks.prepare,
+                        hooks.others};
   if constexpr (std::is_same_v<Space, Spatial>) {
-    if (scene.integrator == Integrator::implicit) return run_implicit(model, options, observer);
+    if (scene.integrator == Integrator::implicit)
+      return make_implicit_run(model, options, std::move(observer));
   }
   options.safety = scene.time.safety;
   options.allow_unstable = scene.time.allow_unstable;
-  return run_explicit(model, options, observer);
+  return make_explicit_run(model, options, std::move(observer));
 }
 
 namespace {
@@ -285,14 +285,10 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
   return rest;
 }
 
-template RunResult integrate(const Scene&, Model<Spatial>&, const OutOfPlane*, const std::string&,
-                             const OnPlan&, const Observer<Spatial>&,
-                             const std::function<void(const std::vector<std::string>&)>&,
-                             const std::function<void(Archive&)>&);
-template RunResult integrate(const Scene&, Model<Planar>&, const OutOfPlane*, const std::string&,
-                             const OnPlan&, const Observer<Planar>&,
-                             const std::function<void(const std::vector<std::string>&)>&,
-                             const std::function<void(Archive&)>&);
+template std::unique_ptr<Run> make_run(const Scene&, Model<Spatial>&, const OutOfPlane*,
+                                       const RunHooks&, Observer<Spatial>);
+template std::unique_ptr<Run> make_run(const Scene&, Model<Planar>&, const OutOfPlane*,
+                                       const RunHooks&, Observer<Planar>);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);
 template void add_contact(const Scene&, const Lattice&, Model<Spatial>&);

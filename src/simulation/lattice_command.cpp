@@ -1,4 +1,4 @@
-#include "lattice_command.h"
+#include "simulation/lattice_command.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "mesh_file.h"
+#include "simulation/mesh_file.h"
 
 #include <algorithm>
 #include <array>

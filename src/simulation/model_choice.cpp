@@ -4,7 +4,7 @@
 
 #include "explicit/explicit.h"
 #include "floe/base/petsc.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 
 namespace floe {
 namespace {

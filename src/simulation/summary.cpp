@@ -9,7 +9,7 @@
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
 #include "floe/beams/moduli.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 
 namespace floe {
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "forces/dead_load.h"
 #include "output/output.h"
 #include "output/size.h"
+#include "run/run.h"
 #include "statics/quasistatic.h"
 
 namespace floe {
@@ -68,18 +70,20 @@ ModelChoice choose_model(const Scene& scene, const Lattice& lattice);
 /// Returns the path of a run's checkpoint.
 std::string checkpoint_file(const Scene& scene);
 
-/// Runs the scene's integrator. Collective.
-/// \param rest  the part that a planar model leaves out; null for a spatial model
-/// \param lattice_id  fingerprint of the lattice, for checkpoints
-/// \param on_plan  receives the plan before the first step; false: the run is not made
-/// \param prepare  as CheckpointOptions::prepare
-/// \param others  as CheckpointOptions::others
+/// The surroundings of a run.
+struct RunHooks {
+  std::string lattice_id;  ///< fingerprint of the lattice, for checkpoints
+  OnPlan on_plan;          ///< receives the plan before the first step; false: no run is made
+  std::function<void(const std::vector<std::string>&)> prepare;  ///< CheckpointOptions::prepare
+  std::function<void(Archive&)> others;                          ///< CheckpointOptions::others
+};
+
+/// Makes the run of the scene's integrator. Collective.
+/// \param out_of_plane  the part that a planar model leaves out; null for a spatial model
 template <class Space>
-RunResult integrate(const Scene& scene, Model<Space>& model, const OutOfPlane* rest,
-                    const std::string& lattice_id, const OnPlan& on_plan,
-                    const ObserverOf<Space>& observer,
-                    const std::function<void(const std::vector<std::string>&)>& prepare,
-                    const std::function<void(Archive&)>& others);
+std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
+                              const OutOfPlane* out_of_plane, const RunHooks& hooks,
+                              ObserverOf<Space> observer);
 
 /// Returns the lines that describe the plan of a run and what it needs.
 /// \param memory  of all ranks, at present [bytes]

@@ -6,7 +6,7 @@
 #include "base/signals.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
-#include "scene/build.h"
+#include "simulation/build.h"
 
 namespace floe {
 namespace {

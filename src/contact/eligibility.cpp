@@ -1,0 +1,50 @@
+#include "contact/eligibility.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/union_find.h"
+
+namespace floe {
+
+Eligibility::Eligibility(const Solids& solids, std::vector<BodyPair> joined)
+    : joined_(std::move(joined)) {
+  update(solids);
+}
+
+bool Eligibility::release(BodyPair pair) {
+  if (pair[0] > pair[1]) std::swap(pair[0], pair[1]);
+  const auto found = std::lower_bound(joined_.begin(), joined_.end(), pair);
+  if (found == joined_.end() || *found != pair) return false;  // released before
+  joined_.erase(found);
+  released_.push_back(pair);
+  return true;
+}
+
+void Eligibility::update(const Solids& solids) {
+  const std::int32_t bodies = solids.bodies();
+  const auto n = static_cast<std::size_t>(bodies);
+  std::vector<std::int32_t> beams(n, 0);
+  UnionFind pieces(n);
+  for (const auto& [a, b] : joined_) {
+    ++at(beams, a);
+    ++at(beams, b);
+    pieces.unite(a, b);
+  }
+  piece_ = pieces.representatives();
+  on_surface_.resize(n);
+  pieces_ = 0;
+  for (std::int32_t b = 0; b < bodies; ++b) {
+    if (at(piece_, b) == b) ++pieces_;
+    at(on_surface_, b) = at(beams, b) < solids.faces(b).number - 2 ? 1 : 0;
+  }
+  for (const auto& [a, b] : released_) at(on_surface_, a) = at(on_surface_, b) = 1;
+}
+
+bool Eligibility::may_touch(std::int32_t a, std::int32_t b) const {
+  if (at(piece_, a) != at(piece_, b)) return true;
+  return on_surface(a) && on_surface(b) &&
+         !std::binary_search(joined_.begin(), joined_.end(), BodyPair{a, b});
+}
+
+}  // namespace floe

@@ -1,0 +1,72 @@
+#include "contact/narrow_phase.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "contact/separation.h"
+
+namespace floe {
+namespace {
+
+/// Gaps below this part of the radius of a body, and overlaps below this part of its cube, are
+/// rounding.
+constexpr double rounding = 1e-13, rounding_volume = 1e-15;
+
+/// Replaces `placed` by vertices in another frame.
+/// \param axes, x  axes and origin of the vertices' frame in that frame
+void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, const Vec3<double>& x,
+           std::vector<Vec3<double>>& placed) {
+  placed.clear();
+  for (const Vec3<double>& r : vertices) placed.push_back(x + axes.to_world(r));
+}
+
+}  // namespace
+
+Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b,
+                const Vec3<double>& axis) {
+  const Vec3<double> along_a = a.axes.to_local(axis), along_b = b.axes.to_local(axis);
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Vec3<double>& r : solids.vertices(pair.a)) low = std::min(low, dot(along_a, r));
+  for (const Vec3<double>& r : solids.vertices(pair.b)) high = std::max(high, dot(along_b, r));
+  if (solids.is_half_space(pair.b)) high = solids.planes(pair.b)[0].offset;
+  return {.low_of_a = low, .high_of_b = high};
+}
+
+double NarrowPhase::gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b,
+                        int tries) {
+  const Vec3<double> apart = a.x - b.x;
+  const auto [low, high] = reaches(solids, pair, a, b, pair.axis);
+  const double found = low + dot(pair.axis, apart) - high;
+  if (found > 0 || tries == 0 || solids.is_half_space(pair.b)) return found;
+  place(solids.vertices(pair.a), a.axes, apart, vertices_a_);
+  vertices_b_.clear();
+  for (const Vec3<double>& r : solids.vertices(pair.b)) vertices_b_.push_back(b.axes.to_world(r));
+  return separate(vertices_a_, vertices_b_, pair.axis, tries);
+}
+
+bool NarrowPhase::has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b) {
+  constexpr int tries = 8;
+  constexpr double margin = 1e-6;  // for the rounding of travels
+  const double found = gap(solids, pair, a, b, tries);
+  if (!(found > rounding * solids.radius(pair.a))) return false;
+  pair.safe = (a.travelled + b.travelled) + (1 - margin) * found;
+  return true;
+}
+
+PairOverlap NarrowPhase::overlap(const Solids& solids, const Pair& pair, const Placed& a,
+                                 const Placed& b) {
+  const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
+                           b.axes.to_local(a.axes.e3)};
+  place(solids.vertices(pair.a), turn, b.axes.to_local(a.x - b.x), vertices_a_);
+  const std::span<const HalfSpace> planes = solids.planes(pair.b);
+  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes);
+  const double radius = solids.radius(pair.a);
+  if (o.volume <= rounding_volume * radius * radius * radius) return {};
+  const double depth = planes[0].offset - dot(planes[0].normal, o.centroid);
+  o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
+  o.area = b.axes.to_world(o.area);
+  o.moment = b.axes.to_world(o.moment);
+  return {.overlap = o, .depth = depth};
+}
+
+}  // namespace floe

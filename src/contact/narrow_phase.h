@@ -1,0 +1,53 @@
+/// \file
+/// The narrow phase: gaps and overlaps of pairs at their places.
+#pragma once
+
+#include <vector>
+
+#include "contact/pair.h"
+#include "contact/places.h"
+#include "contact/solids.h"
+#include "geometry/overlap.h"
+
+namespace floe {
+
+/// The overlap of a pair, in world axes from the centroid of A; no overlap: volume 0.
+struct PairOverlap {
+  Overlap overlap;
+  double depth = 0;  ///< of the centroid of the overlap below the first face of B [m]
+};
+
+/// How far A reaches down and B reaches up along an axis from B to A, each from its own origin.
+struct Reaches {
+  double low_of_a = 0, high_of_b = 0;  ///< [m]
+};
+/// Returns the reaches of a pair along a unit vector.
+Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b,
+                const Vec3<double>& axis);
+
+/// Looks at one pair at a time. An object keeps its working memory, so that calls do not allocate
+/// once the memory has grown.
+class NarrowPhase {
+ public:
+  /// Returns the gap of a pair along its axis, or along a better axis that replaces it [m]. Not
+  /// positive: no gap was found, which does not prove an overlap.
+  /// \param tries  largest number of further axes
+  double gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b, int tries);
+
+  /// Whether a pair is known to have a gap. A gap that is found counts until the travels of A and B
+  /// may have closed it.
+  bool is_apart(const Solids& solids, Pair& pair, const Placed& a, const Placed& b) {
+    return a.travelled + b.travelled < pair.safe || has_gap(solids, pair, a, b);
+  }
+
+  /// Returns the overlap of a pair.
+  PairOverlap overlap(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b);
+
+ private:
+  bool has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b);
+
+  Clipper clipper_;
+  std::vector<Vec3<double>> vertices_a_, vertices_b_;  ///< work space: placed vertices
+};
+
+}  // namespace floe

@@ -1,0 +1,38 @@
+/// \file
+/// Pairs of a body A with a body or an obstacle B.
+///
+/// Notation: of two bodies A is the one with the smaller global index. Obstacle k has the index
+/// -1 - k, so B is an obstacle where its index is below 0.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "floe/base/rotation.h"
+
+namespace floe {
+
+using BodyPair = std::array<std::int32_t, 2>;  ///< indices of A and B
+
+/// Whether an index is that of an obstacle.
+constexpr bool is_obstacle(std::int32_t index) { return index < 0; }
+/// Returns the number k of the obstacle with an index.
+constexpr std::size_t obstacle_number(std::int32_t index) {
+  return static_cast<std::size_t>(-1 - index);
+}
+/// Returns the index of obstacle k.
+constexpr std::int32_t obstacle_index(std::size_t k) { return -1 - static_cast<std::int32_t>(k); }
+
+/// A pair of the list.
+struct Pair {
+  std::int32_t a = 0, b = 0;              ///< global bodies; b < 0: obstacle -1 - b
+  std::int32_t slot_a = -1, slot_b = -1;  ///< slots of the bodies; -1 for an obstacle
+  bool counted = false;         ///< this rank owns A, and so counts the energies of the pair
+  bool newly_eligible = false;  ///< the first overlap of the pair counts as stress-free
+  bool offloaded = false;       ///< another rank computes the overlap of the pair
+  Vec3<double> axis{};          ///< of the last gap, a unit vector from B to A
+  double safe = 0;  ///< the pair has a gap while the travels of A and B add up to less [m]
+};
+
+}  // namespace floe

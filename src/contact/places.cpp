@@ -1,0 +1,60 @@
+#include "contact/places.h"
+
+namespace floe {
+namespace {
+
+/// Returns a bound of the travel of all points within `radius` of the origin of a frame [m].
+double farthest_travel(const Placed& from, const Placed& to, double radius) {
+  const Vec3<double> d1 = to.axes.e1 - from.axes.e1, d2 = to.axes.e2 - from.axes.e2,
+                     d3 = to.axes.e3 - from.axes.e3;
+  return length(to.x - from.x) + radius * std::sqrt(dot(d1, d1) + dot(d2, d2) + dot(d3, d3));
+}
+
+}  // namespace
+
+Placed placed(const Obstacle& obstacle, double position, double motion) {
+  return {.x = obstacle.point + obstacle.motion.way(position),
+          .axes = triad(obstacle.motion.turn(position)),
+          .velocity = obstacle.motion.rate(motion),
+          .spin = obstacle.motion.spin(motion)};
+}
+
+void Places::restart(std::size_t slots) {
+  bodies_.resize(slots);
+  counts_travels_ = false;
+}
+
+void Places::move(Placed& solid, const Placed& to, double radius) const {
+  const double travelled =
+      counts_travels_ ? solid.travelled + farthest_travel(solid, to, radius) : 0.0;
+  solid = to;
+  solid.travelled = travelled;
+}
+
+void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
+                   std::span<const MovingPose> bodies, double time, double motion) {
+  for (std::size_t s = 0; s < bodies.size(); ++s) {
+    const MovingPose& body = bodies[s];
+    const Placed to{.x = body.pose.x,
+                    .axes = triad(body.pose.q),
+                    .velocity = body.velocity,
+                    .spin = body.spin};
+    move(bodies_[s], to, solids.radius(involved[s]));
+  }
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const std::int32_t index = obstacle_index(k);
+    move(obstacles_[k], placed(solids.obstacle(index), time, motion), solids.radius(index));
+  }
+  time_ = time;
+  counts_travels_ = true;
+}
+
+void Places::set_obstacle_velocities(const Solids& solids, double time) {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const ObstacleMotion& motion = solids.obstacles()[k].motion;
+    obstacles_[k].velocity = motion.rate(time);
+    obstacles_[k].spin = motion.spin(time);
+  }
+}
+
+}  // namespace floe

@@ -1,0 +1,88 @@
+#include "contact/solids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/overlap.h"
+
+namespace floe {
+namespace {
+
+/// Returns the least extent of a polyhedron along the normals of its faces [m]; infinite without
+/// vertices.
+double least_width(std::span<const Vec3<double>> vertices, std::span<const HalfSpace> planes) {
+  double least = std::numeric_limits<double>::infinity();
+  if (vertices.empty()) return least;
+  for (const HalfSpace& plane : planes) {
+    double low = plane.offset;
+    for (const Vec3<double>& r : vertices) low = std::min(low, dot(plane.normal, r));
+    least = std::min(least, plane.offset - low);
+  }
+  return least;
+}
+
+/// Returns the area of a face [m^2].
+double face_area(const Shapes& shapes, std::int32_t face) {
+  const auto corner = [&](std::int32_t c) {
+    const Point3& p = at(shapes.vertices, at(shapes.corners, c));
+    return Vec3<double>{p[0], p[1], p[2]};
+  };
+  const std::int32_t begin = at(shapes.corner_of, face), end = at(shapes.corner_of, face + 1);
+  Vec3<double> twice{};
+  for (std::int32_t c = begin + 1; c + 1 < end; ++c)
+    twice = twice + cross(corner(c) - corner(begin), corner(c + 1) - corner(begin));
+  return 0.5 * length(twice);
+}
+
+Solids::Faces faces_of(const Shapes& shapes, std::int32_t body) {
+  const std::int32_t begin = at(shapes.face_of, body), end = at(shapes.face_of, body + 1);
+  Solids::Faces faces{.number = end - begin};
+  for (std::int32_t f = begin; f < end; ++f) {
+    const double area = face_area(shapes, f);
+    faces.area += area;
+    faces.widest = std::max(faces.widest, area);
+  }
+  return faces;
+}
+
+}  // namespace
+
+Solids::Solids(const Shapes& shapes, std::span<const double> masses,
+               std::vector<Obstacle> obstacles)
+    : shapes_(shapes), obstacles_(std::move(obstacles)) {
+  for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
+    add(b, at(masses, b));
+    faces_.push_back(faces_of(shapes_, b));
+  }
+  for (const Obstacle& o : obstacles_)
+    extents_.push_back({.radius = o.radius(), .width = least_width(o.vertices, o.planes)});
+  for (const Body& body : bodies_) thinnest_ = std::min(thinnest_, body.width);
+  for (const Extents& obstacle : extents_) thinnest_ = std::min(thinnest_, obstacle.width);
+}
+
+void Solids::add(std::int32_t body, double mass) {
+  Body added;
+  added.first_vertex = static_cast<std::int32_t>(vertices_.size());
+  added.first_plane = static_cast<std::int32_t>(planes_.size());
+  for (std::int32_t v = at(shapes_.vertex_of, body); v < at(shapes_.vertex_of, body + 1); ++v) {
+    const Point3& p = at(shapes_.vertices, v);
+    vertices_.push_back({p[0], p[1], p[2]});
+    added.radius = std::max(added.radius, length(vertices_.back()));
+  }
+  append_half_spaces(shapes_, body, planes_);
+  added.vertices = static_cast<std::int32_t>(vertices_.size()) - added.first_vertex;
+  added.planes = static_cast<std::int32_t>(planes_.size()) - added.first_plane;
+  added.size = std::cbrt(volume_properties(shapes_, body).volume);
+  added.mass = mass;
+  bodies_.push_back(added);
+  bodies_.back().width = least_width(vertices(body), planes(body));
+}
+
+double Solids::mean_radius() const {
+  double mean = 0;
+  for (const Body& body : bodies_) mean += body.radius / static_cast<double>(bodies_.size());
+  return mean;
+}
+
+}  // namespace floe

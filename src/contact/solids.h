@@ -1,0 +1,98 @@
+/// \file
+/// The rigid bodies and obstacles that may touch: shapes, sizes and masses.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "base/at.h"
+#include "contact/pair.h"
+#include "floe/contact/obstacle.h"
+#include "floe/geometry/half_space.h"
+#include "floe/geometry/polyhedron.h"
+
+namespace floe {
+
+/// All bodies of the model, and the obstacles. An index is that of a body, or, below 0, that of an
+/// obstacle (contact/pair.h).
+class Solids {
+ public:
+  /// \param shapes     of all bodies, in their principal axes
+  /// \param masses     of all bodies [kg]
+  /// \param obstacles  may be empty
+  Solids(const Shapes& shapes, std::span<const double> masses, std::vector<Obstacle> obstacles);
+
+  std::int32_t bodies() const { return shapes_.bodies(); }
+  const Shapes& shapes() const { return shapes_; }
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  /// Returns the obstacle with an index below 0.
+  const Obstacle& obstacle(std::int32_t index) const { return obstacles_[obstacle_number(index)]; }
+
+  /// Returns the vertices in the frame of the body or obstacle [m]; a half-space has none.
+  std::span<const Vec3<double>> vertices(std::int32_t index) const {
+    if (is_obstacle(index)) return obstacle(index).vertices;
+    const Body& body = at(bodies_, index);
+    return {vertices_.data() + body.first_vertex, static_cast<std::size_t>(body.vertices)};
+  }
+  /// Returns the planes of the faces, in the frame of the body or obstacle.
+  std::span<const HalfSpace> planes(std::int32_t index) const {
+    if (is_obstacle(index)) return obstacle(index).planes;
+    const Body& body = at(bodies_, index);
+    return {planes_.data() + body.first_plane, static_cast<std::size_t>(body.planes)};
+  }
+  bool is_half_space(std::int32_t index) const {
+    return is_obstacle(index) && obstacle(index).vertices.empty();
+  }
+
+  /// Returns the cube root of the volume of a body [m].
+  double size(std::int32_t body) const { return at(bodies_, body).size; }
+  /// Returns the mass of a body [kg].
+  double mass(std::int32_t body) const { return at(bodies_, body).mass; }
+  /// Returns the distance of the farthest vertex from the centroid of a body or from the origin of
+  /// the frame of an obstacle [m].
+  double radius(std::int32_t index) const {
+    return is_obstacle(index) ? extents_[obstacle_number(index)].radius : at(bodies_, index).radius;
+  }
+  /// Returns the least width of a body or obstacle, between planes along its faces [m]; infinite
+  /// for a half-space.
+  double width(std::int32_t index) const {
+    return is_obstacle(index) ? extents_[obstacle_number(index)].width : at(bodies_, index).width;
+  }
+  /// Returns the mean radius of all bodies [m].
+  double mean_radius() const;
+  /// Returns the least width of all bodies and obstacles [m].
+  double thinnest() const { return thinnest_; }
+
+  /// The faces of a body.
+  struct Faces {
+    std::int32_t number = 0;
+    double area = 0;    ///< of all faces [m^2]
+    double widest = 0;  ///< area of the largest face [m^2]
+  };
+  const Faces& faces(std::int32_t body) const { return at(faces_, body); }
+
+ private:
+  /// What an evaluation needs of a body, side by side in memory.
+  struct Body {
+    std::int32_t first_vertex = 0, vertices = 0;
+    std::int32_t first_plane = 0, planes = 0;
+    double size = 0, mass = 0, radius = 0, width = 0;
+  };
+  struct Extents {
+    double radius = 0, width = 0;
+  };
+
+  void add(std::int32_t body, double mass);
+
+  Shapes shapes_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<Vec3<double>> vertices_;
+  std::vector<HalfSpace> planes_;
+  std::vector<Body> bodies_;
+  std::vector<Faces> faces_;      ///< per body
+  std::vector<Extents> extents_;  ///< per obstacle
+  double thinnest_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace floe
