@@ -47,7 +47,7 @@ void evaluate(benchmark::State& state, double gap, double turn = 0.02, double dr
   Contacts contacts(blocks.shapes, blocks.masses, {}, {.young = 1e7, .damping_ratio = 0.3}, {});
   contacts.build(blocks.poses, std::vector<std::uint8_t>(blocks.poses.size(), 1), 0);
   std::vector<MovingPose> bodies;
-  for (const std::int32_t b : contacts.involved())
+  for (const std::int32_t b : contacts.list().involved())
     bodies.push_back({blocks.poses[static_cast<std::size_t>(b)], {}, {}});
   std::vector<ContactWrench> wrenches(bodies.size());
   double side = 1;
@@ -58,7 +58,7 @@ void evaluate(benchmark::State& state, double gap, double turn = 0.02, double dr
     contacts.evaluate(wrenches);
     contacts.commit(bodies, 1e-4);
   }
-  const auto listed = static_cast<double>(contacts.listed());
+  const auto listed = static_cast<double>(contacts.list().size());
   contacts.place(bodies, 0);
   contacts.evaluate(wrenches);
   const auto touching = static_cast<double>(contacts.touching());

@@ -213,7 +213,7 @@ ACTORS = {TS: ("TS leapfrog", "explicit"), LEAPFROG: ("LeapfrogRun", "explicit")
           RUN: ("DynamicRun", "run"), STEP: ("ExplicitStep", "explicit/step.h"),
           FORCES: ("Model, its forces", "model, forces, ..."),
           CONTACT: ("Contact", "contact_force"), OUT: ("Observer, disk", "output")}
-STEP_FILE, STEP_AT = "src/explicit/explicit.cpp", "  bool step(TS ts) {"
+STEP_FILE, STEP_AT = "src/explicit/explicit.cpp", "  bool step() {"
 # Words in the step that are no calls worth a message.
 QUIET = {"done", "dt", "if", "next_time"}
 # file, first line of the function, then per message: its text there, from, to, words on the picture
@@ -231,7 +231,7 @@ MESSAGES = [
      [("force->add(", FORCES, FORCES, "add(): beams, water, loads ...")]),
     ("src/contact_force/contact.cpp",
      "void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {",
-     [("contacts_.changed()", FORCES, CONTACT, "add(), the last force"),
+     [("contacts_.list().changed()", FORCES, CONTACT, "add(), the last force"),
       ("expiry_.is_due(", CONTACT, CONTACT, "is the list of pairs too old? *"),
       ("build(state)", CONTACT, CONTACT, "a new list of pairs, if due *"),
       ("halo_.gather(", CONTACT, CONTACT, "records of bodies in pairs *"),
@@ -242,7 +242,7 @@ MESSAGES = [
       ("ledger_.take(", RUN, RUN, "energy balance, its limit"),
       ("observer_(", RUN, OUT, "row of history.csv, frame *")]),
     (STEP_FILE, STEP_AT, [
-        ("keep_step_stable(ts)", LEAPFROG, LEAPFROG,
+        ("keep_step_stable()", LEAPFROG, LEAPFROG,
          "keep_step_stable(): a new|stable step, if due *"),
         ("step_.advance(", LEAPFROG, STEP, "advance(): kick and drift of owned bodies"),
         ("step_.commit(", LEAPFROG, STEP, "commit()")]),
@@ -252,7 +252,7 @@ MESSAGES = [
      "void commit(const State<Spatial>& state, double dt) override {",
      [("halo_.gather(", FORCES, CONTACT, "commit(): records again *"),
       ("contacts_.commit(", CONTACT, CONTACT, "friction, crushing, work"),
-      ("watch_obstacles(", CONTACT, CONTACT, "peaks on obstacles *")]),
+      ("obstacle_forces_.take(", CONTACT, CONTACT, "peaks on obstacles *")]),
     (STEP_FILE, STEP_AT, [("step_.release()", LEAPFROG, STEP, "release()")]),
     (SEAM, "  void release() {",
      [("role->release(", STEP, CONTACT, "release(pairs whose beam broke) *")]),

@@ -35,16 +35,18 @@ class Descriptor {
   int file_;
 };
 
+}  // namespace
+
 bool write_all(int file, std::string_view text) {
   while (!text.empty()) {
     const ::ssize_t done = ::write(file, text.data(), text.size());
-    if (done < 0 && errno != EINTR) return false;
-    if (done > 0) text.remove_prefix(static_cast<std::size_t>(done));
+    if (done < 0 && errno == EINTR) continue;
+    if (done == 0) errno = ENOSPC;
+    if (done <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(done));
   }
   return true;
 }
-
-}  // namespace
 
 void throw_file_error(std::string_view what, const std::string& path, int error) {
   throw FileError("cannot " + std::string(what) + " " + path +

@@ -40,6 +40,10 @@ void give_second_name(const std::string& path, const std::string& second);
 /// Writes a text and replaces `path` as a whole. \throws FileError
 void write_whole(const std::string& path, std::string_view text, Place place = Place::renamed);
 
+/// Writes a text to an open file, also where a signal interrupts a write. False: errno says why
+/// the rest could not be written.
+bool write_all(int file, std::string_view text);
+
 /// Flushes a file, or the entries of a folder, to disk, so that they survive a crash of the
 /// machine. \throws FileError
 void sync_to_disk(const std::string& path);

@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
 
+#include "base/files.h"
 #include "floe/base/petsc.h"
 #include "hdf5_id.h"
 
@@ -43,15 +45,11 @@ int copy_file(const std::string& from, const std::string& to) {
   const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   std::vector<char> block(1 << 18);
   int error = in < 0 || out < 0 ? errno : 0;
-  for (::ssize_t size = 1; error == 0 && size > 0;) {
+  for (::ssize_t size = 1; error == 0 && size != 0;) {
     size = ::read(in, block.data(), block.size());
-    if (size < 0) error = errno;
-    for (::ssize_t done = 0; error == 0 && done < size;) {
-      const ::ssize_t now =
-          ::write(out, block.data() + done, static_cast<std::size_t>(size - done));
-      if (now < 0) error = errno;
-      done += now;
-    }
+    if (size < 0 && errno == EINTR) continue;
+    const auto good = static_cast<std::size_t>(std::max<::ssize_t>(size, 0));
+    if (size < 0 || !write_all(out, {block.data(), good})) error = errno;
   }
   if (in >= 0) ::close(in);
   if (out >= 0 && ::close(out) != 0 && error == 0) error = errno;

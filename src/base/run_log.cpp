@@ -26,16 +26,6 @@ Log& log() {
   return one;
 }
 
-bool write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ::ssize_t done = ::write(file, text.data(), text.size());
-    if (done < 0 && errno == EINTR) continue;
-    if (done <= 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(done));
-  }
-  return true;
-}
-
 void put_on(std::FILE* stream, std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stream);
   std::fflush(stream);

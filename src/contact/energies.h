@@ -4,7 +4,7 @@
 /// it.
 #pragma once
 
-#include "contact/law.h"
+#include "contact/laws/response.h"
 
 namespace floe {
 

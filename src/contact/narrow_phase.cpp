@@ -12,8 +12,9 @@ namespace {
 /// rounding.
 constexpr double rounding = 1e-13, rounding_volume = 1e-15;
 
-/// Replaces `placed` by vertices in another frame.
-/// \param axes, x  axes and origin of the vertices' frame in that frame
+/// Places vertices in another frame.
+/// \param axes, x      axes and origin of the frame of the vertices in the other frame
+/// \param[out] placed  in the other frame
 void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, const Vec3<double>& x,
            std::vector<Vec3<double>>& placed) {
   placed.clear();

@@ -1,5 +1,7 @@
 #include "contact/places.h"
 
+#include <cmath>
+
 namespace floe {
 namespace {
 
@@ -12,7 +14,7 @@ double farthest_travel(const Placed& from, const Placed& to, double radius) {
 
 }  // namespace
 
-Placed placed(const Obstacle& obstacle, double position, double motion) {
+Placed place_of(const Obstacle& obstacle, double position, double motion) {
   return {.x = obstacle.point + obstacle.motion.way(position),
           .axes = triad(obstacle.motion.turn(position)),
           .velocity = obstacle.motion.rate(motion),
@@ -35,15 +37,13 @@ void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
                    std::span<const MovingPose> bodies, double time, double motion) {
   for (std::size_t s = 0; s < bodies.size(); ++s) {
     const MovingPose& body = bodies[s];
-    const Placed to{.x = body.pose.x,
-                    .axes = triad(body.pose.q),
-                    .velocity = body.velocity,
-                    .spin = body.spin};
+    const Placed to{
+        .x = body.pose.x, .axes = triad(body.pose.q), .velocity = body.velocity, .spin = body.spin};
     move(bodies_[s], to, solids.radius(involved[s]));
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::int32_t index = obstacle_index(k);
-    move(obstacles_[k], placed(solids.obstacle(index), time, motion), solids.radius(index));
+    move(obstacles_[k], place_of(solids.obstacle(index), time, motion), solids.radius(index));
   }
   time_ = time;
   counts_travels_ = true;

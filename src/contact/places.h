@@ -26,17 +26,17 @@ struct MovingPose {
 
 /// Place and motion of a body or obstacle in an evaluation.
 struct Placed {
-  Vec3<double> x;                ///< centroid, or origin of the frame of an obstacle [m]
-  Triad<double> axes;            ///< of its frame
-  Vec3<double> velocity{};       ///< [m/s]
-  Vec3<double> spin{};           ///< [rad/s]
-  double travelled = 0;          ///< bound of the travel of its points since the last build [m]
+  Vec3<double> x;           ///< centroid, or origin of the frame of an obstacle [m]
+  Triad<double> axes;       ///< of its frame
+  Vec3<double> velocity{};  ///< [m/s]
+  Vec3<double> spin{};      ///< [rad/s]
+  double travelled = 0;     ///< bound of the travel of its points since the last build [m]
 };
 
 /// Returns an obstacle on its motion.
 /// \param position  time of its place [s]
 /// \param motion    time of its velocities [s]
-Placed placed(const Obstacle& obstacle, double position, double motion);
+Placed place_of(const Obstacle& obstacle, double position, double motion);
 
 /// Returns the motion of A relative to B at a point.
 /// \param centre  the point, from the centroid of A [m]

@@ -27,7 +27,7 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm);
 /// Limit of the step by the travel of bodies, since longer steps might jump over a contact: in one
 /// step the fastest body of this rank and another as fast, or the fastest obstacle, approach each
 /// other by a tenth of the least width of all bodies and obstacles.
-LimitsStep<Spatial>::Limit travel_limit(const Contacts& contacts, const Part& part,
+LimitsStep<Spatial>::Limit travel_limit(const Solids& solids, const Part& part,
                                         const State<Spatial>& state);
 
 /// Remarks on the first event of each kind: a pair enclosed, a pair pressed through.

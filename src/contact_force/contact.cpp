@@ -3,20 +3,52 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "base/at.h"
 #include "base/collectives.h"
+#include "contact/contacts.h"
 #include "contact_force/checks.h"
 #include "contact_force/expiry.h"
 #include "contact_force/halo.h"
 #include "contact_force/load_balance.h"
+#include "contact_force/obstacle_forces.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
 namespace {
 
-std::vector<std::array<std::int32_t, 2>> sorted(std::vector<std::array<std::int32_t, 2>> pairs) {
+std::vector<BodyPair> sorted(std::vector<BodyPair> pairs) {
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+/// Returns 1 for each body of the model that this rank owns, else 0.
+std::vector<std::uint8_t> owned_bodies(const Part& part) {
+  std::vector<std::uint8_t> here(static_cast<std::size_t>(part.global_bodies), 0);
+  for (std::int32_t b = 0; b < part.owned; ++b) at(here, at(part.global, b)) = 1;
+  return here;
+}
+
+/// Returns the rows of the histories of all ranks in list order, independent of the ranks.
+/// Collective.
+std::vector<double> rows_of_all(const std::vector<double>& mine, MPI_Comm comm) {
+  constexpr std::size_t width = ContactHistory::width;
+  std::vector<double> all = all_gathered(mine, comm);
+  std::vector<std::array<double, width>> in_order(all.size() / width);
+  for (std::size_t k = 0; k < in_order.size(); ++k)
+    std::copy_n(&all[k * width], width, in_order[k].begin());
+  std::sort(in_order.begin(), in_order.end());
+  all.clear();
+  for (const auto& row : in_order) all.insert(all.end(), row.begin(), row.end());
+  return all;
+}
+
+std::vector<double> as_numbers(const std::vector<BodyPair>& pairs) {
+  std::vector<double> numbers;
+  for (const auto& [a, b] : pairs)
+    numbers.insert(numbers.end(), {static_cast<double>(a), static_cast<double>(b)});
+  return numbers;
 }
 
 class DistributedContact final : public Contact,
@@ -33,15 +65,11 @@ class DistributedContact final : public Contact,
                   std::move(obstacles)),
         halo_(part),
         balance_(part.comm),
-        expiry_(contacts_, part.global_bodies),
-        here_(static_cast<std::size_t>(part.global_bodies), 0),
-        peak_(contacts_.obstacles().size()),
-        impulse_(contacts_.obstacles().size()),
+        expiry_(contacts_.solids()),
+        obstacle_forces_(contacts_.solids().obstacles().size()),
+        here_(owned_bodies(part)),
         rates_(contacts_.rates()),
-        possible_(contacts_.pieces() > 1 || lattice.beams.bodies.empty()) {
-    for (std::int32_t b = 0; b < part.owned; ++b)
-      here_[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])] = 1;
-  }
+        possible_(pieces() > 1 || lattice.beams.bodies.empty()) {}
 
   std::string_view name() const override { return "contact"; }
   Roles<Spatial> roles() override {
@@ -50,7 +78,8 @@ class DistributedContact final : public Contact,
   bool has_history() const override { return true; }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
-    if (contacts_.changed() || !expiry_.started() || expiry_.is_due(state, part_, contacts_, dt_))
+    if (contacts_.list().changed() || !expiry_.started() ||
+        expiry_.is_due(state, part_, contacts_, dt_))
       build(state);
     halo_.gather(state, bodies_);
     std::fill(mine_.begin(), mine_.end(), ContactWrench{});
@@ -59,28 +88,25 @@ class DistributedContact final : public Contact,
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = halo_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
-      if (local[k] < 0) continue;
-      double* w = wrenches.of(static_cast<std::size_t>(local[k]));
-      const ContactWrench& c = mine_[k];
-      w[0] += c.force.x, w[1] += c.force.y, w[2] += c.force.z;
-      w[3] += c.moment.x, w[4] += c.moment.y, w[5] += c.moment.z;
+      if (local[k] >= 0)
+        floe::add(wrenches, static_cast<std::size_t>(local[k]), mine_[k].force, mine_[k].moment);
     }
   }
   double stiffness_bound(std::int32_t body) const override {
-    return rates_.stiffness * part_.bodies.mass[static_cast<std::size_t>(body)];
+    return rates_.stiffness * at(part_.bodies.mass, body);
   }
   Rates hidden_stiffness() const override {
-    return possible_ ? Rates{rates_.stiffness, rates_.damping} : Rates{};
+    return possible_ ? Rates{.stiffness = rates_.stiffness, .damping = rates_.damping} : Rates{};
   }
 
   const std::string& overlap_at_start() const override { return overlap_at_start_; }
   Limit step_limit(const State<Spatial>& state) const override {
-    return travel_limit(contacts_, part_, state);
+    return travel_limit(contacts_.solids(), part_, state);
   }
   std::vector<Remark> take_remarks() override {
     std::vector<Remark> remarks = remarks_.take(contacts_);
     if (!overlap_told_ && !overlap_at_start_.empty() && rank(part_.comm) == 0)
-      remarks.push_back({0, overlap_at_start_});
+      remarks.push_back({.time = 0, .text = overlap_at_start_});
     overlap_told_ = true;
     return remarks;
   }
@@ -91,7 +117,7 @@ class DistributedContact final : public Contact,
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
     add(rest, none);
-    expiry_ = PairListExpiry(contacts_, part_.global_bodies);
+    expiry_ = PairListExpiry(contacts_.solids());
     refuse_enclosed(contacts_, part_.comm);
     overlap_at_start_ = check_overlaps(contacts_, part_.comm);
   }
@@ -101,12 +127,12 @@ class DistributedContact final : public Contact,
     contacts_.commit(bodies_, dt);
     expiry_.after_step(state, dt);
     dt_ = dt;
-    watch_obstacles(dt);
+    obstacle_forces_.take(contacts_, dt, part_.comm);
   }
 
-  void release(std::span<const std::array<std::int32_t, 2>> pairs) override {
+  void release(std::span<const BodyPair> pairs) override {
     std::vector<std::int32_t> mine;
-    for (const auto& pair : pairs) mine.insert(mine.end(), pair.begin(), pair.end());
+    for (const BodyPair& pair : pairs) mine.insert(mine.end(), pair.begin(), pair.end());
     const std::vector<std::int32_t> all = all_gathered(mine, part_.comm);
     for (std::size_t k = 0; k + 1 < all.size(); k += 2) contacts_.release({all[k], all[k + 1]});
   }
@@ -117,88 +143,85 @@ class DistributedContact final : public Contact,
     columns.add("energy_contact_viscous", e.viscous);
     columns.add("energy_friction", e.friction);
     columns.add("energy_crushing", e.crushing);
-    bool moving = false;
-    for (const Obstacle& o : contacts_.obstacles()) moving = moving || !o.motion.at_rest();
-    if (moving) columns.add("energy_external", e.external);
+    const std::vector<Obstacle>& obstacles = contacts_.solids().obstacles();
+    if (std::any_of(obstacles.begin(), obstacles.end(),
+                    [](const Obstacle& o) { return !o.motion.at_rest(); }))
+      columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
     columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosed().size()));
-    const bool first = rank(part_.comm) == 0;  // peaks and means are alike on all ranks
-    for (std::size_t k = 0; k < contacts_.obstacles().size(); ++k) {
-      const std::string& obstacle = contacts_.obstacles()[k].name;
-      const ContactWrench& w = contacts_.on_obstacle(k);
-      put(columns, obstacle + "_force", w.force);
-      put(columns, obstacle + "_moment", w.moment);
-      put(columns, obstacle + "_peak_force", first ? peak_[k] : Vec3<double>{});
-      const double share = first && time_ > 0 ? 1 / time_ : 0.0;
-      put(columns, obstacle + "_mean_force", share * impulse_[k]);
-    }
+    obstacle_forces_.report(contacts_, rank(part_.comm) == 0, columns);
   }
 
   void persist(Archive& archive) override;
 
  private:
-  static void put(Columns& columns, const std::string& name, const Vec3<double>& v) {
-    columns.add(name + "_x", v.x);
-    columns.add(name + "_y", v.y);
-    columns.add(name + "_z", v.z);
-  }
-
+  std::int32_t pieces() const { return contacts_.list().eligibility().pieces(); }
   bool anywhere(bool here) const {
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
-
-  void build(const State<Spatial>& state) {
-    contacts_.build(halo_.poses(state), here_, state.time);
-    possible_ = possible_ || contacts_.pieces() > 1;
-    if (!possible_) possible_ = anywhere(contacts_.obstacle_listed());
-    if (!possible_) near_ = anywhere(contacts_.listed() > 0);
-    balance_.plan(contacts_);
-    halo_.choose(contacts_.involved());
-    bodies_.resize(contacts_.involved().size());
-    mine_.resize(bodies_.size());
-    expiry_.start(state, part_.owned);
-  }
-
-  /// Updates peak and impulse of the forces on obstacles. With several ranks this takes one sum
-  /// over the ranks per step.
-  void watch_obstacles(double dt) {
-    const std::size_t n = peak_.size();
-    if (n == 0) return;
-    std::vector<Vec3<double>>& forces = forces_;
-    forces.clear();
-    for (std::size_t k = 0; k < n; ++k) forces.push_back(contacts_.on_obstacle(k).force);
-    if (size(part_.comm) > 1) sum_over_ranks(std::span(&forces[0].x, 3 * n), part_.comm);
-    for (std::size_t k = 0; k < n; ++k) {
-      if (dot(forces[k], forces[k]) > dot(peak_[k], peak_[k])) peak_[k] = forces[k];
-      impulse_[k] = impulse_[k] + dt * forces[k];
-    }
-    time_ += dt;
-  }
+  void build(const State<Spatial>& state);
+  void persist_books(Archive& archive);
+  void restore(const std::vector<double>& rows, const std::vector<double>& released, bool changed,
+               const PairListExpiry& expiry);
 
   const Part& part_;
   Contacts contacts_;
   ContactHalo halo_;
   ContactLoadBalance balance_;
   PairListExpiry expiry_;
-  std::vector<MovingPose> bodies_;
-  std::vector<ContactWrench> mine_;
-  std::vector<std::uint8_t> here_;
-  std::vector<Vec3<double>> peak_, impulse_, forces_;
-  Contacts::Rates rates_;
+  ObstacleForces obstacle_forces_;
+  std::vector<std::uint8_t> here_;   ///< per body of the model: 1 if this rank owns it
+  std::vector<MovingPose> bodies_;   ///< by slot
+  std::vector<ContactWrench> mine_;  ///< by slot
+  ContactRates rates_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
   /// would keep the step short), and once an obstacle is listed or bodies of the one piece overlap.
   bool possible_;
-  bool near_ = false;         ///< pairs are listed, on some rank
-  double dt_ = 0, time_ = 0;  ///< last step, and sum of all steps [s]
+  bool near_ = false;  ///< pairs are listed, on some rank
+  double dt_ = 0;      ///< last step [s]
   std::string overlap_at_start_;
   bool overlap_told_ = false;
   ContactRemarks remarks_;
 };
 
+/// Makes the pair list and what depends on it. Collective.
+void DistributedContact::build(const State<Spatial>& state) {
+  contacts_.build(halo_.poses(state), here_, state.time);
+  const PairList& list = contacts_.list();
+  possible_ = possible_ || pieces() > 1;
+  if (!possible_) possible_ = anywhere(list.has_obstacle());
+  if (!possible_) near_ = anywhere(list.size() > 0);
+  balance_.plan(contacts_);
+  halo_.choose(list.involved());
+  bodies_.resize(list.involved().size());
+  mine_.resize(bodies_.size());
+  expiry_.start(state, part_.owned);
+}
+
 /// The histories of pairs are saved and loaded. Once contacts are possible, a restart builds the
 /// pair list from the state, since results do not depend on the list any more; before that the list
 /// of the run is built again, since it decides when contacts become possible.
 void DistributedContact::persist(Archive& archive) {
+  persist_books(archive);
+  archive.common("dt", dt_);
+  obstacle_forces_.persist_time(archive);
+  std::vector<double> rows, released;
+  if (!archive.loading()) {
+    rows = rows_of_all(contacts_.history_rows(), part_.comm);
+    released = as_numbers(contacts_.list().eligibility().released());
+  }
+  bool changed = contacts_.list().changed();
+  archive.common("changed", changed);
+  archive.common("possible", possible_);
+  PairListExpiry expiry = expiry_;
+  if (!possible_) expiry.persist(archive, part_);  // the list decides when contacts are possible
+  archive.common("pairs", rows);
+  archive.common("released", released);
+  obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
+  if (archive.loading()) restore(rows, released, changed, expiry);
+}
+
+void DistributedContact::persist_books(Archive& archive) {
   ContactBooks& books = contacts_.books();
   archive.share("work_elastic", books.work.elastic);
   archive.share("work_viscous", books.work.viscous);
@@ -207,47 +230,25 @@ void DistributedContact::persist(Archive& archive) {
   archive.share("stored_at_start", books.stored_at_start);
   archive.common("last_dt", books.last_dt, not_negative);
   archive.common("start_is_known", books.start_is_known);
-  archive.common("dt", dt_);
-  archive.common("time", time_);
-  std::vector<double> rows = contacts_.history(), pairs;
-  if (!archive.loading()) {
-    const std::vector<double> all = all_gathered(rows, part_.comm);
-    // In list order, independent of the ranks.
-    std::vector<std::array<double, Contacts::width>> in_order(all.size() / Contacts::width);
-    for (std::size_t k = 0; k < in_order.size(); ++k)
-      std::copy_n(&all[k * Contacts::width], Contacts::width, in_order[k].begin());
-    std::sort(in_order.begin(), in_order.end());
-    rows.clear();
-    for (const auto& row : in_order) rows.insert(rows.end(), row.begin(), row.end());
-    for (const auto& [a, b] : contacts_.released())
-      pairs.insert(pairs.end(), {static_cast<double>(a), static_cast<double>(b)});
-  }
-  bool changed = contacts_.changed();
-  archive.common("changed", changed);
-  archive.common("possible", possible_);
-  PairListExpiry watch = expiry_;
-  if (!possible_) watch.persist(archive, part_);  // the list decides when contacts are possible
-  archive.common("pairs", rows);
-  archive.common("released", pairs);
-  for (std::size_t k = 0; k < peak_.size(); ++k) {
-    const std::string& obstacle = contacts_.obstacles()[k].name;
-    for (auto& [key, vector] :
-         {std::pair<std::string, Vec3<double>*>{"peak_", &peak_[k]}, {"impulse_", &impulse_[k]}}) {
-      archive.common(key + obstacle + "_x", vector->x);
-      archive.common(key + obstacle + "_y", vector->y);
-      archive.common(key + obstacle + "_z", vector->z);
-    }
-  }
-  if (!archive.loading()) return;
+}
+
+/// Goes on from a checkpoint.
+/// \param rows      histories of the pairs of all ranks
+/// \param released  pairs whose beam broke, as numbers
+/// \param changed   whether pairs had become eligible since the last build
+/// \param expiry    of the list of the run, if contacts are not possible
+void DistributedContact::restore(const std::vector<double>& rows,
+                                 const std::vector<double>& released, bool changed,
+                                 const PairListExpiry& expiry) {
   overlap_told_ = true;  // the run has given this remark at its start
-  for (std::size_t k = 0; k + 1 < pairs.size(); k += 2)
+  for (std::size_t k = 0; k + 1 < released.size(); k += 2)
     contacts_.release(
-        {static_cast<std::int32_t>(pairs[k]), static_cast<std::int32_t>(pairs[k + 1])});
+        {static_cast<std::int32_t>(released[k]), static_cast<std::int32_t>(released[k + 1])});
   contacts_.restore(rows, changed);
-  expiry_ = PairListExpiry(contacts_, part_.global_bodies);
+  expiry_ = PairListExpiry(contacts_.solids());
   if (possible_ || changed) return;
-  build(watch.at_build(part_));  // the same list as before the restart
-  expiry_ = watch;
+  build(expiry.at_build(part_));  // the same list as before the restart
+  expiry_ = expiry;
 }
 
 void check_shapes(const Lattice& lattice) {

@@ -2,13 +2,12 @@
 /// The force of contacts between bodies, and between bodies and obstacles (model.md, "Contact").
 #pragma once
 
-#include <array>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "contact/contacts.h"
+#include "floe/contact/contact_options.h"
+#include "floe/contact/obstacle.h"
 #include "forces/force.h"
 
 namespace floe {

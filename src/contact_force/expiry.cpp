@@ -17,8 +17,8 @@ std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
 
 }  // namespace
 
-PairListExpiry::PairListExpiry(const Contacts& contacts, std::int32_t bodies) {
-  for (std::int32_t b = 0; b < bodies; ++b) radius_ = std::max(radius_, contacts.radius(b));
+PairListExpiry::PairListExpiry(const Solids& solids) {
+  for (std::int32_t b = 0; b < solids.bodies(); ++b) radius_ = std::max(radius_, solids.radius(b));
 }
 
 void PairListExpiry::start(const State<Spatial>& state, std::int32_t owned) {
@@ -40,13 +40,14 @@ void PairListExpiry::after_step(const State<Spatial>& state, double dt) {
 bool PairListExpiry::is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts,
                             double dt) {
   if (--asks_in_ > 0) return false;
-  const auto [theirs, their_speed] = of_obstacles(contacts, state.time);
+  const Solids& solids = contacts.solids();
+  const auto [theirs, their_speed] = of_obstacles(solids, state.time);
   std::array<double, 2> all =
       largest({std::max(travelled_, theirs), std::max(speed_, their_speed)}, part.comm);
   if (!std::isfinite(all[0])) return false;  // the run has blown up: places are not finite
-  const double slack = contacts.slack();
+  const double slack = contacts.list().slack();
   if (all[0] > slack) {
-    travelled_ = travels(state, part, contacts);
+    travelled_ = travels(state, part, solids);
     all[0] = largest({std::max(travelled_, theirs), 0}, part.comm)[0];
     constexpr double enough = 0.8;  // of the slack; the rest would not last long
     if (all[0] > enough * slack) return true;
@@ -61,12 +62,12 @@ bool PairListExpiry::is_due(const State<Spatial>& state, const Part& part, const
 
 /// Largest travel of a vertex of an obstacle since the list was made [m], and the largest speed of
 /// such a vertex [m/s].
-std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, double time) const {
+std::array<double, 2> PairListExpiry::of_obstacles(const Solids& solids, double time) const {
   std::array<double, 2> most{};
-  for (std::size_t k = 0; k < contacts.obstacles().size(); ++k) {
-    const ObstacleMotion& m = contacts.obstacles()[k].motion;
+  for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
+    const ObstacleMotion& m = solids.obstacles()[k].motion;
     if (m.at_rest()) continue;
-    const double radius = contacts.obstacle_radius(k);
+    const double radius = solids.radius(obstacle_index(k));
     const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
     most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
                                     2 * radius * length(Vec3<double>{turn.x, turn.y, turn.z}));
@@ -77,7 +78,7 @@ std::array<double, 2> PairListExpiry::of_obstacles(const Contacts& contacts, dou
 
 /// Largest travel of a vertex of an owned body since the list was made [m].
 double PairListExpiry::travels(const State<Spatial>& state, const Part& part,
-                               const Contacts& contacts) const {
+                               const Solids& solids) const {
   double farthest = 0;
   for (std::int32_t b = 0; b < part.owned; ++b) {
     const auto k = static_cast<std::size_t>(b);
@@ -86,7 +87,7 @@ double PairListExpiry::travels(const State<Spatial>& state, const Part& part,
     const Vec3<double> way{is[0] - was[0], is[1] - was[1], is[2] - was[2]};
     const Quat<double> turn = product(Quat<double>{is[3], is[4], is[5], is[6]},
                                       Quat<double>{was[3], -was[4], -was[5], -was[6]});
-    farthest = std::max(farthest, length(way) + 2 * contacts.radius(part.global[k]) *
+    farthest = std::max(farthest, length(way) + 2 * solids.radius(part.global[k]) *
                                                     length(Vec3<double>{turn.x, turn.y, turn.z}));
   }
   return farthest;

@@ -18,8 +18,7 @@ namespace floe {
 /// when this bound exceeds the slack. So a scene in which little moves pays next to nothing.
 class PairListExpiry {
  public:
-  /// \param bodies  number of bodies of all ranks
-  PairListExpiry(const Contacts& contacts, std::int32_t bodies);
+  explicit PairListExpiry(const Solids& solids);
   /// Notes the state from which a list was made.
   /// \param owned  number of owned bodies
   void start(const State<Spatial>& state, std::int32_t owned);
@@ -39,14 +38,14 @@ class PairListExpiry {
   State<Spatial> at_build(const Part& part) const;
 
  private:
-  std::array<double, 2> of_obstacles(const Contacts& contacts, double time) const;
-  double travels(const State<Spatial>& state, const Part& part, const Contacts& contacts) const;
+  std::array<double, 2> of_obstacles(const Solids& solids, double time) const;
+  double travels(const State<Spatial>& state, const Part& part, const Solids& solids) const;
 
   double radius_ = 0;             ///< largest distance of a vertex from its centroid [m]
   std::vector<double> at_build_;  ///< records of owned bodies when the list was made
   double time_ = 0;               ///< when the list was made [s]
-  double travelled_ =
-      0;              ///< bound of the travel of this rank's vertices since the list was made [m]
+  /// Bound of the travel of this rank's vertices since the list was made [m].
+  double travelled_ = 0;
   double speed_ = 0;  ///< bound of the speeds of this rank's vertices in the last step [m/s]
   std::int64_t asks_in_ = 0;  ///< evaluations until the ranks compare their bounds again
   bool started_ = false;

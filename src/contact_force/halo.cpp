@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
+#include "base/at.h"
 #include "base/collectives.h"
 #include "floe/base/petsc.h"
 
@@ -58,39 +60,48 @@ void ContactHalo::choose(std::span<const std::int32_t> wanted) {
   std::vector<std::int32_t> foreign;
   const int me = rank(part_.comm);
   for (const std::int32_t body : wanted_) {
-    const bool here = owner_[static_cast<std::size_t>(body)] == me;
+    const bool here = at(owner_, body) == me;
     local_.push_back(here ? part_.local_index(body) : -1);
     if (!here) foreign.push_back(body);
   }
-  if (alone_) return;
+  if (!alone_) connect(sent_by_any(foreign));
+}
+
+/// Returns the bodies that any rank wants of another, sorted by owner and index; alike on all
+/// ranks. Collective.
+/// \param foreign  bodies that this rank wants of others
+std::vector<std::int32_t> ContactHalo::sent_by_any(const std::vector<std::int32_t>& foreign) const {
   std::vector<std::int32_t> all = all_gathered(foreign, part_.comm);
-  // A rank sends those of its bodies that any other rank wants, in global order. All ranks know the
-  // bodies that are sent, sorted by owner and index.
   std::sort(all.begin(), all.end(), [&](std::int32_t a, std::int32_t b) {
-    return std::pair(owner_[static_cast<std::size_t>(a)], a) <
-           std::pair(owner_[static_cast<std::size_t>(b)], b);
+    return std::pair(at(owner_, a), a) < std::pair(at(owner_, b), b);
   });
   all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/// Chooses the bodies that this rank sends, and finds those that it receives in the buffers of
+/// their owners. Collective.
+/// \param sent  by any rank, sorted by owner and index
+void ContactHalo::connect(const std::vector<std::int32_t>& sent) {
   std::map<std::int32_t, std::int32_t> place;  // of a body in the buffer of its owner
   std::int32_t owner = -1, next = 0;
   sent_.clear();
-  for (const std::int32_t body : all) {
-    const std::int32_t of = owner_[static_cast<std::size_t>(body)];
-    if (of != owner) next = 0;
-    owner = of;
+  for (const std::int32_t body : sent) {
+    if (at(owner_, body) != owner) next = 0;
+    owner = at(owner_, body);
     place[body] = next++;
-    if (of == me) sent_.push_back(part_.local_index(body));
+    if (owner == rank(part_.comm)) sent_.push_back(part_.local_index(body));
   }
-  std::vector<std::int32_t> owners, indices;
-  std::int32_t at = static_cast<std::int32_t>(sent_.size());
+  std::vector<std::int32_t> owners, places;
+  auto received = static_cast<std::int32_t>(sent_.size());
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     if (local_[k] >= 0) continue;
-    owners.push_back(owner_[static_cast<std::size_t>(wanted_[k])]);
-    indices.push_back(place[wanted_[k]]);
-    from_[k] = at++;
+    owners.push_back(at(owner_, wanted_[k]));
+    places.push_back(place[wanted_[k]]);
+    from_[k] = received++;
   }
-  buffer_.assign(static_cast<std::size_t>(at) * Spatial::record, 0.0);
-  ghosts_ = Ghosts(part_.comm, static_cast<std::int32_t>(sent_.size()), owners, indices);
+  buffer_.assign(static_cast<std::size_t>(received) * Spatial::record, 0.0);
+  ghosts_ = Ghosts(part_.comm, static_cast<std::int32_t>(sent_.size()), owners, places);
 }
 
 void ContactHalo::gather(const State<Spatial>& state, std::span<MovingPose> bodies) {

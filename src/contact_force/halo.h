@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/ghosts.h"
-#include "contact/contacts.h"
+#include "contact/places.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
 
@@ -31,6 +31,9 @@ class ContactHalo {
   const std::vector<std::int32_t>& local() const { return local_; }
 
  private:
+  std::vector<std::int32_t> sent_by_any(const std::vector<std::int32_t>& foreign) const;
+  void connect(const std::vector<std::int32_t>& sent);
+
   const Part& part_;
   bool alone_;                        ///< one rank only
   std::vector<std::int32_t> global_;  ///< all bodies, rank after rank

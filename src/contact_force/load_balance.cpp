@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
+#include "base/at.h"
 #include "base/collectives.h"
 
 namespace floe {
@@ -14,8 +16,8 @@ namespace {
 constexpr double part_of_overlap = 0.7;
 /// Sharing fewer pairs is not worth a message.
 constexpr double fewest = 64;
-constexpr int numbers = sizeof(Contacts::PairOverlap) / sizeof(double);
-static_assert(sizeof(Contacts::PairOverlap) == numbers * sizeof(double));
+constexpr int numbers = sizeof(PairOverlap) / sizeof(double);
+static_assert(sizeof(PairOverlap) == numbers * sizeof(double));
 
 }  // namespace
 
@@ -51,34 +53,38 @@ ContactLoadBalance::ContactLoadBalance(MPI_Comm comm) : comm_(comm) {}
 
 void ContactLoadBalance::plan(Contacts& contacts) {
   if (size(comm_) == 1) return;
-  const auto me = static_cast<std::size_t>(rank(comm_));
   const auto shares = shared_pairs(
-      all_gathered(std::vector{static_cast<std::int64_t>(contacts.with_history())}, comm_));
-  std::int64_t mine = 0;
-  shared_ = false;
-  for (std::size_t r = 0; r < shares.size(); ++r) {
-    for (const std::int64_t count : shares[r]) {
-      shared_ = shared_ || count > 0;
-      if (r == me) mine += count;
-    }
-  }
+      all_gathered(std::vector{static_cast<std::int64_t>(contacts.history().size())}, comm_));
+  std::vector<std::int64_t> given;  // number of pairs that each rank offloads
+  for (const auto& row : shares)
+    given.push_back(std::accumulate(row.begin(), row.end(), std::int64_t{0}));
+  shared_ = std::any_of(given.begin(), given.end(), [](std::int64_t count) { return count > 0; });
   if (!shared_) return;
 
-  std::vector<std::int32_t> offloaded;
-  for (const auto& pair : contacts.offload(static_cast<std::size_t>(mine)))
-    offloaded.insert(offloaded.end(), pair.begin(), pair.end());
-  offloaded_ = static_cast<std::size_t>(mine);
-  // All ranks know all offloaded pairs, giver by giver. The pairs of a giver go to its takers in
-  // the order of the takers.
-  const std::vector<std::int32_t> all = all_gathered(offloaded, comm_);
-  std::vector<std::array<std::int32_t, 2>> taken_on;
+  offloaded_ = static_cast<std::size_t>(at(given, rank(comm_)));
+  std::vector<std::int32_t> mine;
+  for (const BodyPair& pair : contacts.offload(offloaded_))
+    mine.insert(mine.end(), pair.begin(), pair.end());
+  const std::vector<std::int32_t> all = all_gathered(mine, comm_);
+  std::vector<BodyPair> offloaded;
+  for (std::size_t k = 0; k + 1 < all.size(); k += 2) offloaded.push_back({all[k], all[k + 1]});
+  assign(shares, offloaded, contacts);
+}
+
+/// Takes on the pairs that are assigned to this rank. The pairs of a giver go to its takers in the
+/// order of the takers. Collective.
+/// \param offloaded  by all ranks, giver by giver
+void ContactLoadBalance::assign(const std::vector<std::vector<std::int64_t>>& shares,
+                                std::span<const BodyPair> offloaded, Contacts& contacts) {
+  const auto me = static_cast<std::size_t>(rank(comm_));
+  std::vector<BodyPair> taken_on;
   std::vector<std::int32_t> takers, places;
   std::vector<std::int32_t> taken(shares.size(), 0);
-  std::size_t at = 0;
+  auto next = offloaded.begin();
   for (std::size_t giver = 0; giver < shares.size(); ++giver) {
     for (std::size_t taker = 0; taker < shares.size(); ++taker) {
-      for (std::int64_t k = 0; k < shares[giver][taker]; ++k, ++at) {
-        if (taker == me) taken_on.push_back({all[2 * at], all[2 * at + 1]});
+      for (std::int64_t k = 0; k < shares[giver][taker]; ++k, ++next) {
+        if (taker == me) taken_on.push_back(*next);
         if (giver == me) {
           takers.push_back(static_cast<std::int32_t>(taker));
           places.push_back(taken[taker]);
@@ -91,11 +97,6 @@ void ContactLoadBalance::plan(Contacts& contacts) {
   contacts.take_on(taken_on);
   buffer_.assign(taken_on_ + offloaded_, {});
   ghosts_ = Ghosts(comm_, static_cast<std::int32_t>(taken_on_), takers, places);
-}
-
-std::span<Contacts::PairOverlap> ContactLoadBalance::overlaps(std::size_t first,
-                                                              std::size_t count) {
-  return std::span(buffer_).subspan(first, count);
 }
 
 void ContactLoadBalance::evaluate(Contacts& contacts, std::span<ContactWrench> wrenches) {
@@ -111,7 +112,7 @@ void ContactLoadBalance::evaluate(Contacts& contacts, std::span<ContactWrench> w
   const auto arrive = [&] {
     if (!arrived) ghosts_.end(records, numbers);
     arrived = true;
-    return std::span<const Contacts::PairOverlap>(overlaps(taken_on_, offloaded_));
+    return std::span<const PairOverlap>(overlaps(taken_on_, offloaded_));
   };
   contacts.evaluate(wrenches, arrive);
   (void)arrive();

@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -30,12 +31,16 @@ class ContactLoadBalance {
   void evaluate(Contacts& contacts, std::span<ContactWrench> wrenches);
 
  private:
-  std::span<Contacts::PairOverlap> overlaps(std::size_t first, std::size_t count);
+  void assign(const std::vector<std::vector<std::int64_t>>& shares,
+              std::span<const BodyPair> offloaded, Contacts& contacts);
+  std::span<PairOverlap> overlaps(std::size_t first, std::size_t count) {
+    return std::span(buffer_).subspan(first, count);
+  }
 
   MPI_Comm comm_;
-  bool shared_ = false;                        ///< some rank has offloaded pairs
-  std::size_t taken_on_ = 0, offloaded_ = 0;   ///< numbers of pairs
-  std::vector<Contacts::PairOverlap> buffer_;  ///< of pairs taken on, then of offloaded pairs
+  bool shared_ = false;                       ///< some rank has offloaded pairs
+  std::size_t taken_on_ = 0, offloaded_ = 0;  ///< numbers of pairs
+  std::vector<PairOverlap> buffer_;           ///< of pairs taken on, then of offloaded pairs
   Ghosts ghosts_;
 };
 

@@ -45,7 +45,6 @@ class Voronoi {
   void update_cells();
   bool cover(std::int32_t first, std::int32_t last);
   void circumcentres(std::int32_t first, std::int32_t last);
-  void polygon(std::int32_t generator);
   void clip();
   std::uint8_t outcode(const Point2& p) const;
   bool guard_stays_out(std::int32_t e) const;

@@ -35,7 +35,6 @@ class RunLock {
  private:
   void open();
   void lock();
-  bool is_still_there() const;
   void lock_without_flock(int why);
   void write(const std::string& text) const;
 

@@ -7,10 +7,8 @@
 #include "base/option_names.h"
 
 namespace floe::program {
-namespace {
 
-/// Quotes a word for a shell.
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   constexpr std::string_view harmless = "_./:,=+@%-";
   const auto plain = [&](unsigned char c) {
     return std::isalnum(c) != 0 || harmless.find(static_cast<char>(c)) != std::string_view::npos;
@@ -21,18 +19,16 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-}  // namespace
-
 std::string command_to_go_on(const Words& words, const std::string& checkpoint, int ranks) {
   std::string line = ranks > 1 ? "mpiexec -n " + std::to_string(ranks) + " " : "";
-  line += quoted(words.at(0));
+  line += shell_word(words.at(0));
   std::size_t k = 1;
-  if (k < words.size() && !is_option_word(words[k])) line += " " + quoted(words[k++]);
-  line += " -checkpoint_restart " + quoted(checkpoint);
+  if (k < words.size() && !is_option_word(words[k])) line += " " + shell_word(words[k++]);
+  line += " -checkpoint_restart " + shell_word(checkpoint);
   while (k < words.size()) {
     const bool goes = words[k] == "-checkpoint_restart" || words[k] == "-output_overwrite";
     do {
-      if (!goes) line += " " + quoted(words[k]);
+      if (!goes) line += " " + shell_word(words[k]);
       ++k;
     } while (k < words.size() && !is_option_word(words[k]));
   }

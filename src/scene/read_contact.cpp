@@ -1,7 +1,7 @@
 // Reading of contacts and obstacles.
 #include <cmath>
 
-#include "contact/law.h"
+#include "contact/restitution.h"
 #include "floe/base/petsc.h"
 #include "reading.h"
 

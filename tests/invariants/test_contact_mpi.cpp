@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/hdf5.h"
+#include "contact/restitution.h"
 #include "contact_force/contact.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
@@ -83,8 +84,8 @@ TEST(ContactOnRanks, RestartGoesOnToTheLastBit) {
   test::Dynamics through(heap.scene, heap.lattice, PETSC_COMM_WORLD),
       resumed(heap.scene, heap.lattice, PETSC_COMM_WORLD);
   const Part& part = through.model().part();
-  const auto contact = [](test::Dynamics& d) -> Force<Spatial>& {
-    return *d.model().forces().back();
+  const auto contact = [](test::Dynamics& d) -> Persists& {
+    return *d.model().forces().back()->roles().persists;
   };
   through.set_step(dt);
   through.steps(2000);

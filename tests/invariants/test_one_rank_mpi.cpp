@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "base/audit.h"
-#include "contact/law.h"
 #include "explicit/explicit.h"
 #include "floe/base/petsc.h"
 #include "implicit/implicit.h"

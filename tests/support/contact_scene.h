@@ -2,6 +2,7 @@
 /// Scenes of loose blocks in contact, stepped from outside.
 #pragma once
 
+#include "contact/restitution.h"
 #include "contact_force/contact.h"
 #include "explicit/stable_step.h"
 #include "support/blocks.h"

@@ -39,7 +39,7 @@ Contacts at_start(const Lattice& lattice, const ContactOptions& options,
   }
   contacts.build(poses, std::vector<std::uint8_t>(poses.size(), 1), 0);
   std::vector<MovingPose> moving;
-  for (const std::int32_t b : contacts.involved())
+  for (const std::int32_t b : contacts.list().involved())
     moving.push_back({poses[static_cast<std::size_t>(b)], {}, {}});
   contacts.place(moving, 0);
   std::vector<ContactWrench> wrenches(moving.size());
@@ -85,11 +85,11 @@ TEST(ContactStart, LeastWidthIsBetweenParallelFaces) {
   const Contacts contacts(lattice.shapes, lattice.bodies.mass, {}, {},
                           {half_space({0, 0, -9}, {0, 0, 1}), box({9, 0, 0}, {4, 5, 6}, {0, 0, 0}),
                            cone({0, 9, 0}, 1, 1, 0.5, 24)});
-  EXPECT_NEAR(contacts.width_of(0), 0.2, 1e-12);
-  EXPECT_EQ(contacts.width_of(-1), infinite);
-  EXPECT_NEAR(contacts.width_of(-2), 4, 1e-12);
-  EXPECT_NEAR(contacts.width_of(-3), 0.5, 1e-12);
-  EXPECT_NEAR(contacts.thinnest(), 0.2, 1e-12);
+  EXPECT_NEAR(contacts.solids().width(0), 0.2, 1e-12);
+  EXPECT_EQ(contacts.solids().width(-1), infinite);
+  EXPECT_NEAR(contacts.solids().width(-2), 4, 1e-12);
+  EXPECT_NEAR(contacts.solids().width(-3), 0.5, 1e-12);
+  EXPECT_NEAR(contacts.solids().thinnest(), 0.2, 1e-12);
 }
 
 TEST(ContactStart, DeepOverlapIsRefusedSlightOnesAreSaid) {

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <variant>
 
-#include "contact/law.h"
+#include "contact/laws/laws.h"
 
 namespace floe {
 namespace {
@@ -34,7 +35,13 @@ struct Law {
   bool newly_eligible = false;
   StoredEnergy stored;
   ContactForce operator()(const Overlap& o) {
-    return contact_force(options, pair, o, 0, motion, memory, newly_eligible, stored);
+    const ContactResponse response = std::visit(
+        [&](const auto& law) {
+          return contact_response(law, pair, o, 0, motion, memory, newly_eligible);
+        },
+        law_of(options));
+    stored = response.stored;
+    return response.contact;
   }
 };
 
@@ -89,24 +96,24 @@ TEST(ContactLaw, BornContactHasItsOverlapAsPlastic) {
 TEST(ContactLaw, FrictionOpposesSlipAndTurnsWithTheMeanSpin) {
   Law law;
   const ContactForce c = law(overlap_of(0.01, {0, 0, 2}));
-  EXPECT_NEAR(c.memory.shear, 0.6 * 1e6 * 2, tolerance * 1e6);
+  EXPECT_NEAR(c.memory.springs.stiffness, 0.6 * 1e6 * 2, tolerance * 1e6);
   const double dt = 1e-3;
   // What A moves along the normal does not count.
-  expect_vector(slid(c, {{0.3, -0.4, 5}, {}}, {}, dt).tangential, {-360, 480, 0}, 1e3);
-  ContactForce stuck = c;
-  stuck.memory.tangential = {100, 0, 0};
+  const FrictionSprings springs = c.memory.springs;
+  expect_vector(slid(springs, c.normal, {0.3, -0.4, 5}, {}, dt).force, {-360, 480, 0}, 1e3);
+  const FrictionSprings stuck{.stiffness = springs.stiffness, .force = {100, 0, 0}};
   const double turn = 20 * dt;
-  expect_vector(slid(stuck, {}, {3, 4, 20}, dt).tangential,
+  expect_vector(slid(stuck, c.normal, {}, {3, 4, 20}, dt).force,
                 {100 * std::cos(turn), 100 * std::sin(turn), 0}, 100);
 }
 
 TEST(ContactLaw, StoredFrictionTurnsWithTheNormalAndFallsWithTheStiffness) {
   Law law;
-  law.memory.tangential = {100, 20, 0};  // under a normal along z
-  law.memory.shear = 0.6 * 1e6 * 2;
+  law.memory.springs.force = {100, 20, 0};  // under a normal along z
+  law.memory.springs.stiffness = 0.6 * 1e6 * 2;
   const double tilt = 0.3, size = std::hypot(100, 20);
   const Vec3<double> normal{std::sin(tilt), 0, std::cos(tilt)};
-  const Vec3<double> f = law(overlap_of(0.01, 2.0 * normal)).memory.tangential;
+  const Vec3<double> f = law(overlap_of(0.01, 2.0 * normal)).memory.springs.force;
   EXPECT_NEAR(dot(f, normal), 0, tolerance * size);
   EXPECT_NEAR(std::sqrt(dot(f, f)), size, tolerance * size);
   // Its part in the new plane, lengthened.
@@ -114,20 +121,20 @@ TEST(ContactLaw, StoredFrictionTurnsWithTheNormalAndFallsWithTheStiffness) {
                               -100 * std::cos(tilt) * std::sin(tilt)};
   expect_vector(f, (size / std::sqrt(dot(in_plane, in_plane))) * in_plane, size);
   // Half of the area, half of the force; more area, no more force.
-  expect_vector(law(overlap_of(0.01, {0, 0, 1})).memory.tangential, {50, 10, 0}, size);
-  expect_vector(law(overlap_of(0.01, {0, 0, 8})).memory.tangential, {100, 20, 0}, size);
+  expect_vector(law(overlap_of(0.01, {0, 0, 1})).memory.springs.force, {50, 10, 0}, size);
+  expect_vector(law(overlap_of(0.01, {0, 0, 8})).memory.springs.force, {100, 20, 0}, size);
 }
 
 TEST(ContactLaw, FrictionIsCutToTheCoefficientTimesTheNormalForce) {
   Law law;
-  law.memory.tangential = {3e4, -4e4, 0};
-  law.memory.shear = 1;
+  law.memory.springs.force = {3e4, -4e4, 0};
+  law.memory.springs.stiffness = 1;
   const Overlap o = overlap_of(0.01, {0, 0, 2});
-  expect_vector(law(o).memory.tangential, {3000, -4000, 0}, 5e3);
+  expect_vector(law(o).memory.springs.force, {3000, -4000, 0}, 5e3);
   law.options.plastic_limit = 1000;  // of the normal force that acts
-  expect_vector(law(o).memory.tangential, {600, -800, 0}, 1e3);
+  expect_vector(law(o).memory.springs.force, {600, -800, 0}, 1e3);
   law.pair.friction = 0;
-  expect_vector(law(o).memory.tangential, {0, 0, 0});
+  expect_vector(law(o).memory.springs.force, {0, 0, 0});
 }
 
 }  // namespace

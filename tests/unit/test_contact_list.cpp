@@ -45,13 +45,13 @@ struct Crowd {
   /// Wrenches of all bodies.
   std::vector<ContactWrench> wrenches(Contacts& contacts, double time) const {
     std::vector<MovingPose> involved;
-    for (const std::int32_t b : contacts.involved())
+    for (const std::int32_t b : contacts.list().involved())
       involved.push_back(bodies[static_cast<std::size_t>(b)]);
     std::vector<ContactWrench> some(involved.size()), all(bodies.size());
     contacts.place(involved, time);
     contacts.evaluate(some);
     for (std::size_t s = 0; s < some.size(); ++s)
-      all[static_cast<std::size_t>(contacts.involved()[s])] = some[s];
+      all[static_cast<std::size_t>(contacts.list().involved()[s])] = some[s];
     return all;
   }
 };
@@ -62,7 +62,8 @@ TEST(ContactList, NeverHidesATouch) {
   int born = 0;
   std::int64_t before = 0;
   constexpr double step = 1e-3, dt = 3e-3;
-  const int safe = static_cast<int>(kept.slack() / (4 * step));  // of steps between two lists
+  const int safe =
+      static_cast<int>(kept.list().slack() / (4 * step));  // of steps between two lists
   for (int k = 0; k < 600; ++k) {
     const double time = k * dt;
     if (k % safe == 0) crowd.build(kept, time);

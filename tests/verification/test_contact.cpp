@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/laws/laws.h"
+#include "contact/restitution.h"
 #include "support/contact_scene.h"
 #include "support/record.h"
 #include "support/roles.h"
@@ -235,15 +237,15 @@ TEST(Contact, LedgerOfImpactsWithLosses) {
 
 /// A crushed block does not press again before it has sunk deeper than it was.
 TEST(Contact, CrushingIsRemembered) {
-  ContactOptions options{.law = ContactLaw::overlap, .young = 1e7, .plastic_limit = 1e5};
-  const PairConstants pair{1e7, 1, 920, 0, true};
+  const OverlapLaw law(ContactOptions{.young = 1e7, .plastic_limit = 1e5});
+  const PairConstants pair{
+      .stiffness = 1e7, .area = 1, .mass = 920, .friction = 0, .half_space = true};
   PairHistory memory;
   const auto at = [&](double depth) {
     Overlap o;
     o.volume = depth;  // 1 m^2 sunk by `depth`
     o.area = {0, 0, 1};
-    StoredEnergy stored;
-    const ContactForce c = contact_force(options, pair, o, 0.5 * depth, {}, memory, false, stored);
+    const ContactForce c = contact_response(law, pair, o, 0.5 * depth, {}, memory, false).contact;
     memory = c.memory;
     return c.force().z;
   };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "contact/restitution.h"
 #include "contact_force/contact.h"
 #include "explicit/explicit.h"
 #include "explicit/stable_step.h"

@@ -2,9 +2,9 @@
 /// The register of contact laws.
 ///
 /// A law is a type with the members that IsContactLaw asks for. A new law is one header in this
-/// folder and its type in the list ContactLaws; the loop over pairs is compiled for each type of
-/// the list, and an evaluation chooses among them once. A scene names the law by its `word`, an
-/// enumerator of ContactLaw (docs/howto.md).
+/// folder and its type in the list ContactLaws. The loop over pairs is compiled for each type of
+/// the list, and an evaluation chooses among them once. A scene names a law by its `word`, an
+/// enumerator of ContactLaw (docs/howto.md, "A contact law").
 #pragma once
 
 #include <concepts>

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
 
 #include "contact/laws/friction.h"
 #include "geometry/overlap.h"
@@ -22,6 +25,17 @@ struct PairConstants {
 struct PairHistory {
   double plastic = 0;       ///< V_p [m^3]
   FrictionSprings springs;  ///< after the last step
+
+  static constexpr std::size_t numbers = 5;
+  /// Returns V_p, k_t and the three components of F_t, as a checkpoint holds them.
+  std::array<double, numbers> as_numbers() const {
+    const Vec3<double>& f = springs.force;
+    return {plastic, springs.stiffness, f.x, f.y, f.z};
+  }
+  /// Returns the history that gave these numbers.
+  static PairHistory from(std::span<const double, numbers> n) {
+    return {.plastic = n[0], .springs = {.stiffness = n[1], .force = {n[2], n[3], n[4]}}};
+  }
 };
 
 /// Relative motion of the two bodies at a contact.
@@ -34,7 +48,7 @@ struct RelativeMotion {
 struct ContactState {
   const PairConstants& pair;
   const Overlap& overlap;  ///< in world axes, with V > 0
-  double depth = 0;  ///< of c below the plane of B where B is a half-space [m]; else not used
+  double depth = 0;        ///< of c below the plane of B where B is a half-space [m]; else not used
   const RelativeMotion& motion;
   double area = 0;        ///< |S| [m^2]
   Vec3<double> normal{};  ///< n = S/|S|, from B to A

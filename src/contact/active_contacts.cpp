@@ -1,0 +1,58 @@
+#include "contact/active_contacts.h"
+
+#include <algorithm>
+
+#include "base/at.h"
+
+namespace floe {
+
+void add_power(const ContactForce& contact, const RelativeMotion& motion, ContactPower& power) {
+  const double parting = dot(contact.normal, motion.velocity);
+  power.elastic += contact.elastic * parting + dot(contact.couple, motion.spin);
+  power.viscous += contact.viscous * parting;
+  power.friction += dot(contact.memory.springs.force, motion.velocity);
+}
+
+double power_of_obstacle(const ActiveContact& active, const Placed& a, const Placed& obstacle) {
+  const Vec3<double> arm = active.centre + (a.x - obstacle.x);
+  return dot(active.contact.force(), obstacle.velocity + cross(obstacle.spin, arm)) +
+         dot(active.contact.couple, obstacle.spin);
+}
+
+void ActiveContacts::start() {
+  std::fill(on_obstacle_.begin(), on_obstacle_.end(), ContactWrench{});
+  contacts_.clear();
+  touching_ = 0;
+  stored_ = {};
+  power_ = {};
+}
+
+void ActiveContacts::add(const ActiveContact& active, const Pair& pair, const Placed& a,
+                         const Placed& b, const RelativeMotion& motion, const StoredEnergy& stored,
+                         std::span<ContactWrench> wrenches) {
+  contacts_.push_back(active);
+  const ContactForce& contact = active.contact;
+  if (pair.counted) {
+    ++touching_;
+    stored_.normal += stored.normal;
+    stored_.tangential += stored.tangential;
+    add_power(contact, motion, power_);
+    if (is_obstacle(pair.b)) power_.obstacles += power_of_obstacle(active, a, b);
+  }
+  const Vec3<double> force = contact.force();
+  ContactWrench& on_a = at(wrenches, pair.slot_a);
+  on_a.force = on_a.force + force;
+  on_a.moment = on_a.moment + cross(active.centre, force) + contact.couple;
+  ContactWrench& on_b =
+      is_obstacle(pair.b) ? on_obstacle_[obstacle_number(pair.b)] : at(wrenches, pair.slot_b);
+  on_b.force = on_b.force - force;
+  on_b.moment = on_b.moment - cross(active.centre + (a.x - b.x), force) - contact.couple;
+}
+
+void ActiveContacts::end_step() {
+  contacts_.clear();
+  stored_ = {};
+  power_ = {};
+}
+
+}  // namespace floe

@@ -1,0 +1,52 @@
+#include "contact/history.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "base/at.h"
+
+namespace floe {
+
+std::span<const ContactHistory::Entry> ContactHistory::last(std::size_t count) const {
+  return std::span(entries_).last(std::min(count, entries_.size()));
+}
+
+/// Both the histories and the pairs are sorted by (A, B).
+void ContactHistory::take_over(std::span<Pair> pairs) {
+  next_.clear();
+  auto entry = entries_.cbegin();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    Pair& p = pairs[k];
+    while (entry != entries_.cend() && std::tie(entry->a, entry->b) < std::tie(p.a, p.b)) ++entry;
+    if (entry == entries_.cend() || entry->a != p.a || entry->b != p.b) continue;
+    p.newly_eligible = false;
+    next_.push_back(
+        {.a = p.a, .b = p.b, .pair = static_cast<std::int32_t>(k), .memory = entry->memory});
+  }
+  std::swap(entries_, next_);
+}
+
+std::vector<double> ContactHistory::rows(std::span<const Pair> pairs) const {
+  std::vector<double> rows;
+  for (const Entry& entry : entries_) {
+    if (entry.pair >= 0 && !at(pairs, entry.pair).counted) continue;
+    const auto numbers = entry.memory.as_numbers();
+    rows.insert(rows.end(), {static_cast<double>(entry.a), static_cast<double>(entry.b)});
+    rows.insert(rows.end(), numbers.begin(), numbers.end());
+  }
+  return rows;
+}
+
+void ContactHistory::restore(std::span<const double> rows) {
+  entries_.clear();
+  for (std::size_t k = 0; k + width <= rows.size(); k += width) {
+    const std::span<const double> row = rows.subspan(k, width);
+    entries_.push_back({.a = static_cast<std::int32_t>(row[0]),
+                        .b = static_cast<std::int32_t>(row[1]),
+                        .pair = -1,
+                        .memory = PairHistory::from(row.last<PairHistory::numbers>())});
+  }
+}
+
+}  // namespace floe

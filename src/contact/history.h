@@ -1,0 +1,62 @@
+/// \file
+/// Histories of the pairs that touched at the last commit.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/laws/response.h"
+#include "contact/pair.h"
+
+namespace floe {
+
+/// Histories in the order of the pair list.
+class ContactHistory {
+ public:
+  /// The history of one pair.
+  struct Entry {
+    std::int32_t a = 0, b = 0;
+    std::int32_t pair = -1;  ///< index in the list; -1: from a checkpoint
+    PairHistory memory;
+  };
+  /// Finds the histories of pairs that are asked for in the order of the list.
+  class Cursor {
+   public:
+    explicit Cursor(const ContactHistory& history) : next_(history.entries_) {}
+    /// Returns the history of a pair; null: the pair has none.
+    const PairHistory* of(std::int32_t pair) {
+      if (next_.empty() || next_.front().pair != pair) return nullptr;
+      const PairHistory* memory = &next_.front().memory;
+      next_ = next_.subspan(1);
+      return memory;
+    }
+
+   private:
+    std::span<const Entry> next_;
+  };
+
+  std::size_t size() const { return entries_.size(); }
+  /// Returns the last `count` entries, or all if there are fewer.
+  std::span<const Entry> last(std::size_t count) const;
+
+  void clear() { entries_.clear(); }
+  void add(const Entry& entry) { entries_.push_back(entry); }
+  /// Assigns the histories to the pairs of a new list; pairs with history are not newly eligible.
+  void take_over(std::span<Pair> pairs);
+
+  /// Numbers per pair in a checkpoint: A, B and those of the history of the pair.
+  static constexpr std::size_t width = 2 + PairHistory::numbers;
+  /// Returns rows of `width` numbers for the counted pairs.
+  /// \param pairs  of the list
+  std::vector<double> rows(std::span<const Pair> pairs) const;
+  /// Sets the histories that the next take_over() assigns.
+  /// \param rows  of the pairs of all ranks, sorted by pair
+  void restore(std::span<const double> rows);
+
+ private:
+  std::vector<Entry> entries_;
+  std::vector<Entry> next_;  ///< work space
+};
+
+}  // namespace floe

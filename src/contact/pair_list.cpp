@@ -1,0 +1,152 @@
+#include "contact/pair_list.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "contact/broad_phase.h"
+
+namespace floe {
+
+/// What a build looks at.
+struct PairList::Search {
+  const Solids& solids;
+  NarrowPhase& narrow;
+  std::vector<Placed> bodies;  ///< all; without motion
+  std::span<const std::uint8_t> here;
+  double time;
+
+  bool is_here(std::int32_t body) const { return at(here, body) != 0; }
+};
+
+PairList::PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free)
+    : eligibility_(solids, std::move(joined)), stress_free_(stress_free) {
+  // The reach lasts a few hundred steps of slow bodies without listing many more pairs.
+  constexpr double part_of_radius = 0.15;
+  reach_ = part_of_radius * solids.mean_radius();
+}
+
+void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const Pose> poses,
+                     std::span<const std::uint8_t> here, double time) {
+  if (changed_) eligibility_.update(solids);
+  newly_eligible_ = stress_free_ || (changed_ && !first_);
+  Search search{.solids = solids, .narrow = narrow, .bodies = {}, .here = here, .time = time};
+  search.bodies.reserve(poses.size());
+  for (const Pose& p : poses) search.bodies.push_back({.x = p.x, .axes = triad(p.q)});
+  pairs_.clear();
+  list_bodies(search);
+  list_obstacles(search);
+  std::sort(pairs_.begin(), pairs_.end(),
+            [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+  taken_on_.clear();
+  find_involved();
+  changed_ = first_ = false;
+}
+
+void PairList::list_bodies(const Search& search) {
+  const Solids& solids = search.solids;
+  std::vector<Vec3<double>> centres;
+  centres.reserve(search.bodies.size());
+  for (const Placed& body : search.bodies) centres.push_back(body.x);
+  const bool intact = eligibility_.pieces() == 1;  // only bodies on the surface may touch
+  std::vector<double> radii;
+  radii.reserve(centres.size());
+  for (std::int32_t b = 0; b < solids.bodies(); ++b)
+    radii.push_back(intact && !eligibility_.on_surface(b) ? -1 : solids.radius(b));
+  std::vector<BodyPair> near;
+  near_pairs(centres, radii, reach_, search.here, near);
+  for (const auto& [a, b] : near) {
+    if (eligibility_.may_touch(a, b))
+      list(search, {a, b}, at(search.bodies, a), at(search.bodies, b));
+  }
+}
+
+void PairList::list_obstacles(const Search& search) {
+  const Solids& solids = search.solids;
+  for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
+    const std::int32_t index = obstacle_index(k);
+    const Placed obstacle = place_of(solids.obstacle(index), search.time, search.time);
+    for (std::int32_t b = 0; b < solids.bodies(); ++b) {
+      if (!search.is_here(b)) continue;
+      const Placed& body = at(search.bodies, b);
+      const Vec3<double> x = obstacle.axes.to_local(body.x - obstacle.x);
+      const auto beyond = [&](const HalfSpace& h) {
+        return dot(h.normal, x) - h.offset > solids.radius(b) + reach_;
+      };
+      const auto planes = solids.planes(index);
+      if (std::none_of(planes.begin(), planes.end(), beyond))
+        list(search, {b, index}, body, obstacle);
+    }
+  }
+}
+
+/// Lists a pair unless its gap exceeds the reach.
+void PairList::list(const Search& search, const BodyPair& bodies, const Placed& a,
+                    const Placed& b) {
+  constexpr int tries = 20;
+  Pair pair{.a = bodies[0],
+            .b = bodies[1],
+            .counted = search.is_here(bodies[0]),
+            .newly_eligible = newly_eligible_};
+  const Vec3<double> apart = a.x - b.x;
+  const double distance = length(apart);
+  pair.axis = distance > 0 ? (1 / distance) * apart : Vec3<double>{0, 0, 1};
+  if (search.solids.is_half_space(pair.b)) pair.axis = search.solids.planes(pair.b)[0].normal;
+  if (search.narrow.gap(search.solids, pair, a, b, tries) <= reach_) pairs_.push_back(pair);
+}
+
+/// Lists the involved bodies and gives pairs the slots of their bodies.
+void PairList::find_involved() {
+  involved_.clear();
+  for (const std::vector<Pair>* pairs : {&pairs_, &taken_on_}) {
+    for (const Pair& p : *pairs) {
+      involved_.push_back(p.a);
+      if (!is_obstacle(p.b)) involved_.push_back(p.b);
+    }
+  }
+  std::sort(involved_.begin(), involved_.end());
+  involved_.erase(std::unique(involved_.begin(), involved_.end()), involved_.end());
+  const auto slot = [&](std::int32_t body) {
+    const auto found = std::lower_bound(involved_.begin(), involved_.end(), body);
+    return static_cast<std::int32_t>(found - involved_.begin());
+  };
+  for (std::vector<Pair>* pairs : {&pairs_, &taken_on_}) {
+    for (Pair& p : *pairs) {
+      p.slot_a = slot(p.a);
+      p.slot_b = is_obstacle(p.b) ? -1 : slot(p.b);
+    }
+  }
+}
+
+BodyPair PairList::offload(std::int32_t pair) {
+  Pair& offloaded = at(pairs_, pair);
+  offloaded.offloaded = true;
+  return {offloaded.a, offloaded.b};
+}
+
+void PairList::take_on(std::span<const BodyPair> pairs) {
+  taken_on_.clear();
+  for (const auto& [a, b] : pairs) taken_on_.push_back({.a = a, .b = b});
+  find_involved();
+}
+
+void PairList::release(BodyPair pair) { changed_ = eligibility_.release(pair) || changed_; }
+
+void PairList::end_step() {
+  if (newly_eligible_) {
+    for (Pair& pair : pairs_) pair.newly_eligible = false;
+  }
+  newly_eligible_ = stress_free_ = false;
+}
+
+void PairList::restore(bool changed) {
+  pairs_.clear();
+  changed_ = true;
+  first_ = !changed;
+  stress_free_ = false;
+}
+
+bool PairList::has_obstacle() const {
+  return std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return is_obstacle(p.b); });
+}
+
+}  // namespace floe

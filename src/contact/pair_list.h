@@ -1,0 +1,80 @@
+/// \file
+/// The list of the pairs that may touch before some vertex has moved by the slack of the list
+/// (model.md, "Contact").
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/at.h"
+#include "contact/eligibility.h"
+#include "contact/narrow_phase.h"
+#include "contact/pair.h"
+#include "contact/places.h"
+#include "contact/solids.h"
+
+namespace floe {
+
+/// The pairs of one rank, sorted by (A, B), and the pairs that this rank has taken on from other
+/// ranks. The bodies in all these pairs are involved; their places in the sorted list of involved
+/// bodies are the slots.
+class PairList {
+ public:
+  /// \param joined       pairs with an unbroken beam, sorted, the smaller index first
+  /// \param stress_free  whether overlaps before the first step count as stress-free
+  PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free);
+
+  /// Returns the distance that a vertex may travel between two builds [m]: half the reach.
+  double slack() const { return 0.5 * reach_; }
+  /// Whether pairs may have become eligible since the last build.
+  bool changed() const { return changed_; }
+  /// Pieces and released pairs.
+  const Eligibility& eligibility() const { return eligibility_; }
+
+  /// Lists the pairs that may touch before some vertex has moved by slack().
+  /// \param poses  of all bodies
+  /// \param here   per body: 1 if this rank needs its wrench
+  /// \param time   of the poses [s]
+  void build(const Solids& solids, NarrowPhase& narrow, std::span<const Pose> poses,
+             std::span<const std::uint8_t> here, double time);
+  /// Marks a pair as offloaded until the next build: another rank computes its overlap.
+  BodyPair offload(std::int32_t pair);
+  /// Takes on pairs of other ranks until the next build: this rank computes their overlaps.
+  void take_on(std::span<const BodyPair> pairs);
+  /// Makes a pair whose beam broke eligible from the next build on; its overlap at that time counts
+  /// as stress-free.
+  void release(BodyPair pair);
+  /// Ends a step: pairs that were newly eligible have their first overlap now.
+  void end_step();
+  /// Empties the list, for the build after a restart.
+  /// \param changed  whether pairs had become eligible since the last build
+  void restore(bool changed);
+
+  std::size_t size() const { return pairs_.size(); }
+  std::span<Pair> pairs() { return pairs_; }
+  std::span<const Pair> pairs() const { return pairs_; }
+  const Pair& pair(std::int32_t index) const { return at(pairs_, index); }
+  std::span<const Pair> taken_on() const { return taken_on_; }
+  /// Returns the involved bodies, by slot.
+  std::span<const std::int32_t> involved() const { return involved_; }
+  /// Whether a listed pair has an obstacle.
+  bool has_obstacle() const;
+
+ private:
+  struct Search;
+  void list_bodies(const Search& search);
+  void list_obstacles(const Search& search);
+  void list(const Search& search, const BodyPair& bodies, const Placed& a, const Placed& b);
+  void find_involved();
+
+  Eligibility eligibility_;
+  std::vector<Pair> pairs_, taken_on_;
+  std::vector<std::int32_t> involved_;
+  double reach_ = 0;  ///< largest gap of a listed pair [m]
+  bool changed_ = true, first_ = true;
+  bool stress_free_;             ///< overlaps before the end of the step are stress-free
+  bool newly_eligible_ = false;  ///< listed pairs may be newly eligible
+};
+
+}  // namespace floe

@@ -1,0 +1,22 @@
+/// \file
+/// Stiffness of contacts: the constants of a pair, and the bound for the stable step.
+#pragma once
+
+#include "contact/laws/laws.h"
+#include "contact/pair.h"
+#include "contact/solids.h"
+
+namespace floe {
+
+/// Returns the constants of a pair.
+PairConstants pair_constants(const Solids& solids, const ContactOptions& options, const Pair& pair);
+
+/// Bounds of M^-1 K and M^-1 C for all contacts that may form (estimate: model.md, "Contact").
+struct ContactRates {
+  double stiffness = 0;  ///< [1/s^2]
+  double damping = 0;    ///< [1/s]
+};
+ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
+                           const ContactLaws& law);
+
+}  // namespace floe
