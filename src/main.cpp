@@ -173,8 +173,10 @@ int run(const floe::Scene& scene, Start& start) {
   // Bad input ends with one line: what may be meant so is said once the run is known to be
   // possible.
   const auto on_plan = [&](const RunPlan& plan) {
+    const std::string text =
+        plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD));
     for (const std::string& warning : scene.warnings) say_error("floe: warning: " + warning + "\n");
-    say(plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD)));
+    say(text);
     return !scene.check_only;
   };
   const RunResult result = integrate(scene, model, rest ? &*rest : nullptr, lattice_id, on_plan,
@@ -303,6 +305,7 @@ int run_to_an_end(const Wish& user) {
 /// The scene's run.
 int run_command(int argc, char** argv, const floe::program::Words& words,
                 floe::StopSignals& signals) {
+  int code = bad_input;
   try {
     const floe::CommandLine line = floe::read_command_line(argc, argv);
     floe::UserOptions options{floe::read_environment(line.petscrc), {}, line.options};
@@ -312,12 +315,13 @@ int run_command(int argc, char** argv, const floe::program::Words& words,
     floe::Session session(argv[0], options);
     signals.arm();
     give_memory_back();
-    return run_to_an_end({words, options, restart});
+    code = run_to_an_end({words, options, restart});
   } catch (const floe::InputError& error) {
     if (floe::rank(MPI_COMM_WORLD) == 0)
       floe::print_error(std::string("floe: ") + error.what() + "\n");
-    return bad_input;
   }
+  if (code == bad_input) floe::drop_petsc_files();
+  return code;
 }
 
 }  // namespace

@@ -77,6 +77,7 @@ void end_at_once(int code) {
 }
 
 void leave(const std::string& line, int code) {
+  if (code == exit_bad_input) drop_petsc_files();
   if (rank_of_world() > 0) {
     ::signal(SIGTERM, SIG_DFL);  // by which the launcher ends this rank when the first has spoken
     ::sleep(2);

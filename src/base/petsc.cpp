@@ -17,6 +17,7 @@
 #include "floe/base/run_log.h"
 #include "launcher.h"
 #include "option_names.h"
+#include "petsc_files.h"
 #include "solver_options.h"
 
 namespace floe {
@@ -51,7 +52,8 @@ std::string take_last_message(int ierr) {
     if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
   }
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
+  constexpr std::size_t longest = 200;  // it may quote a value
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
 }
 
 /// MUMPS says so by a number (INFOG(1), its users' guide).
@@ -127,14 +129,18 @@ GivenOptions put_petsc_options(const UserOptions& user) {
   for (const auto& [name, given] : user.merged()) {
     if (!is_petsc_option(name)) continue;
     if (given.source == Source::environment && !is_environment_option(name)) continue;
-    if (problem.empty()) problem = solver_option_problem(name, given.value);
     put[name] = given;
     if (put.size() > most)
       throw InputError(name + ": more than " + std::to_string(most) + " options of PETSc's");
     check(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
                                given.value.empty() ? nullptr : given.value.c_str()));
   }
+  for (const auto& [name, given] : put) {
+    if (problem.empty()) problem = solver_option_problem(name, given.value);
+    if (problem.empty()) problem = petsc_file_problem(name, given.value, put);
+  }
   throw_verdict(problem, MPI_COMM_WORLD);
+  note_petsc_files(put);
   check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
   return put;
 }
@@ -176,8 +182,9 @@ Session::Session(const char* program, const UserOptions& user) : program_(progra
   word_ = words_.data();
   int count = 1;
   if (by_petsc || by_system) leave_crashes_to_the_system();
-  // Before PETSc begins: it reads options then, and its own handler prints a page.
-  if (!by_petsc) check(PetscPushErrorHandler(remember_error, nullptr));
+  // Before PETSc begins: it reads options then, and its own handler prints a page. A handler that
+  // -on_error_... asks for comes on top.
+  check(PetscPushErrorHandler(remember_error, nullptr));
   check(PetscInitialize(&count, &word_, nullptr, nullptr));
   if (!by_petsc && !by_system) report_crashes();  // PETSc has put handlers of its own there
   if (print_by_petsc == nullptr) {

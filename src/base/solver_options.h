@@ -8,8 +8,8 @@
 namespace floe {
 
 /// Why a value of an option of PETSc's is refused, in one line; empty if there is nothing against
-/// it. A table says what numbers and words floe relies on; no number may be nan or infinite, and
-/// the folder of a viewer's file must be there. What PETSc itself refuses later is not known here.
+/// it. A table says what numbers and words floe relies on; no number may be nan or infinite. What
+/// PETSc itself refuses later is not known here; files are petsc_file_problem()'s.
 /// \param name  without its dash; any prefix (sub_, mg_levels_) is passed over
 std::string solver_option_problem(std::string_view name, std::string_view value);
 

@@ -189,6 +189,12 @@ class Datasets(HostileTest):
                              (np.full(9, 1e300), "at most 1e30")):
             self.replaced("/bodies/mass", values, word)
         self.replaced("/bodies/position", np.ones((0, 3)), "at least one body")
+        # stresses and stiffnesses of what is read would be infinite
+        for dataset, values, word in (
+                ("/bodies/inertia", np.full((9, 3), 1e-300), "row 0 is 1e-300"),
+                ("/beams/height", np.full(8, 1e-300), "entry 0 is 1e-300"),
+                ("/beams/length", np.full(8, 1e-31), "entry 0 is 1e-31")):
+            self.replaced(dataset, values, word + ", must be > 0 and at least 1e-30")
 
     def test_indices(self):
         for values, word in ((np.full((8, 2), 0.5), "must hold integers"),

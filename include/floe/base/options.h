@@ -90,8 +90,8 @@ class Options {
   void refuse_part(std::string_view key, std::string_view name, const std::string& label,
                    const std::string& why);
   /// Of two keys that exclude each other, the one that has been given, or nothing if neither has.
-  /// If both have, the one of the command line where the other is the scene's (which is then idle),
-  /// else throws `both`.
+  /// If both have, the one of the stronger source (see Source; the other is then idle), and if both
+  /// are from one, throws `both`.
   std::string_view one_of(std::string_view a, std::string_view b, std::string_view name,
                           const std::string& both);
 

@@ -131,6 +131,11 @@ class Session {
   char** word_ = nullptr;
 };
 
+/// Takes away the files that options of PETSc's have made in a run that is refused (a log, a
+/// viewer's): those that were not there before. After the session's end, when PETSc has closed
+/// them.
+void drop_petsc_files() noexcept;
+
 /// This process's rank and the number of ranks.
 inline int rank(MPI_Comm comm = PETSC_COMM_WORLD) {
   int r = 0;
