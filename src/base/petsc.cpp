@@ -88,6 +88,7 @@ Mpi::Mpi(int& argc, char**& argv) {
   prepare_one_process();
   report_crashes();
   MPI_Init(&argc, &argv);
+  if (size(MPI_COMM_WORLD) > 1) ask_for_short_turns();
   report_crashes();  // MPI has handlers of its own
   report_mpi_errors();
 }

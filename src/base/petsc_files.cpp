@@ -37,7 +37,7 @@ bool is_viewer(std::string_view name) {
          (has_word(name, "view") || has_word(name, "monitor") || has_word(name, "reason"));
 }
 
-/// The file that an option names; empty: none.
+/// The file that an option names; empty: none. PETSc takes a log's `0` for a name too.
 std::string file_of(std::string_view name, std::string_view value) {
   const auto colon = value.find(':');
   std::string_view file;
@@ -51,7 +51,7 @@ std::string file_of(std::string_view name, std::string_view value) {
     file = file.substr(0, file.find(':'));
   }
   const bool is_none = file.empty() || file == "stdout" || file == "stderr";
-  return is_none || (!is_viewer(name) && to_flag(file)) ? "" : std::string(file);
+  return is_none || (is_plain(name) && to_flag(file)) ? "" : std::string(file);
 }
 
 /// Why a file cannot be written, or nothing.
@@ -117,7 +117,7 @@ void note_petsc_files(const GivenOptions& options) {
     const std::string file = file_of(name, given.value);
     if (file.empty()) continue;
     // Logs have a file for each rank, a binary viewer one more for what it says of the objects.
-    for (const std::string& made : {file, file + "." + me, file + me, file + ".info"}) {
+    for (const std::string& made : {file, file + "." + me, file + "_" + me, file + ".info"}) {
       std::error_code error;
       if (!std::filesystem::exists(made, error)) files.push_back(made);
     }

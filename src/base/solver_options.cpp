@@ -166,25 +166,25 @@ bool fits(std::string_view name, double value) {
   return name == "ts_max_steps" || std::abs(value) <= std::numeric_limits<PetscInt>::max();
 }
 
+bool is_number_in(std::string_view word, std::string_view range) {
+  const auto x = to_number(word);
+  return x && in_range(*x, range);
+}
+
 bool is_good(const OptionSpec& spec, std::string_view value) {
   if (spec.kind == integer) {
     const auto n = to_integer(value);
     return n && in_range(static_cast<double>(*n), spec.allowed) &&
            fits(spec.key, static_cast<double>(*n));
   }
-  if (spec.kind == number) {
-    const auto x = to_number(value);
-    return x && in_range(*x, spec.allowed);
-  }
+  if (spec.kind == number) return is_number_in(value, spec.allowed);
   const auto words = choices_of(spec.allowed);
   return std::find(words.begin(), words.end(), value) != words.end();
 }
 
 std::string clip_problem(std::string_view name, std::string_view value) {
-  const auto list = to_list(value);
-  const auto at = [&](std::size_t k) { return list ? to_number(list->at(k)) : std::nullopt; };
-  if (list && list->size() == 2 && at(0) && at(1) && in_range(*at(0), "> 0, <= 1") &&
-      in_range(*at(1), ">= 1"))
+  const auto words = to_list(value).value_or(std::vector<std::string>{});
+  if (words.size() == 2 && is_number_in(words[0], "> 0, <= 1") && is_number_in(words[1], ">= 1"))
     return {};
   return refused(name, value, "2 numbers: how much a step may shrink (> 0, <= 1), grow (>= 1)");
 }
