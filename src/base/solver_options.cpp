@@ -205,29 +205,49 @@ bool is_no_number(std::string_view word) {
   return text == "inf" || text == "infinity" || text == "nan" || text.starts_with("nan(");
 }
 
-}  // namespace
+bool is_in_python(std::string_view name, std::string_view value) {
+  return name == "python" || name.find("python_") != std::string_view::npos ||
+         name.ends_with("_python") || (name.ends_with("_type") && value == "python");
+}
 
-std::string solver_option_problem(std::string_view name, std::string_view value) {
-  const bool in_python = name == "python" || name.find("python_") != std::string_view::npos ||
-                         name.ends_with("_python") ||
-                         (name.ends_with("_type") && value == "python");
-  if (in_python)
+std::string useless_problem(std::string_view name, std::string_view value) {
+  if (is_in_python(name, value))
     return std::string(name) + ": solvers in Python cannot be used: floe runs no Python";
-  for (const Useless& u : useless) {
-    if (is_called(name, u.name) && to_flag(value).value_or(true))
-      return std::string(name) + ": would have no use here: " + std::string(u.why);
-  }
-  if (is_called(name, "ts_adapt_clip")) return clip_problem(name, value);
-  if (is_called(name, "snes_lag_jacobian") || is_called(name, "snes_lag_preconditioner"))
-    return lag_problem(name, value);
+  const auto found = std::find_if(useless.begin(), useless.end(),
+                                  [&](const Useless& u) { return is_called(name, u.name); });
+  if (found == useless.end() || !to_flag(value).value_or(true)) return {};
+  return std::string(name) + ": would have no use here: " + std::string(found->why);
+}
+
+/// The line of the table with the longest name that fits; null if there is none.
+const OptionSpec* line_of(std::string_view name) {
   const OptionSpec* best = nullptr;
   for (const OptionSpec& spec : table) {
     if (is_called(name, spec.key) && (best == nullptr || spec.key.size() > best->key.size()))
       best = &spec;
   }
-  if (best != nullptr && !is_good(*best, value)) return refused(name, value, allowed_text(*best));
-  for (const std::string& word : to_list(value).value_or(std::vector<std::string>{})) {
-    if (is_no_number(word)) return refused(name, value, "finite");
+  return best;
+}
+
+std::string table_problem(std::string_view name, std::string_view value) {
+  if (is_called(name, "ts_adapt_clip")) return clip_problem(name, value);
+  if (is_called(name, "snes_lag_jacobian") || is_called(name, "snes_lag_preconditioner"))
+    return lag_problem(name, value);
+  const OptionSpec* line = line_of(name);
+  return line == nullptr || is_good(*line, value) ? "" : refused(name, value, allowed_text(*line));
+}
+
+std::string finite_problem(std::string_view name, std::string_view value) {
+  const auto words = to_list(value).value_or(std::vector<std::string>{});
+  return std::any_of(words.begin(), words.end(), is_no_number) ? refused(name, value, "finite")
+                                                               : "";
+}
+
+}  // namespace
+
+std::string solver_option_problem(std::string_view name, std::string_view value) {
+  for (const auto problem : {useless_problem, table_problem, finite_problem}) {
+    if (std::string text = problem(name, value); !text.empty()) return text;
   }
   return {};
 }
