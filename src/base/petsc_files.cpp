@@ -29,7 +29,10 @@ bool has_word(std::string_view name, std::string_view word) {
 /// A flag or a file: -info, -info FILE:classes.
 bool is_log(std::string_view name) { return name == "info" || name == "log_trace"; }
 /// A file without a type before it.
-bool is_plain(std::string_view name) { return name == "citations" || name == "malloc_view"; }
+bool is_plain(std::string_view name) {
+  constexpr std::array names{"citations", "malloc_view", "log_summary", "log_all"};
+  return is_one_of(name, names);
+}
 
 /// A viewer's value is TYPE:FILE:FORMAT:MODE.
 bool is_viewer(std::string_view name) {
@@ -44,7 +47,7 @@ std::string file_of(std::string_view name, std::string_view value) {
   if (is_log(name)) {
     file = value.substr(0, colon);
   } else if (is_plain(name)) {
-    file = value;
+    file = name == "log_all" && value.empty() ? "Log" : value;  // as PETSc calls it
   } else if (is_viewer(name) && colon != std::string_view::npos &&
              is_one_of(value.substr(0, colon), on_file)) {
     file = value.substr(colon + 1);

@@ -112,7 +112,7 @@ class Values(unittest.TestCase):
         unknown = ("-eps_type", "-snes_bogus", "-snes_type")
         files = (["-citations", "c"], ["-info", "i"], ["-log_view", ":l"],
                  ["-ksp_view_mat", "binary:m"], ["-snes_view", "ascii:v"],
-                 ["-log_trace", "t"])
+                 ["-log_trace", "t"], ["-log_summary", "s"], ["-log_all"], ["-log_all", "a"])
         for ranks in (1, 2):
             for words in files:
                 for reason in unknown if ranks == 1 else unknown[1:2]:
