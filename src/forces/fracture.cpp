@@ -104,7 +104,7 @@ void remember_cracks(Memory& memory, const Part& part, std::vector<Crack>& crack
     std::vector<int> counts(ranks), offsets(ranks, 0);
     MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, part.comm);
     for (std::size_t r = 1; r < ranks; ++r) offsets[r] = offsets[r - 1] + counts[r - 1];
-    all.resize(static_cast<std::size_t>(offsets.back() + counts.back()));
+    all.resize(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
     MPI_Allgatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
                    MPI_DOUBLE, part.comm);
   }

@@ -149,7 +149,7 @@ StabilityPolynomial RkRun::polynomial() const {
 
 StableStep RkRun::find_stable_step() {
   model().part().ghosts.update(state().records, Spatial::record);
-  const StableStep stable = rk_stable_step(polynomial(), model(), state());
+  StableStep stable = rk_stable_step(polynomial(), model(), state());
   // Steps this far inside what the scene's rates allow mean that the region leaves out the
   // imaginary axis, or nearly.
   constexpr double useless = 0.2;

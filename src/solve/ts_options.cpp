@@ -61,7 +61,7 @@ std::optional<std::string> value_of(const char* option) {
 }
 
 std::string chosen_type() {
-  const std::string type = value_of("-ts_type").value_or(ts_leapfrog);
+  std::string type = value_of("-ts_type").value_or(ts_leapfrog);
   if (type != ts_leapfrog && type != TSRK)
     throw InputError("ts_type: '" + type + "' cannot step this scene: " + reason_against(type) +
                      " (integrator: explicit steps with " + ts_leapfrog + " or rk)");
@@ -127,7 +127,7 @@ HiddenMaxSteps::~HiddenMaxSteps() {
 
 std::string explicit_type() {
   refuse_solvers();
-  const std::string type = chosen_type();
+  std::string type = chosen_type();
   refuse_without_effect(type);
   return type;
 }

@@ -37,6 +37,12 @@ struct TurnFrame {
   std::array<double, 9> columns;  ///< the spin in the world that a change of the unknowns is
 };
 
+/// Index of an entry in rows of `columns` numbers.
+constexpr std::size_t entry_of(std::int32_t row, std::int32_t columns, std::int32_t column) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
 template <class Space>
 class Tangent {
  public:
