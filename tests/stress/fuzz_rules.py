@@ -90,8 +90,9 @@ class Outcome:
         if len(lines) != 1 or not re.match(r"floe( \w+)?:",
                                            self.error) or not self.error.endswith("\n"):
             self.breaks("not one line of floe's", repr(self.error[:1000]))
-        # a path that was given may be long
-        elif len(re.sub(r"[^\s']{100,}", "...", lines[0])) >= LONGEST_LINE:
+        # a path that was given may be long, with blanks too
+        elif len(re.sub(r"(?<=(?:file|.dir|tart): )'[^']{100,}'|[^\s']{100,}", "...",
+                        lines[0])) >= LONGEST_LINE:
             self.breaks(f"a line of {len(lines[0])} letters", lines[0][:LONGEST_LINE])
         elif not self.names_input(lines[0]):
             self.breaks("the line names nothing of the input", lines[0])
