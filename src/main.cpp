@@ -121,6 +121,11 @@ int run(const floe::Scene& scene, Start& start) {
   std::unique_ptr<Output<Space>> output;
   std::optional<OutputMemory> restart;  // what a checkpoint says of the files to go on with
   std::optional<First<Space>> first;
+  // Bad input ends with one line: what may be meant so is said once the run is known to be
+  // possible.
+  const auto say_warnings = [&] {
+    for (const std::string& warning : scene.warnings) say_error("floe: warning: " + warning + "\n");
+  };
   const auto open = [&](const std::vector<std::string>& columns) {
     reject_unused_options(scene.unused_options);
     if (restart) {
@@ -129,6 +134,7 @@ int run(const floe::Scene& scene, Start& start) {
                     columns_of(scene.boundaries, scene.loads, columns, scene.forces.fracture),
                     PETSC_COMM_WORLD);
     }
+    say_warnings();
     folder->begin(restart ? restart->run : "");
     if (restart) make_newest(scene.checkpoint.restart, checkpoint_file(scene), PETSC_COMM_WORLD);
     start.mesh.keep();
@@ -170,12 +176,10 @@ int run(const floe::Scene& scene, Start& start) {
     prepare(columns);
     output->sync();
   };
-  // Bad input ends with one line: what may be meant so is said once the run is known to be
-  // possible.
   const auto on_plan = [&](const RunPlan& plan) {
     const std::string text =
         plan_text(scene, plan, size_of_output, 1e6 * resident_memory_mb(PETSC_COMM_WORLD));
-    for (const std::string& warning : scene.warnings) say_error("floe: warning: " + warning + "\n");
+    if (scene.check_only) say_warnings();
     say(text);
     return !scene.check_only;
   };
