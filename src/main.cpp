@@ -123,6 +123,7 @@ int run_to_an_end(const Wish& user) {
 /// Reads the command line and the scene, and makes the run.
 int run_command(int argc, char** argv, const floe::program::Words& words,
                 floe::StopSignals& signals) {
+  int code = bad_input;
   try {
     const floe::CommandLine line = floe::read_command_line(argc, argv);
     floe::UserOptions options = floe::options_of(line, floe::program::near_scene);
@@ -130,12 +131,13 @@ int run_command(int argc, char** argv, const floe::program::Words& words,
     floe::Session session(argv[0], options);
     signals.arm();
     give_memory_back();
-    return run_to_an_end({words, options, restart});
+    code = run_to_an_end({words, options, restart});
   } catch (const floe::InputError& error) {
     if (floe::rank(MPI_COMM_WORLD) == 0)
       floe::print_error(std::string("floe: ") + error.what() + "\n");
-    return bad_input;
   }
+  if (code == bad_input) floe::drop_petsc_files();
+  return code;
 }
 
 }  // namespace

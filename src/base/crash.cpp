@@ -11,6 +11,7 @@
 #include "base/run_place.h"
 #include "blame.h"
 #include "failure.h"
+#include "floe/base/petsc.h"
 
 namespace floe {
 namespace {
@@ -87,6 +88,7 @@ void end_crashed(const char* what) noexcept {
   put("\n");
   run_place().code = code;
   say_last_words(line.data());
+  if (code == exit_bad_input) drop_petsc_files();
   end_at_once(code);
 }
 

@@ -77,6 +77,7 @@ void end_at_once(int code) {
 }
 
 void leave(const std::string& line, int code) {
+  if (code == exit_bad_input) drop_petsc_files();
   if (rank_of_world() > 0) {
     ::signal(SIGTERM, SIG_DFL);  // the launcher's signal once rank 0 has aborted
     ::sleep(2);

@@ -1,6 +1,7 @@
 #include <fcntl.h>
 #include <hdf5.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include "base/hdf5.h"
@@ -17,6 +19,38 @@
 
 namespace floe {
 namespace {
+
+/// While an object of this class lives, the process gets 512 MiB more and then no memory. On some
+/// damaged files HDF5 1.10 takes memory without end (one byte of a group was flipped), until the
+/// system kills the process; where memory is refused it says that it cannot read. Reading values
+/// takes as much as they need, and is not bounded.
+class BoundedMemory {
+ public:
+  BoundedMemory() {
+    if (getrlimit(RLIMIT_AS, &before_) != 0) return;
+    rlimit bound = before_;
+    bound.rlim_cur = std::min<rlim_t>(before_.rlim_cur, address_space() + more);
+    is_set_ = setrlimit(RLIMIT_AS, &bound) == 0;
+  }
+  ~BoundedMemory() {
+    if (is_set_) (void)setrlimit(RLIMIT_AS, &before_);
+  }
+  BoundedMemory(const BoundedMemory&) = delete;
+  BoundedMemory& operator=(const BoundedMemory&) = delete;
+
+ private:
+  static constexpr rlim_t more = rlim_t{1} << 29;
+  /// Returns the address space of the process [bytes]; without /proc a value that bounds nothing.
+  static rlim_t address_space() {
+    std::ifstream file("/proc/self/statm");
+    rlim_t pages = 0;
+    if (!(file >> pages)) return RLIM_INFINITY - more;
+    return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+  }
+
+  rlimit before_{};
+  bool is_set_ = false;
+};
 
 /// Returns why the system cannot read a file; empty if it can. Does not wait for a FIFO.
 std::string system_problem(const std::string& path) {
@@ -90,6 +124,7 @@ Hdf5File Hdf5File::open(const std::string& path, const std::string& key) {
     throw InputError(where + problem);
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_file_locking(access, true, true);
+  const BoundedMemory bounded;
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
   if (id >= 0) return {id, path, path, key};
   if (is_locked(path)) throw InputError(where + "is being written by another program");
@@ -102,6 +137,7 @@ std::string Hdf5File::where(const std::string& name) const {
 }
 
 bool Hdf5File::has(const std::string& name) const {
+  const BoundedMemory bounded;
   std::string path;
   std::size_t start = 0;
   while (start < name.size()) {  // H5Lexists requires every parent to exist
@@ -123,6 +159,7 @@ bool Hdf5File::has(const std::string& name) const {
 }
 
 std::vector<std::string> Hdf5File::members(const std::string& group) const {
+  const BoundedMemory bounded;
   std::vector<std::string> names;
   const Hdf5Id id(H5Gopen2(id_, group.c_str(), H5P_DEFAULT), H5Gclose);
   if (id < 0) throw InputError(where(group) + " is not a group");
@@ -137,6 +174,7 @@ std::vector<std::string> Hdf5File::members(const std::string& group) const {
 
 std::int64_t Hdf5File::open_dataset(const std::string& name) const {
   if (!has(name)) throw InputError(where(name) + " is missing");
+  const BoundedMemory bounded;
   const hid_t data = H5Dopen2(id_, name.c_str(), H5P_DEFAULT);
   if (data < 0) throw InputError(where(name) + " is not a dataset");
   const auto refuse = [&](const char* why) {
@@ -218,6 +256,7 @@ std::string Hdf5File::read_text(const std::string& name) const {
 }
 
 double Hdf5File::read_attribute(const std::string& object, const std::string& name) const {
+  const BoundedMemory bounded;
   const Hdf5Id target(H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                       H5Aclose);
   if (target < 0) throw InputError(where(object) + " has no attribute " + name);

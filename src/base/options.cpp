@@ -236,10 +236,12 @@ std::string_view Options::one_of(std::string_view a, std::string_view b, std::st
   const Given *one = find(a, name), *other = find(b, name);
   if (one == nullptr || other == nullptr) return one ? a : other ? b : std::string_view();
   if (one->source == other->source) throw InputError(both);
-  const bool first_wins = one->source == Source::command_line;
+  const bool first_wins = one->source > other->source;
   const std::string_view winner = first_wins ? a : b, loser = first_wins ? b : a;
+  const bool said_last = (first_wins ? one : other)->source == Source::command_line;
   refuse_one(loser, name,
-             "'" + option_label(winner, name) + "' of the command line takes its place");
+             "'" + option_label(winner, name) + "' of the " +
+                 (said_last ? "command line" : "scene") + " takes its place");
   return winner;
 }
 

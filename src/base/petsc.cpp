@@ -17,6 +17,7 @@
 #include "floe/base/options.h"
 #include "launcher.h"
 #include "option_names.h"
+#include "petsc_files.h"
 #include "solver_options.h"
 
 namespace floe {
@@ -49,7 +50,8 @@ std::string take_last_message(int ierr) {
     if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = ' ';
   }
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
+  constexpr std::size_t longest = 200;  // it may quote a value
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
 }
 
 /// Whether an error means that memory ran out. MUMPS reports this by a number (INFOG(1), see the
@@ -85,6 +87,7 @@ Mpi::Mpi(int& argc, char**& argv) {
   prepare_one_process();
   report_crashes();
   MPI_Init(&argc, &argv);
+  if (size(MPI_COMM_WORLD) > 1) ask_for_short_turns();
   report_crashes();  // MPI_Init has installed handlers of its own
   report_mpi_errors();
 }
@@ -128,14 +131,18 @@ GivenOptions put_petsc_options(const UserOptions& user) {
   for (const auto& [name, given] : user.merged()) {
     if (!is_petsc_option(name)) continue;
     if (given.source == Source::environment && !is_environment_option(name)) continue;
-    if (problem.empty()) problem = solver_option_problem(name, given.value);
     put[name] = given;
     if (put.size() > most)
       throw InputError(name + ": more than " + std::to_string(most) + " options of PETSc's");
     check(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
                                given.value.empty() ? nullptr : given.value.c_str()));
   }
+  for (const auto& [name, given] : put) {
+    if (problem.empty()) problem = solver_option_problem(name, given.value);
+    if (problem.empty()) problem = petsc_file_problem(name, given.value, put);
+  }
   throw_verdict(problem, MPI_COMM_WORLD);
+  note_petsc_files(put);
   check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
   return put;
 }
@@ -177,8 +184,9 @@ Session::Session(const char* program, const UserOptions& user) : program_(progra
   word_ = words_.data();
   int count = 1;
   if (by_petsc || by_system) leave_crashes_to_the_system();
-  // Before PetscInitialize, which reads options and whose own handler prints a page.
-  if (!by_petsc) check(PetscPushErrorHandler(remember_error, nullptr));
+  // Before PetscInitialize, which reads options and whose own handler prints a page. A handler that
+  // -on_error_... names is put on top of this one.
+  check(PetscPushErrorHandler(remember_error, nullptr));
   check(PetscInitialize(&count, &word_, nullptr, nullptr));
   if (!by_petsc && !by_system) report_crashes();  // PETSc has installed handlers of its own
   if (print_by_petsc == nullptr) {

@@ -1,13 +1,11 @@
 #include "solver_options.h"
 
 #include <petsc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "option_names.h"
@@ -158,24 +156,6 @@ bool is_called(std::string_view name, std::string_view known) {
                            name[name.size() - known.size() - 1] == '_');
 }
 
-/// Whether a value lies in a range such as "> 0, <= 1".
-bool within(double value, std::string_view allowed) {
-  while (!allowed.empty()) {
-    const auto comma = allowed.find(", ");
-    const std::string_view term = allowed.substr(0, comma);
-    const auto blank = term.find(' ');
-    const std::string_view sign = term.substr(0, blank);
-    const double bound = to_number(term.substr(blank + 1)).value_or(0);
-    if (sign == ">"    ? !(value > bound)
-        : sign == ">=" ? !(value >= bound)
-        : sign == "<"  ? !(value < bound)
-                       : !(value <= bound))
-      return false;
-    allowed = comma == std::string_view::npos ? std::string_view() : allowed.substr(comma + 2);
-  }
-  return true;
-}
-
 std::string refused(std::string_view name, std::string_view value, const std::string& allowed) {
   return std::string(name) + ": " + (value.empty() ? "no value given," : shown(value)) +
          " must be " + allowed;
@@ -186,25 +166,25 @@ bool fits(std::string_view name, double value) {
   return name == "ts_max_steps" || std::abs(value) <= std::numeric_limits<PetscInt>::max();
 }
 
+bool is_number_in(std::string_view word, std::string_view range) {
+  const auto x = to_number(word);
+  return x && in_range(*x, range);
+}
+
 bool is_good(const OptionSpec& spec, std::string_view value) {
   if (spec.kind == integer) {
     const auto n = to_integer(value);
-    return n && within(static_cast<double>(*n), spec.allowed) &&
+    return n && in_range(static_cast<double>(*n), spec.allowed) &&
            fits(spec.key, static_cast<double>(*n));
   }
-  if (spec.kind == number) {
-    const auto x = to_number(value);
-    return x && within(*x, spec.allowed);
-  }
+  if (spec.kind == number) return is_number_in(value, spec.allowed);
   const auto words = choices_of(spec.allowed);
   return std::find(words.begin(), words.end(), value) != words.end();
 }
 
 std::string clip_problem(std::string_view name, std::string_view value) {
-  const auto list = to_list(value);
-  const auto at = [&](std::size_t k) { return list ? to_number(list->at(k)) : std::nullopt; };
-  if (list && list->size() == 2 && at(0) && at(1) && within(*at(0), "> 0, <= 1") &&
-      within(*at(1), ">= 1"))
+  const auto words = to_list(value).value_or(std::vector<std::string>{});
+  if (words.size() == 2 && is_number_in(words[0], "> 0, <= 1") && is_number_in(words[1], ">= 1"))
     return {};
   return refused(name, value, "2 numbers: how much a step may shrink (> 0, <= 1), grow (>= 1)");
 }
@@ -225,72 +205,51 @@ bool is_no_number(std::string_view word) {
   return text == "inf" || text == "infinity" || text == "nan" || text.starts_with("nan(");
 }
 
-/// Returns why a file cannot be written; empty if it can.
-std::string file_problem(std::string_view name, const std::string& file) {
-  std::error_code error;
-  const std::filesystem::path path(file);
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  const std::string begin = std::string(name) + ": '" + file + "' cannot be written: ";
-  if (!std::filesystem::is_directory(folder, error))
-    return begin + "there is no folder '" + folder.string() + "'";
-  if (std::filesystem::is_directory(path, error)) return begin + "it is a folder";
-  const bool there = std::filesystem::exists(path, error);
-  if (access(there ? path.c_str() : folder.c_str(), W_OK) != 0) return begin + "no permission";
-  return {};
+bool is_in_python(std::string_view name, std::string_view value) {
+  return name == "python" || name.find("python_") != std::string_view::npos ||
+         name.ends_with("_python") || (name.ends_with("_type") && value == "python");
 }
 
-/// Checks the file in a viewer's value, TYPE:FILE:FORMAT:MODE, or in a log's value, FILE:...
-std::string viewer_problem(std::string_view name, std::string_view value) {
-  const auto has = [&](std::string_view word) { return name.find(word) != std::string_view::npos; };
-  const auto colon = value.find(':');
-  if (name == "info" || name == "log_trace") {
-    const std::string file(value.substr(0, colon));
-    return file.empty() || to_flag(file) ? "" : file_problem(name, file);
-  }
-  // PETSc reads the values of these options at the end of a run.
-  const bool is_late = is_called(name, "ts_view") || is_called(name, "ts_view_solution") ||
-                       is_called(name, "log_view");
-  if (value.empty() || (colon == std::string_view::npos && !is_late)) return {};
-  if (!has("view") && !has("monitor") && !has("reason")) return {};
-  const std::string_view type = value.substr(0, colon);
-  constexpr std::array on_file{"", "ascii", "binary", "hdf5", "vtk", "matlab", "glvis", "exodusii"};
-  constexpr std::array others{"draw", "socket", "string", "saws", "mathematica", "adios", "cgns"};
-  if (std::find(others.begin(), others.end(), type) != others.end()) return {};
-  if (std::find(on_file.begin(), on_file.end(), type) == on_file.end())
-    return refused(name, value, "one of PETSc's viewers: ascii:FILE, binary:FILE, hdf5:FILE, ...");
-  if (colon == std::string_view::npos) return {};
-  std::string_view file = value.substr(colon + 1);
-  file = file.substr(0, file.find(':'));
-  return file.empty() || file == "stdout" || file == "stderr"
-             ? ""
-             : file_problem(name, std::string(file));
-}
-
-}  // namespace
-
-std::string solver_option_problem(std::string_view name, std::string_view value) {
-  const bool in_python = name == "python" || name.find("python_") != std::string_view::npos ||
-                         name.ends_with("_python") ||
-                         (name.ends_with("_type") && value == "python");
-  if (in_python)
+std::string useless_problem(std::string_view name, std::string_view value) {
+  if (is_in_python(name, value))
     return std::string(name) + ": solvers in Python cannot be used: floe runs no Python";
-  for (const Useless& u : useless) {
-    if (is_called(name, u.name) && to_flag(value).value_or(true))
-      return std::string(name) + ": would have no use here: " + std::string(u.why);
-  }
-  if (is_called(name, "ts_adapt_clip")) return clip_problem(name, value);
-  if (is_called(name, "snes_lag_jacobian") || is_called(name, "snes_lag_preconditioner"))
-    return lag_problem(name, value);
+  const auto found = std::find_if(useless.begin(), useless.end(),
+                                  [&](const Useless& u) { return is_called(name, u.name); });
+  if (found == useless.end() || !to_flag(value).value_or(true)) return {};
+  return std::string(name) + ": would have no use here: " + std::string(found->why);
+}
+
+/// The line of the table with the longest name that fits; null if there is none.
+const OptionSpec* line_of(std::string_view name) {
   const OptionSpec* best = nullptr;
   for (const OptionSpec& spec : table) {
     if (is_called(name, spec.key) && (best == nullptr || spec.key.size() > best->key.size()))
       best = &spec;
   }
-  if (best != nullptr && !is_good(*best, value)) return refused(name, value, allowed_text(*best));
-  for (const std::string& word : to_list(value).value_or(std::vector<std::string>{})) {
-    if (is_no_number(word)) return refused(name, value, "finite");
+  return best;
+}
+
+std::string table_problem(std::string_view name, std::string_view value) {
+  if (is_called(name, "ts_adapt_clip")) return clip_problem(name, value);
+  if (is_called(name, "snes_lag_jacobian") || is_called(name, "snes_lag_preconditioner"))
+    return lag_problem(name, value);
+  const OptionSpec* line = line_of(name);
+  return line == nullptr || is_good(*line, value) ? "" : refused(name, value, allowed_text(*line));
+}
+
+std::string finite_problem(std::string_view name, std::string_view value) {
+  const auto words = to_list(value).value_or(std::vector<std::string>{});
+  return std::any_of(words.begin(), words.end(), is_no_number) ? refused(name, value, "finite")
+                                                               : "";
+}
+
+}  // namespace
+
+std::string solver_option_problem(std::string_view name, std::string_view value) {
+  for (const auto problem : {useless_problem, table_problem, finite_problem}) {
+    if (std::string text = problem(name, value); !text.empty()) return text;
   }
-  return viewer_problem(name, value);
+  return {};
 }
 
 std::string solver_options_help(std::string_view topic) {

@@ -8,8 +8,8 @@
 namespace floe {
 
 /// Returns why a value of an option of PETSc is refused, in one line; empty if it is accepted. A
-/// table holds the ranges and words on which floe relies; no number may be nan or infinite, and the
-/// folder of a viewer's file must exist. PETSc itself may still refuse an accepted value later.
+/// table holds the ranges and words on which floe relies; no number may be nan or infinite. PETSc
+/// itself may still refuse an accepted value later; petsc_file_problem() checks files.
 /// \param name  without its dash; any prefix (sub_, mg_levels_) is ignored
 std::string solver_option_problem(std::string_view name, std::string_view value);
 

@@ -69,7 +69,8 @@ BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear) {
 
 BeamStiffness beam_damping(const Part& part, std::int32_t m, const BeamStiffness& k,
                            const BeamOptions& options) {
-  const auto [i, j] = part.beams.bodies[static_cast<std::size_t>(m)];
+  const auto& ends = part.beams.bodies[static_cast<std::size_t>(m)];
+  const std::int32_t i = ends[0], j = ends[1];
   const auto harmonic = [](double a, double b) { return 2.0 * a * b / (a + b); };
   const auto dashpot = [&](double inertia, double stiffness) {
     return 2.0 * options.damping_ratio * std::sqrt(inertia * stiffness);

@@ -78,7 +78,7 @@ void refuse_without_effect(const std::string& type) {
 
 std::string explicit_type() {
   refuse_solvers();
-  const std::string type = chosen_type();
+  std::string type = chosen_type();
   refuse_without_effect(type);
   return type;
 }

@@ -148,7 +148,7 @@ StabilityPolynomial RkRun::polynomial() const {
 
 StableStep RkRun::find_stable_step() {
   model().part().ghosts.update(state().records, Spatial::record);
-  const StableStep stable = rk_stable_step(polynomial(), model(), state());
+  StableStep stable = rk_stable_step(polynomial(), model(), state());
   // A step so far below the limit of the scene's rates means that the stability region leaves out
   // the imaginary axis, or nearly does.
   constexpr double useless = 0.2;

@@ -244,6 +244,7 @@ VibrationMode extreme_mode(const Model<Spatial>& model, const State<Spatial>& st
   first *= 0.1 / std::sqrt(a.dot(first, first));
   if (start) first += start->shape;
   const auto mode = top_mode(a, std::move(first), search);
+  if (!mode) return {};
   return {
       search.value(),  a.dot(mode->z, mode->k),     (a.is_damped() ? a.dot(mode->z, mode->c) : 0.0),
       a.evaluations(), describe(a, model, mode->z), mode->z};

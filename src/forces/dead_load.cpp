@@ -77,8 +77,7 @@ class DeadLoad final : public Force<Space>,
       constexpr int n = Space::unknowns;
       for (int r = Space::translations; r < n; ++r) {
         for (int s = Space::translations; s < n; ++s)
-          block[static_cast<std::size_t>(r * n + s)] =
-              k(turns_about<Space>(r), turns_about<Space>(s));
+          block[entry_of(r, n, s)] = k(turns_about<Space>(r), turns_about<Space>(s));
       }
       tangent.add_body(body, block);
     }

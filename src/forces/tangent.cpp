@@ -85,7 +85,7 @@ void Tangent<Space>::begin(std::span<const double> increments) {
   check(MatZeroEntries(matrix_));
   increments_ = increments;
   weigh(1, {});
-  lift_.assign(static_cast<std::size_t>(part_.owned * n), 0.0);
+  lift_.assign(entry_of(part_.owned, n, 0), 0.0);
 }
 
 template <class Space>
@@ -102,11 +102,11 @@ void Tangent<Space>::turn_rows(std::int32_t body, std::span<double> rows, int co
     const auto& by = frames_[static_cast<std::size_t>(body)].rows;
     for (int c = 0; c < columns; ++c) {
       const auto at = [&](int k) -> double& {
-        return rows[static_cast<std::size_t>((Space::translations + k) * columns + c)];
+        return rows[entry_of(Space::translations + k, columns, c)];
       };
       const std::array<double, 3> old{at(0), at(1), at(2)};
       for (int k = 0; k < 3; ++k) {
-        const auto r = static_cast<std::size_t>(3 * k);
+        const std::size_t r = entry_of(k, 3, 0);
         at(k) = by[r] * old[0] + by[r + 1] * old[1] + by[r + 2] * old[2];
       }
     }
@@ -123,7 +123,7 @@ void Tangent<Space>::turn_columns(std::int32_t body, std::span<double> block, in
     const auto& by = frames_[static_cast<std::size_t>(body)].columns;
     const int rows = static_cast<int>(block.size()) / columns;
     for (int r = 0; r < rows; ++r) {
-      double* row = &block[static_cast<std::size_t>(r * columns + first + Space::translations)];
+      double* row = &block[entry_of(r, columns, first + Space::translations)];
       const std::array<double, 3> old{row[0], row[1], row[2]};
       for (std::size_t k = 0; k < 3; ++k)
         row[k] = old[0] * by[k] + old[1] * by[3 + k] + old[2] * by[6 + k];
@@ -137,7 +137,7 @@ void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int
   if (!frames_.empty()) turn_rows(body, rows, columns);
   for (int k = 0; k < n; ++k) {
     const double factor = is_held(body, k) ? 0.0 : factor_ * scale_[static_cast<std::size_t>(k)];
-    for (int c = 0; c < columns; ++c) rows[static_cast<std::size_t>(k * columns + c)] *= factor;
+    for (int c = 0; c < columns; ++c) rows[entry_of(k, columns, c)] *= factor;
   }
 }
 
@@ -174,9 +174,9 @@ void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
   prepare_rows(body, a, n);
   for (int c = 0; c < n; ++c) {
     const bool held = is_held(body, c);
-    const auto index = static_cast<std::size_t>(body * n);
+    const std::size_t index = entry_of(body, n, 0);
     for (int k = 0; k < n; ++k) {
-      double& entry = a[static_cast<std::size_t>(k * n + c)];
+      double& entry = a[entry_of(k, n, c)];
       entry *= scale_[static_cast<std::size_t>(c)];
       if (!held) continue;
       if (!increments_.empty())
@@ -196,20 +196,19 @@ void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& b
     turn_columns(i, a, 0, 2 * n);
     turn_columns(j, a, n, 2 * n);
   }
-  constexpr std::size_t half = static_cast<std::size_t>(2 * n * n);
+  constexpr std::size_t half = entry_of(n, 2 * n, 0);
   prepare_rows(i, std::span(a).first(half), 2 * n);
   prepare_rows(j, std::span(a).subspan(half), 2 * n);
   for (int c = 0; c < 2 * n; ++c) {
     const std::int32_t column_body = body[static_cast<std::size_t>(c / n)];
     const bool held = is_held(column_body, c % n);
     for (int k = 0; k < 2 * n; ++k) {
-      double& entry = a[static_cast<std::size_t>(k * 2 * n + c)];
+      double& entry = a[entry_of(k, 2 * n, c)];
       entry *= scale_[static_cast<std::size_t>(c % n)];
       if (!held) continue;
       const std::int32_t row_body = body[static_cast<std::size_t>(k / n)];
       if (!increments_.empty() && row_body < part_.owned)
-        lift_[static_cast<std::size_t>(row_body * n + k % n)] +=
-            entry * increments_[static_cast<std::size_t>(column_body * n + c % n)];
+        lift_[entry_of(row_body, n, k % n)] += entry * increments_[entry_of(column_body, n, c % n)];
       entry = 0;
     }
   }
@@ -229,7 +228,7 @@ void Tangent<Space>::end() {
   for (std::int32_t body = 0; body < part_.owned; ++body) {
     Block diagonal{};
     for (int k = 0; k < n; ++k)
-      diagonal[static_cast<std::size_t>(k * n + k)] = is_held(body, k) ? held_diagonal_ : 0.0;
+      diagonal[entry_of(k, n, k)] = is_held(body, k) ? held_diagonal_ : 0.0;
     insert({&body, 1}, {&body, 1}, diagonal.data());
   }
   check(MatAssemblyBegin(matrix_, MAT_FINAL_ASSEMBLY));

@@ -25,6 +25,12 @@
 
 namespace floe {
 
+/// Returns the index of an entry in rows of `columns` numbers.
+constexpr std::size_t entry_of(std::int32_t row, std::int32_t columns, std::int32_t column) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
 /// Storage of the matrix, and whether K or its symmetric form H is assembled.
 struct TangentOptions {
   const char* type = MATSBAIJ;  ///< PETSc's matrix type, unless -mat_type names another

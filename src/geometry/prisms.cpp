@@ -64,8 +64,9 @@ std::optional<Prisms> as_prisms(const Shapes& shapes) {
                 std::equal(one.vertices.begin(), one.vertices.end(),
                            shapes.vertices.begin() + static_cast<std::ptrdiff_t>(first));
     for (std::int32_t f = 0; same && f <= faces; ++f)
-      same = shapes.corner_of[static_cast<std::size_t>(face + f)] - corner ==
-             one.corner_of[static_cast<std::size_t>(f)];
+      same =
+          shapes.corner_of[static_cast<std::size_t>(face) + static_cast<std::size_t>(f)] - corner ==
+          one.corner_of[static_cast<std::size_t>(f)];
     for (std::size_t c = 0; same && c < one.corners.size(); ++c)
       same = shapes.corners[static_cast<std::size_t>(corner) + c] - shapes.vertex_of[b] ==
              one.corners[c];

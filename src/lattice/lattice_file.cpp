@@ -41,8 +41,7 @@ class Reader {
     expect(name, values.size(), count);
     for (std::size_t k = 0; k < count; ++k) {
       check_size(name, "entry", k, values[k]);
-      if (positive && values[k] <= 0)
-        refuse(name, "entry " + std::to_string(k) + " is " + text_of(values[k]) + ", must be > 0");
+      if (positive) check_positive(name, "entry", k, values[k]);
     }
     return values;
   }
@@ -70,8 +69,16 @@ class Reader {
     return values;
   }
 
+  void check_positive(const std::string& name, const char* what, std::size_t k,
+                      double value) const {
+    constexpr double least = 1e-30;
+    if (!(value >= least))
+      refuse(name, std::string(what) + " " + std::to_string(k) + " is " + text_of(value) +
+                       ", must be > 0" + (value > 0 ? " and at least 1e-30" : ""));
+  }
+
  private:
-  /// Limits the size of values, so that products of a few of them are finite.
+  /// Limits the size of values, so that products and quotients of a few of them are finite.
   void check_size(const std::string& name, const char* what, std::size_t k, double value) const {
     constexpr double largest = 1e30;
     if (!(std::abs(value) <= largest))
@@ -104,9 +111,7 @@ Bodies read_bodies(const Reader& in) {
   b.mass = in.scalars("/bodies/mass", n);
   b.inertia = in.rows<3>("/bodies/inertia", n);
   for (std::size_t k = 0; k < n; ++k) {
-    for (const double moment : b.inertia[k]) {
-      if (moment <= 0) in.refuse("/bodies/inertia", "row " + std::to_string(k) + " must be > 0");
-    }
+    for (const double moment : b.inertia[k]) in.check_positive("/bodies/inertia", "row", k, moment);
   }
   if (in.file().has("/bodies/velocity")) b.velocity = in.rows<3>("/bodies/velocity", n);
   if (in.file().has("/bodies/angular_velocity"))

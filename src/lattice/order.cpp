@@ -47,7 +47,7 @@ std::vector<std::int32_t> reverse_cuthill_mckee(const Lattice& lattice) {
 }  // namespace
 
 std::vector<std::int32_t> reorder(Lattice& lattice) {
-  const std::vector<std::int32_t> order = reverse_cuthill_mckee(lattice);
+  std::vector<std::int32_t> order = reverse_cuthill_mckee(lattice);
   std::vector<std::int32_t> renumbered(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     renumbered[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);

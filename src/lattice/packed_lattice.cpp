@@ -45,7 +45,7 @@ void PackedLattice::unpack(Lattice& lattice) {
   if (prisms_) lattice.shapes = polyhedra(*prisms_);
   const auto all = columns(lattice.beams);
   for (std::size_t k = 0; k < all.size(); ++k) {
-    if (shared_[k]) all[k]->assign(lattice.beams.bodies.size(), *shared_[k]);
+    if (const auto& value = shared_[k]) all[k]->assign(lattice.beams.bodies.size(), *value);
   }
   *this = {};
 }

@@ -111,8 +111,8 @@ void Delaunay::build(std::vector<Point2> points) {
 }
 
 bool Delaunay::turns_left(std::int32_t t) const {
-  return left_turn(points_[origin_[3 * t]], points_[origin_[3 * t + 1]],
-                   points_[origin_[3 * t + 2]]);
+  const std::size_t e = 3 * static_cast<std::size_t>(t);
+  return left_turn(points_[origin_[e]], points_[origin_[e + 1]], points_[origin_[e + 2]]);
 }
 
 bool Delaunay::is_delaunay(std::int32_t e) const {

@@ -26,7 +26,7 @@ std::vector<Break> CrackLog::gather() const {
   std::vector<int> counts(ranks), offsets(ranks, 0);
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, part_.comm);
   for (std::size_t r = 1; r < ranks; ++r) offsets[r] = offsets[r - 1] + counts[r - 1];
-  all.resize(static_cast<std::size_t>(offsets.back() + counts.back()));
+  all.resize(static_cast<std::size_t>(offsets.back()) + static_cast<std::size_t>(counts.back()));
   MPI_Gatherv(mine.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(), MPI_DOUBLE,
               0, part_.comm);
   std::vector<Break> breaks;
@@ -90,6 +90,7 @@ void CrackLog::write(const std::vector<Break>& breaks) const {
   Hdf5File file = Hdf5File::create(dir_ + "/breaks.h5");
   const auto column = [&](const char* name, auto value) {
     std::vector<double> values;
+    values.reserve(breaks.size());
     for (const Break& b : breaks) values.push_back(value(b));
     file.write(name, values);
   };

@@ -48,9 +48,11 @@ void FrameWriter::write_mesh(Hdf5File& file) const {
         if (s.empty()) return;
         for (std::int32_t& value : values) {
           const std::int32_t begin = s.corner_of[face], count = s.corner_of[face + 1] - begin;
-          value = corner == -2   ? xdmf_polygon
-                  : corner == -1 ? count
-                                 : s.corners[static_cast<std::size_t>(begin + corner)];
+          value =
+              corner == -2 ? xdmf_polygon
+              : corner == -1
+                  ? count
+                  : s.corners[static_cast<std::size_t>(begin) + static_cast<std::size_t>(corner)];
           if (++corner < count) continue;
           corner = -2;
           ++face;

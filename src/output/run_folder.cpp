@@ -85,7 +85,7 @@ std::string result_named(const fs::path& path, const fs::path& dir) {
   for (const fs::path& way :
        {whole_path(path.parent_path().empty() ? "." : path.parent_path()) / path.filename(),
         whole_path(path)}) {
-    const std::string name = way.filename().string();
+    std::string name = way.filename().string();
     if (way.parent_path() == folder &&
         std::find(results.begin(), results.end(), name) != results.end())
       return name;

@@ -65,8 +65,12 @@ struct Setting {
   void say(const std::string& text) const {
     if (settings.talks && rank() == 0) print(text);
   }
-  void say_error(const std::string& text) const {
-    if (settings.talks && rank() == 0) print_error(text);
+  /// Prints the scene's warnings. Bad input ends with a single line, so they come only when the run
+  /// is known to be possible.
+  void say_warnings() const {
+    if (!settings.talks || rank() != 0) return;
+    for (const std::string& warning : scene.warnings)
+      print_error("floe: warning: " + warning + "\n");
   }
 };
 
@@ -172,6 +176,7 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
                   columns_of(scene_.boundaries, scene_.loads, columns, scene_.forces.fracture),
                   PETSC_COMM_WORLD);
   }
+  setting_.say_warnings();
   folder.begin(restart_ ? restart_->run : "");
   if (restart_) make_newest(scene_.checkpoint.restart, checkpoint_file(scene_), PETSC_COMM_WORLD);
   setting_.mesh.keep();
@@ -188,14 +193,11 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
   first_.reset();
 }
 
-/// Bad input ends with a single line, so warnings are printed only when the run is known to be
-/// possible.
 template <class Space>
 bool RunningIn<Space>::plan(const RunPlan& plan) {
   const std::string text =
       plan_text(scene_, plan, size_of_output_, 1e6 * resident_memory_mb(PETSC_COMM_WORLD));
-  for (const std::string& warning : scene_.warnings)
-    setting_.say_error("floe: warning: " + warning + "\n");
+  if (scene_.check_only) setting_.say_warnings();
   setting_.say(text);
   return !scene_.check_only;
 }

@@ -53,9 +53,7 @@ class Buoyancy final : public Force<Spatial>,
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const Submerged s = immersion_.of(state, body);
       Tangent<Spatial>::Block k{};
-      const auto at = [&k](int row, int column) -> double& {
-        return k[static_cast<std::size_t>(row * 6 + column)];
-      };
+      const auto at = [&k](int row, int column) -> double& { return k[entry_of(row, 6, column)]; };
       at(2, 2) = weight_ * s.waterplane;
       at(2, 3) = at(3, 2) = weight_ * s.wy;
       at(2, 4) = at(4, 2) = -weight_ * s.wx;
@@ -134,6 +132,7 @@ std::vector<double> displaced_mass(const Part& part, double density) {
   const Immersion immersion(with_shapes(part));
   const State<Spatial> rest(static_cast<std::size_t>(part.local));
   std::vector<double> mass;
+  mass.reserve(static_cast<std::size_t>(part.owned));
   for (std::int32_t body = 0; body < part.owned; ++body)
     mass.push_back(density * immersion.of(rest, body).volume);
   return mass;

@@ -17,9 +17,11 @@ std::atomic<long> allocations{0};
 }
 // glibc's own names of what they replace here; PETSc's and MPI's calls come through them too.
 extern "C" {
+// NOLINTBEGIN(readability-identifier-naming)
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
+// NOLINTEND(readability-identifier-naming)
 void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);

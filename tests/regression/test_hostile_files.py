@@ -142,6 +142,29 @@ class System(HostileTest):
             said = self.said()
         self.assertIn("lattice_file: 'l.h5' is being written by another program", said)
 
+    def test_free_blocks_in_a_circle(self):
+        """The list of free blocks of a group's heap leads to itself: HDF5 1.10 follows it and takes
+        24 bytes per turn, until there is no memory left on the machine."""
+        for key in ("lattice_file", "obstacle: o: file"):
+            path = self.start(key)
+            data = bytearray(path.read_bytes())
+            heap = data.find(b"HEAP")  # signature, version, size, first free block, address
+            free, address = (int.from_bytes(data[heap + at:heap + at + 8], "little")
+                             for at in (16, 24))
+            self.assertNotEqual(free, 1, "there is no free block")
+            data[address + free:address + free + 8] = free.to_bytes(8, "little")
+            path.write_bytes(data)
+            process = subprocess.Popen([FLOE, "s.yaml"], cwd=self.folder, stderr=subprocess.PIPE,
+                                       stdout=subprocess.DEVNULL, env=ENVIRONMENT,
+                                       preexec_fn=limited_memory(8))
+            said = own_words(process.stderr.read().decode())
+            process.stderr.close()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual((process.returncode, said.count("\n")), (2, 1), said)
+            self.assertIn(f"{key}: '{KINDS[key][1]}'", said)
+            self.assertLess(usage.ru_maxrss, 1 << 20, "KiB")
+
     def test_flipped_bytes(self):
         """Whatever is flipped: a run, or one line."""
         chance = random.Random(14)
@@ -153,7 +176,7 @@ class System(HostileTest):
                     data[chance.randrange(len(data))] = chance.randrange(256)
                 path.write_bytes(data)
                 done = subprocess.run([FLOE, "s.yaml"], cwd=self.folder, capture_output=True,
-                                      text=True, env=ENVIRONMENT)
+                                      text=True, env=ENVIRONMENT, preexec_fn=limited_memory(8))
                 said = own_words(done.stderr)
                 self.assertIn(done.returncode, (0, 1, 2), said)
                 if done.returncode:
@@ -189,6 +212,12 @@ class Datasets(HostileTest):
                              (np.full(9, 1e300), "at most 1e30")):
             self.replaced("/bodies/mass", values, word)
         self.replaced("/bodies/position", np.ones((0, 3)), "at least one body")
+        # stresses and stiffnesses of what is read would be infinite
+        for dataset, values, word in (
+                ("/bodies/inertia", np.full((9, 3), 1e-300), "row 0 is 1e-300"),
+                ("/beams/height", np.full(8, 1e-300), "entry 0 is 1e-300"),
+                ("/beams/length", np.full(8, 1e-31), "entry 0 is 1e-31")):
+            self.replaced(dataset, values, word + ", must be > 0 and at least 1e-30")
 
     def test_indices(self):
         for values, word in ((np.full((8, 2), 0.5), "must hold integers"),

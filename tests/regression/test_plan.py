@@ -193,6 +193,9 @@ class Refused(PlanTest):
                                               "at most 1 TB", "limit: disk"))
         self.plan(IMPLICIT, *options, "-limit_disk", "1e5", "-check")
         self.refuse(EXPLICIT, "-limit_disk", "1e-6", said=("on disk, at most 1 kB are taken",))
+        # one line: what may be meant so is not said of a run that is refused
+        self.refuse(EXPLICIT, "-limit_disk", "1e-6", "-gravity", "1e-9", said=("limit: disk",))
+        self.refuse(STATIC, "-ice_young", "4", "-ts_max_steps", "0", said=("ts_max_steps",))
 
     def test_memory(self):
         """A sheet that will not find room is refused before it is meshed

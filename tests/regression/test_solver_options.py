@@ -5,6 +5,7 @@ line and in the environment."""
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 from launch import ENVIRONMENT, FLOE, on_ranks, own_words
@@ -88,6 +89,51 @@ class Values(unittest.TestCase):
         for option, value in USELESS:
             with self.subTest(option=option):
                 self.refused(option, value, ["-" + option, *([value] if value else [])])
+
+    def test_petscs_handler_is_asked_for_wrongly(self):
+        """An option that hands errors to PETSc is itself in error."""
+        for value in ("abc", "[nan, 0, 0]"):
+            self.refused("on_error_abort", value, ["-on_error_abort", value])
+
+    def test_a_long_value_is_cut(self):
+        said = self.refused("ksp_view_mat", "", ["-ksp_view_mat", "1 " * 200])
+        self.assertLess(len(said), 400)
+
+    def test_windows_need_a_display(self):
+        for words in (["-ksp_view", "draw"], ["-snes_monitor", "draw::draw_lg"],
+                      ["-snes_monitor_lg_residualnorm"]):
+            with self.subTest(words=words):
+                with unittest.mock.patch.dict(ENVIRONMENT, {"DISPLAY": ""}):
+                    said = self.refused(words[0][1:], "", words)
+                self.assertIn("no display to draw on (DISPLAY is not set)", said)
+
+    def test_files_of_a_refused_run_go(self):
+        """PETSc makes them while it begins, in the first solve or at its end."""
+        unknown = ("-eps_type", "-snes_bogus", "-snes_type")
+        files = (["-citations", "c"], ["-info", "i"], ["-log_view", ":l"],
+                 ["-ksp_view_mat", "binary:m"], ["-snes_view", "ascii:v"],
+                 ["-log_trace", "t"], ["-log_summary", "s"], ["-log_all"], ["-log_all", "a"])
+        for ranks in (1, 2):
+            for words in files:
+                for reason in unknown if ranks == 1 else unknown[1:2]:
+                    with (self.subTest(words=words, reason=reason, ranks=ranks),
+                          tempfile.TemporaryDirectory() as folder):
+                        Path(folder, "s.yaml").write_text(STATIC)
+                        done = subprocess.run(
+                            on_ranks(ranks, [str(FLOE), "s.yaml", *words, reason]), cwd=folder,
+                            capture_output=True, text=True, timeout=600, env=ENVIRONMENT)
+                        self.assertEqual(done.returncode, 2, done.stderr)
+                        self.assertEqual(sorted(p.name for p in Path(folder).iterdir()), ["s.yaml"])
+
+    def test_files_that_were_there_stay(self):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "s.yaml").write_text(STATIC)
+            Path(folder, "m").write_text("mine")
+            done = subprocess.run([str(FLOE), "s.yaml", "-ksp_view_mat", "binary:m", "-eps_type"],
+                                  cwd=folder, capture_output=True, text=True, timeout=600,
+                                  env=ENVIRONMENT)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertEqual(Path(folder, "m").read_text(), "mine")
 
     def test_in_the_environment(self):
         code, lines, made = self.run_with(STATIC, [], {"PETSC_OPTIONS": "-snes_rtol nan"}, 1)

@@ -21,6 +21,8 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
 import fuzz_files  # noqa: E402
 import fuzz_words  # noqa: E402
@@ -62,6 +64,19 @@ PETSC_SCENES = ("forces: [beam]\nsheet: {length: 8, thickness: 1, element_size: 
                 "integrator: explicit\nforces: [beam]\nsheet: {length: 6, element_size: 2}\n"
                 "time: {end: 1e-3}\n"
                 "ts: {type: rk, rk_type: 4}\n")
+
+
+def are_close(one, other):
+    """Whether two history.csv are the same but for the rounding of sums over ranks."""
+    tables = [np.genfromtxt(path, delimiter=",", names=True) for path in (one, other)]
+    if tables[0].dtype.names != tables[1].dtype.names or len(tables[0]) != len(tables[1]):
+        return False
+    for name in tables[0].dtype.names:
+        a, b = (table[name] for table in tables)
+        scale = 1 if name == "energy_balance_error" else np.abs(a).max()  # a part of the energies
+        if not np.allclose(a, b, rtol=0, atol=1e-9 * scale):
+            return False
+    return True
 
 
 class Case:
@@ -185,12 +200,6 @@ class Case:
         text = text.encode(errors="replace").decode()
         return text + " " + text.replace("_", " _ ")
 
-    def names_file(self, name):
-        """Whether a file is one that an option of PETSc names."""
-        return self.kind == "petsc" and not name.startswith("out") and any(
-            name == word or len(word) > 1 and name.startswith(word.lstrip(":"))
-            for word in self.all_text().split())
-
     def lay(self, folder):
         for name in (*LATTICES, "o.h5"):
             if name not in self.files and (name in self.scene
@@ -217,8 +226,9 @@ class Case:
         if "-check" in self.words:
             return None
         straight, resumed = (f / "out/s/history.csv" for f in (self.base.folder / "d", folder))
-        return None if straight.read_bytes() == resumed.read_bytes() else ("a damaged checkpoint "
-                                                                           "gives other results",)
+        same = (straight.read_bytes() == resumed.read_bytes() if self.ranks == 1
+                else are_close(straight, resumed))
+        return None if same else ("a damaged checkpoint gives other results",)
 
 
 class Base:

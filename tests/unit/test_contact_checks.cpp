@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "contact_force/checks.h"
 #include "support/contact_scene.h"
@@ -21,6 +22,7 @@ struct Asked {
     for (const auto& force : dynamics.model().forces()) {
       if (auto* c = dynamic_cast<Contact*>(force.get())) contact = c;
     }
+    if (contact == nullptr) throw std::logic_error("the scene has no contact");
   }
   Contact& force() { return *contact; }
   test::Dynamics dynamics;

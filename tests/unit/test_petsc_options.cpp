@@ -32,7 +32,7 @@ PetscErrorCode listen(std::FILE*, const char* format, std::va_list words) noexce
 /// for each prefix, so every listener has a prefix of its own for its objects.
 class Listener {
  public:
-  Listener() : prefix_("t" + std::to_string(++count_) + "_"), before_(PetscVFPrintf) {
+  Listener() : prefix_("t" + std::to_string(++count) + "_"), before_(PetscVFPrintf) {
     said.clear();
     PetscVFPrintf = listen;
   }
@@ -52,7 +52,7 @@ class Listener {
   }
 
  private:
-  inline static int count_ = 0;
+  inline static int count = 0;
   std::string prefix_;
   decltype(PetscVFPrintf) before_;
   const PetscOption help_{"-help", ""};

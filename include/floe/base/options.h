@@ -93,8 +93,8 @@ class Options {
   void refuse_part(std::string_view key, std::string_view name, const std::string& label,
                    const std::string& why);
   /// Resolves two keys that exclude each other. Returns the given one, or nothing if neither is
-  /// given. If both are given from different sources, returns the key of the command line, and the
-  /// key of the scene is idle.
+  /// given. If both are given, returns the key of the stronger source (see Source), and the other
+  /// key is idle.
   /// \throws InputError with the text `both` if both are given by the same source
   std::string_view one_of(std::string_view a, std::string_view b, std::string_view name,
                           const std::string& both);

@@ -132,6 +132,11 @@ class Session {
   char** word_ = nullptr;
 };
 
+/// Removes the files that options of PETSc have made in a run that is refused (logs, files of
+/// viewers), unless they were there before. Call after the end of the session, when PETSc has
+/// closed them.
+void drop_petsc_files() noexcept;
+
 /// Return the rank of this process and the number of ranks.
 inline int rank(MPI_Comm comm = PETSC_COMM_WORLD) {
   int r = 0;
