@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "base/hdf5.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "hdf5_id.h"
 
@@ -83,8 +84,7 @@ double values_in(hid_t space) {
   std::array<hsize_t, H5S_MAX_RANK> extent{};
   const int dimensions = H5Sget_simple_extent_dims(space, extent.data(), nullptr);
   double values = 1;
-  for (int k = 0; k < dimensions; ++k)
-    values *= static_cast<double>(extent[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < dimensions; ++k) values *= static_cast<double>(item(extent, k));
   return values;
 }
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "floe/base/item.h"
+
 namespace floe {
 
 /// Union-find with path halving (Tarjan & van Leeuwen 1984). The representative of a set is its
@@ -20,7 +22,7 @@ class UnionFind {
   std::int32_t find(std::int32_t member) {
     auto at = static_cast<std::size_t>(member);
     while (static_cast<std::size_t>(parent_[at]) != at) {
-      parent_[at] = parent_[static_cast<std::size_t>(parent_[at])];
+      parent_[at] = item(parent_, parent_[at]);
       at = static_cast<std::size_t>(parent_[at]);
     }
     return static_cast<std::int32_t>(at);
@@ -28,7 +30,7 @@ class UnionFind {
   /// Merges the sets of a and b.
   void unite(std::int32_t a, std::int32_t b) {
     a = find(a), b = find(b);
-    parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    item(parent_, std::max(a, b)) = std::min(a, b);
   }
   /// Returns the lowest member of each index's set.
   std::vector<std::int32_t> representatives() {

@@ -2,6 +2,7 @@
 
 #include "beams/planar_lanes.h"
 #include "beams/spatial_lanes.h"
+#include "floe/base/item.h"
 
 namespace floe {
 namespace {
@@ -28,8 +29,8 @@ std::unique_ptr<BeamForce<Space>> make(const Part& part, const BeamOptions& opti
 Triad<double> beam_triad(const Bodies& bodies, const Beams& beams, std::int32_t m) {
   const auto k = static_cast<std::size_t>(m);
   const auto [i, j] = beams.bodies[k];
-  const Point3& xi = bodies.position[static_cast<std::size_t>(i)];
-  const Point3& xj = bodies.position[static_cast<std::size_t>(j)];
+  const Point3& xi = item(bodies.position, i);
+  const Point3& xj = item(bodies.position, j);
   const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
   const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
   const Point3& axis = beams.axis_y[k];
@@ -69,14 +70,13 @@ BeamStiffness beam_stiffness(const Beams& beams, std::int32_t m, Shear shear) {
 
 BeamStiffness beam_damping(const Part& part, std::int32_t m, const BeamStiffness& k,
                            const BeamOptions& options) {
-  const auto& ends = part.beams.bodies[static_cast<std::size_t>(m)];
+  const auto& ends = item(part.beams.bodies, m);
   const std::int32_t i = ends[0], j = ends[1];
   const auto harmonic = [](double a, double b) { return 2.0 * a * b / (a + b); };
   const auto dashpot = [&](double inertia, double stiffness) {
     return 2.0 * options.damping_ratio * std::sqrt(inertia * stiffness);
   };
-  const double mass = harmonic(part.bodies.mass[static_cast<std::size_t>(i)],
-                               part.bodies.mass[static_cast<std::size_t>(j)]);
+  const double mass = harmonic(item(part.bodies.mass, i), item(part.bodies.mass, j));
   const Triad<double> t = beam_triad(part.bodies, part.beams, m);
   const auto turning = [&](const Vec3<double>& axis) {
     const Point3 a{axis.x, axis.y, axis.z};

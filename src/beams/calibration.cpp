@@ -6,6 +6,7 @@
 #include <string>
 
 #include "beams/beam_force.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -29,11 +30,10 @@ std::vector<std::uint8_t> edge_beams(const Lattice& lattice) {
   std::vector<std::uint8_t> at_edge(lattice.beams.bodies.size(), 0);
   for (const char* side : {"left", "right", "bottom", "top"}) {
     std::vector<std::uint8_t> on_side(lattice.bodies.position.size(), 0);
-    for (const std::int32_t body : lattice.sets.at(side))
-      on_side[static_cast<std::size_t>(body)] = 1;
+    for (const std::int32_t body : lattice.sets.at(side)) item(on_side, body) = 1;
     for (std::size_t m = 0; m < at_edge.size(); ++m) {
       const auto [i, j] = lattice.beams.bodies[m];
-      at_edge[m] |= on_side[static_cast<std::size_t>(i)] & on_side[static_cast<std::size_t>(j)];
+      at_edge[m] |= item(on_side, i) & item(on_side, j);
     }
   }
   return at_edge;
@@ -42,8 +42,7 @@ std::vector<std::uint8_t> edge_beams(const Lattice& lattice) {
 /// exp(4i phi) of a beam's direction phi in the plan.
 std::complex<double> fourfold(const Lattice& lattice, std::size_t m) {
   const auto [i, j] = lattice.beams.bodies[m];
-  const Point3 &a = lattice.bodies.position[static_cast<std::size_t>(i)],
-               &b = lattice.bodies.position[static_cast<std::size_t>(j)];
+  const Point3 &a = item(lattice.bodies.position, i), &b = item(lattice.bodies.position, j);
   const std::complex<double> along(b[0] - a[0], b[1] - a[1]), square = along * along;
   return square * square / std::norm(square);
 }

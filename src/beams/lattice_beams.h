@@ -10,6 +10,7 @@
 
 #include "base/simd.h"
 #include "beams/beam_force.h"
+#include "floe/base/item.h"
 
 namespace floe {
 
@@ -102,9 +103,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     }
   }
 
-  double stiffness_bound(std::int32_t body) const override {
-    return stiffness_[static_cast<std::size_t>(body)];
-  }
+  double stiffness_bound(std::int32_t body) const override { return item(stiffness_, body); }
 
   void commit(const State<Space>&, double dt) override {
     if constexpr (damped) {
@@ -171,7 +170,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   virtual double stored(const State<Space>& state) const {
     double energy = 0;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
-      if (part_.counts_here[static_cast<std::size_t>(m)])
+      if (item(part_.counts_here, m))
         energy += Beam::energy(constants(m), record(state, i), record(state, j));
     });
     return energy;
@@ -200,7 +199,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     block.i[k % lanes] = i;
     block.j[k % lanes] = j;
     for (const std::int32_t body : {i, j})
-      stiffness_[static_cast<std::size_t>(body)] += std::max(c.kn, Beam::shear_stiffness(c));
+      item(stiffness_, body) += std::max(c.kn, Beam::shear_stiffness(c));
     if constexpr (damped) {
       const BeamStiffness springs = beam_stiffness(part_.beams, m, options.shear);
       dashpots_[k / lanes].set(k % lanes, beam_damping(part_, m, springs, options),
@@ -218,7 +217,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   }
   void for_each(auto&& visit) const {
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
-      const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+      const auto [i, j] = item(part_.beams.bodies, m);
       visit(m, i, j);
     }
   }

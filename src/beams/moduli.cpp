@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "beams/beam_force.h"
+#include "floe/base/item.h"
 
 namespace floe {
 namespace {
@@ -16,7 +17,7 @@ std::vector<std::uint8_t> inner_bodies(const Lattice& lattice) {
   for (const char* side : {"left", "right", "bottom", "top"}) {
     const auto set = lattice.sets.find(side);
     if (set == lattice.sets.end()) continue;
-    for (const std::int32_t body : set->second) inner[static_cast<std::size_t>(body)] = 0;
+    for (const std::int32_t body : set->second) item(inner, body) = 0;
   }
   return inner;
 }

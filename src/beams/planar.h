@@ -28,6 +28,7 @@
 #include "base/sine_cosine.h"
 #include "beams/beam_force.h"
 #include "beams/kernel.h"
+#include "floe/base/item.h"
 #include "floe/lattice/state.h"
 
 namespace floe {
@@ -238,8 +239,8 @@ struct PlanarBeam {
   static Constants make(const Part& part, std::int32_t m, Shear shear) {
     const auto k = static_cast<std::size_t>(m);
     const auto [i, j] = part.beams.bodies[k];
-    const Point3& xi = part.bodies.position[static_cast<std::size_t>(i)];
-    const Point3& xj = part.bodies.position[static_cast<std::size_t>(j)];
+    const Point3& xi = item(part.bodies.position, i);
+    const Point3& xj = item(part.bodies.position, j);
     const double x = xj[0] - xi[0], y = xj[1] - xi[1], inverse = 1.0 / std::sqrt(x * x + y * y);
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     return {{inverse * x, inverse * y}, part.beams.length[k], s.kn, s.ksz, s.kbz};

@@ -10,6 +10,7 @@
 
 #include "beams/beam_force.h"
 #include "beams/kernel.h"
+#include "floe/base/item.h"
 #include "floe/lattice/state.h"
 
 namespace floe {
@@ -29,7 +30,7 @@ struct SpatialBeam {
     Constants c{};
     const auto [e1, e2, e3] = beam_triad(part.bodies, part.beams, m);
     c.rest = {e1, e2, e3};
-    c.l0 = part.beams.length[static_cast<std::size_t>(m)];
+    c.l0 = item(part.beams.length, m);
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
     return c;
@@ -116,9 +117,7 @@ struct SpatialBeam {
     const std::array<const Dual*, 3> mj{&g.moment_j.x, &g.moment_j.y, &g.moment_j.z};
     const auto put = [&](int row, const Dual& value, double sign) {
       for (int a = 0; a < 3; ++a) {
-        const auto at = [&](int column) -> double& {
-          return k[static_cast<std::size_t>(row * 2 * n + column)];
-        };
+        const auto at = [&](int column) -> double& { return item(k, row * 2 * n + column); };
         const auto& by = value.derivatives();
         at(a) = -sign * by[a];  // u_i enters through d = u_j - u_i only
         at(3 + a) = sign * by[3 + a];
@@ -179,7 +178,7 @@ struct SpatialBeam {
 
   static void add_half_skew(std::array<double, 4 * n * n>& k, int at, const Vec3<double>& m) {
     const auto entry = [&](int row, int column) -> double& {
-      return k[static_cast<std::size_t>((at + row) * 2 * n + at + column)];
+      return item(k, (at + row) * 2 * n + at + column);
     };
     entry(0, 1) -= 0.5 * m.z, entry(1, 0) += 0.5 * m.z;
     entry(0, 2) += 0.5 * m.y, entry(2, 0) -= 0.5 * m.y;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/at.h"
+#include "floe/base/item.h"
 
 namespace floe {
 
@@ -40,11 +40,11 @@ void ActiveContacts::add(const ActiveContact& active, const Pair& pair, const Pl
     if (is_obstacle(pair.b)) power_.obstacles += power_of_obstacle(active, a, b);
   }
   const Vec3<double> force = contact.force();
-  ContactWrench& on_a = at(wrenches, pair.slot_a);
+  ContactWrench& on_a = item(wrenches, pair.slot_a);
   on_a.force = on_a.force + force;
   on_a.moment = on_a.moment + cross(active.centre, force) + contact.couple;
   ContactWrench& on_b =
-      is_obstacle(pair.b) ? on_obstacle_[obstacle_number(pair.b)] : at(wrenches, pair.slot_b);
+      is_obstacle(pair.b) ? on_obstacle_[obstacle_number(pair.b)] : item(wrenches, pair.slot_b);
   on_b.force = on_b.force - force;
   on_b.moment = on_b.moment - cross(active.centre + (a.x - b.x), force) - contact.couple;
 }

@@ -106,9 +106,9 @@ void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> b
                       ContactPower& power) {
   const Pair& pair = list_.pair(active.pair);
   const ContactForce& contact = active.contact;
-  const Placed a = places_.moving(pair.slot_a, at(bodies, pair.slot_a));
+  const Placed a = places_.moving(pair.slot_a, item(bodies, pair.slot_a));
   const Placed b = is_obstacle(pair.b) ? places_.of_b(pair)
-                                       : places_.moving(pair.slot_b, at(bodies, pair.slot_b));
+                                       : places_.moving(pair.slot_b, item(bodies, pair.slot_b));
   const RelativeMotion motion = relative_motion(a, b, active.centre);
   if (pair.counted) {
     add_power(contact, motion, power);

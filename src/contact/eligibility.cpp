@@ -27,22 +27,22 @@ void Eligibility::update(const Solids& solids) {
   std::vector<std::int32_t> beams(n, 0);
   UnionFind pieces(n);
   for (const auto& [a, b] : joined_) {
-    ++at(beams, a);
-    ++at(beams, b);
+    ++item(beams, a);
+    ++item(beams, b);
     pieces.unite(a, b);
   }
   piece_ = pieces.representatives();
   on_surface_.resize(n);
   pieces_ = 0;
   for (std::int32_t b = 0; b < bodies; ++b) {
-    if (at(piece_, b) == b) ++pieces_;
-    at(on_surface_, b) = at(beams, b) < solids.faces(b).number - 2 ? 1 : 0;
+    if (item(piece_, b) == b) ++pieces_;
+    item(on_surface_, b) = item(beams, b) < solids.faces(b).number - 2 ? 1 : 0;
   }
-  for (const auto& [a, b] : released_) at(on_surface_, a) = at(on_surface_, b) = 1;
+  for (const auto& [a, b] : released_) item(on_surface_, a) = item(on_surface_, b) = 1;
 }
 
 bool Eligibility::may_touch(std::int32_t a, std::int32_t b) const {
-  if (at(piece_, a) != at(piece_, b)) return true;
+  if (item(piece_, a) != item(piece_, b)) return true;
   return on_surface(a) && on_surface(b) &&
          !std::binary_search(joined_.begin(), joined_.end(), BodyPair{a, b});
 }

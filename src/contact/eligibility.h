@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/at.h"
 #include "contact/pair.h"
 #include "contact/solids.h"
+#include "floe/base/item.h"
 
 namespace floe {
 
@@ -26,7 +26,7 @@ class Eligibility {
   void update(const Solids& solids);
 
   bool may_touch(std::int32_t a, std::int32_t b) const;
-  bool on_surface(std::int32_t body) const { return at(on_surface_, body) != 0; }
+  bool on_surface(std::int32_t body) const { return item(on_surface_, body) != 0; }
   /// Returns the number of pieces as of the last update().
   std::int32_t pieces() const { return pieces_; }
   /// Returns the pairs whose beam broke, in the order of release().

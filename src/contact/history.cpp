@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "base/at.h"
+#include "floe/base/item.h"
 
 namespace floe {
 
@@ -30,7 +30,7 @@ void ContactHistory::take_over(std::span<Pair> pairs) {
 std::vector<double> ContactHistory::rows(std::span<const Pair> pairs) const {
   std::vector<double> rows;
   for (const Entry& entry : entries_) {
-    if (entry.pair >= 0 && !at(pairs, entry.pair).counted) continue;
+    if (entry.pair >= 0 && !item(pairs, entry.pair).counted) continue;
     const auto numbers = entry.memory.as_numbers();
     rows.insert(rows.end(), {static_cast<double>(entry.a), static_cast<double>(entry.b)});
     rows.insert(rows.end(), numbers.begin(), numbers.end());

@@ -15,7 +15,7 @@ struct PairList::Search {
   std::span<const std::uint8_t> here;
   double time;
 
-  bool is_here(std::int32_t body) const { return at(here, body) != 0; }
+  bool is_here(std::int32_t body) const { return item(here, body) != 0; }
 };
 
 PairList::PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free)
@@ -56,7 +56,7 @@ void PairList::list_bodies(const Search& search) {
   near_pairs(centres, radii, reach_, search.here, near);
   for (const auto& [a, b] : near) {
     if (eligibility_.may_touch(a, b))
-      list(search, {a, b}, at(search.bodies, a), at(search.bodies, b));
+      list(search, {a, b}, item(search.bodies, a), item(search.bodies, b));
   }
 }
 
@@ -67,7 +67,7 @@ void PairList::list_obstacles(const Search& search) {
     const Placed obstacle = place_of(solids.obstacle(index), search.time, search.time);
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {
       if (!search.is_here(b)) continue;
-      const Placed& body = at(search.bodies, b);
+      const Placed& body = item(search.bodies, b);
       const Vec3<double> x = obstacle.axes.to_local(body.x - obstacle.x);
       const auto beyond = [&](const HalfSpace& h) {
         return dot(h.normal, x) - h.offset > solids.radius(b) + reach_;
@@ -118,7 +118,7 @@ void PairList::find_involved() {
 }
 
 BodyPair PairList::offload(std::int32_t pair) {
-  Pair& offloaded = at(pairs_, pair);
+  Pair& offloaded = item(pairs_, pair);
   offloaded.offloaded = true;
   return {offloaded.a, offloaded.b};
 }

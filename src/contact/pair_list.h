@@ -7,12 +7,12 @@
 #include <span>
 #include <vector>
 
-#include "base/at.h"
 #include "contact/eligibility.h"
 #include "contact/narrow_phase.h"
 #include "contact/pair.h"
 #include "contact/places.h"
 #include "contact/solids.h"
+#include "floe/base/item.h"
 
 namespace floe {
 
@@ -54,7 +54,7 @@ class PairList {
   std::size_t size() const { return pairs_.size(); }
   std::span<Pair> pairs() { return pairs_; }
   std::span<const Pair> pairs() const { return pairs_; }
-  const Pair& pair(std::int32_t index) const { return at(pairs_, index); }
+  const Pair& pair(std::int32_t index) const { return item(pairs_, index); }
   std::span<const Pair> taken_on() const { return taken_on_; }
   /// Returns the involved bodies, by slot.
   std::span<const std::int32_t> involved() const { return involved_; }

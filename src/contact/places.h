@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "base/at.h"
 #include "contact/laws/response.h"
 #include "contact/pair.h"
 #include "contact/solids.h"
+#include "floe/base/item.h"
 
 namespace floe {
 
@@ -65,13 +65,13 @@ class Places {
   /// Gives obstacles their velocities at a time; their places stay.
   void set_obstacle_velocities(const Solids& solids, double time);
 
-  const Placed& of_a(const Pair& pair) const { return at(bodies_, pair.slot_a); }
+  const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
   const Placed& of_b(const Pair& pair) const {
-    return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : at(bodies_, pair.slot_b);
+    return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
   }
   /// Returns a body at its place of the evaluation with a later velocity and spin; without axes.
   Placed moving(std::int32_t slot, const MovingPose& later) const {
-    return {at(bodies_, slot).x, {}, later.velocity, later.spin};
+    return {item(bodies_, slot).x, {}, later.velocity, later.spin};
   }
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }

@@ -25,10 +25,10 @@ double least_width(std::span<const Vec3<double>> vertices, std::span<const HalfS
 /// Returns the area of a face [m^2].
 double face_area(const Shapes& shapes, std::int32_t face) {
   const auto corner = [&](std::int32_t c) {
-    const Point3& p = at(shapes.vertices, at(shapes.corners, c));
+    const Point3& p = item(shapes.vertices, item(shapes.corners, c));
     return Vec3<double>{p[0], p[1], p[2]};
   };
-  const std::int32_t begin = at(shapes.corner_of, face), end = at(shapes.corner_of, face + 1);
+  const std::int32_t begin = item(shapes.corner_of, face), end = item(shapes.corner_of, face + 1);
   Vec3<double> twice{};
   for (std::int32_t c = begin + 1; c + 1 < end; ++c)
     twice = twice + cross(corner(c) - corner(begin), corner(c + 1) - corner(begin));
@@ -36,7 +36,7 @@ double face_area(const Shapes& shapes, std::int32_t face) {
 }
 
 Solids::Faces faces_of(const Shapes& shapes, std::int32_t body) {
-  const std::int32_t begin = at(shapes.face_of, body), end = at(shapes.face_of, body + 1);
+  const std::int32_t begin = item(shapes.face_of, body), end = item(shapes.face_of, body + 1);
   Solids::Faces faces{.number = end - begin};
   for (std::int32_t f = begin; f < end; ++f) {
     const double area = face_area(shapes, f);
@@ -52,7 +52,7 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
                std::vector<Obstacle> obstacles)
     : shapes_(shapes), obstacles_(std::move(obstacles)) {
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
-    add(b, at(masses, b));
+    add(b, item(masses, b));
     faces_.push_back(faces_of(shapes_, b));
   }
   for (const Obstacle& o : obstacles_)
@@ -65,8 +65,8 @@ void Solids::add(std::int32_t body, double mass) {
   Body added;
   added.first_vertex = static_cast<std::int32_t>(vertices_.size());
   added.first_plane = static_cast<std::int32_t>(planes_.size());
-  for (std::int32_t v = at(shapes_.vertex_of, body); v < at(shapes_.vertex_of, body + 1); ++v) {
-    const Point3& p = at(shapes_.vertices, v);
+  for (std::int32_t v = item(shapes_.vertex_of, body); v < item(shapes_.vertex_of, body + 1); ++v) {
+    const Point3& p = item(shapes_.vertices, v);
     vertices_.push_back({p[0], p[1], p[2]});
     added.radius = std::max(added.radius, length(vertices_.back()));
   }

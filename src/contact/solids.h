@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "base/at.h"
 #include "contact/pair.h"
+#include "floe/base/item.h"
 #include "floe/contact/obstacle.h"
 #include "floe/geometry/half_space.h"
 #include "floe/geometry/polyhedron.h"
@@ -32,13 +32,13 @@ class Solids {
   /// Returns the vertices in the frame of the body or obstacle [m]; a half-space has none.
   std::span<const Vec3<double>> vertices(std::int32_t index) const {
     if (is_obstacle(index)) return obstacle(index).vertices;
-    const Body& body = at(bodies_, index);
+    const Body& body = item(bodies_, index);
     return {vertices_.data() + body.first_vertex, static_cast<std::size_t>(body.vertices)};
   }
   /// Returns the planes of the faces, in the frame of the body or obstacle.
   std::span<const HalfSpace> planes(std::int32_t index) const {
     if (is_obstacle(index)) return obstacle(index).planes;
-    const Body& body = at(bodies_, index);
+    const Body& body = item(bodies_, index);
     return {planes_.data() + body.first_plane, static_cast<std::size_t>(body.planes)};
   }
   bool is_half_space(std::int32_t index) const {
@@ -46,18 +46,19 @@ class Solids {
   }
 
   /// Returns the cube root of the volume of a body [m].
-  double size(std::int32_t body) const { return at(bodies_, body).size; }
+  double size(std::int32_t body) const { return item(bodies_, body).size; }
   /// Returns the mass of a body [kg].
-  double mass(std::int32_t body) const { return at(bodies_, body).mass; }
+  double mass(std::int32_t body) const { return item(bodies_, body).mass; }
   /// Returns the distance of the farthest vertex from the centroid of a body or from the origin of
   /// the frame of an obstacle [m].
   double radius(std::int32_t index) const {
-    return is_obstacle(index) ? extents_[obstacle_number(index)].radius : at(bodies_, index).radius;
+    return is_obstacle(index) ? extents_[obstacle_number(index)].radius
+                              : item(bodies_, index).radius;
   }
   /// Returns the least width of a body or obstacle, between planes along its faces [m]; infinite
   /// for a half-space.
   double width(std::int32_t index) const {
-    return is_obstacle(index) ? extents_[obstacle_number(index)].width : at(bodies_, index).width;
+    return is_obstacle(index) ? extents_[obstacle_number(index)].width : item(bodies_, index).width;
   }
   /// Returns the mean radius of all bodies [m].
   double mean_radius() const;
@@ -70,7 +71,7 @@ class Solids {
     double area = 0;    ///< of all faces [m^2]
     double widest = 0;  ///< area of the largest face [m^2]
   };
-  const Faces& faces(std::int32_t body) const { return at(faces_, body); }
+  const Faces& faces(std::int32_t body) const { return item(faces_, body); }
 
  private:
   /// What an evaluation needs of a body, side by side in memory.

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "base/at.h"
 #include "base/collectives.h"
 #include "contact/contacts.h"
 #include "contact_force/checks.h"
@@ -13,6 +12,7 @@
 #include "contact_force/halo.h"
 #include "contact_force/load_balance.h"
 #include "contact_force/obstacle_forces.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -26,7 +26,7 @@ std::vector<BodyPair> sorted(std::vector<BodyPair> pairs) {
 /// Returns 1 for each body of the model that this rank owns, else 0.
 std::vector<std::uint8_t> owned_bodies(const Part& part) {
   std::vector<std::uint8_t> here(static_cast<std::size_t>(part.global_bodies), 0);
-  for (std::int32_t b = 0; b < part.owned; ++b) at(here, at(part.global, b)) = 1;
+  for (std::int32_t b = 0; b < part.owned; ++b) item(here, item(part.global, b)) = 1;
   return here;
 }
 
@@ -93,7 +93,7 @@ class DistributedContact final : public Contact,
     }
   }
   double stiffness_bound(std::int32_t body) const override {
-    return rates_.stiffness * at(part_.bodies.mass, body);
+    return rates_.stiffness * item(part_.bodies.mass, body);
   }
   Rates hidden_stiffness() const override {
     return possible_ ? Rates{.stiffness = rates_.stiffness, .damping = rates_.damping} : Rates{};

@@ -4,8 +4,8 @@
 #include <map>
 #include <utility>
 
-#include "base/at.h"
 #include "base/collectives.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -60,7 +60,7 @@ void ContactHalo::choose(std::span<const std::int32_t> wanted) {
   std::vector<std::int32_t> foreign;
   const int me = rank(part_.comm);
   for (const std::int32_t body : wanted_) {
-    const bool here = at(owner_, body) == me;
+    const bool here = item(owner_, body) == me;
     local_.push_back(here ? part_.local_index(body) : -1);
     if (!here) foreign.push_back(body);
   }
@@ -73,7 +73,7 @@ void ContactHalo::choose(std::span<const std::int32_t> wanted) {
 std::vector<std::int32_t> ContactHalo::sent_by_any(const std::vector<std::int32_t>& foreign) const {
   std::vector<std::int32_t> all = all_gathered(foreign, part_.comm);
   std::sort(all.begin(), all.end(), [&](std::int32_t a, std::int32_t b) {
-    return std::pair(at(owner_, a), a) < std::pair(at(owner_, b), b);
+    return std::pair(item(owner_, a), a) < std::pair(item(owner_, b), b);
   });
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
@@ -87,8 +87,8 @@ void ContactHalo::connect(const std::vector<std::int32_t>& sent) {
   std::int32_t owner = -1, next = 0;
   sent_.clear();
   for (const std::int32_t body : sent) {
-    if (at(owner_, body) != owner) next = 0;
-    owner = at(owner_, body);
+    if (item(owner_, body) != owner) next = 0;
+    owner = item(owner_, body);
     place[body] = next++;
     if (owner == rank(part_.comm)) sent_.push_back(part_.local_index(body));
   }
@@ -96,7 +96,7 @@ void ContactHalo::connect(const std::vector<std::int32_t>& sent) {
   auto received = static_cast<std::int32_t>(sent_.size());
   for (std::size_t k = 0; k < wanted_.size(); ++k) {
     if (local_[k] >= 0) continue;
-    owners.push_back(at(owner_, wanted_[k]));
+    owners.push_back(item(owner_, wanted_[k]));
     places.push_back(place[wanted_[k]]);
     from_[k] = received++;
   }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/at.h"
 #include "base/collectives.h"
+#include "floe/base/item.h"
 
 namespace floe {
 namespace {
@@ -61,7 +61,7 @@ void ContactLoadBalance::plan(Contacts& contacts) {
   shared_ = std::any_of(given.begin(), given.end(), [](std::int64_t count) { return count > 0; });
   if (!shared_) return;
 
-  offloaded_ = static_cast<std::size_t>(at(given, rank(comm_)));
+  offloaded_ = static_cast<std::size_t>(item(given, rank(comm_)));
   std::vector<std::int32_t> mine;
   for (const BodyPair& pair : contacts.offload(offloaded_))
     mine.insert(mine.end(), pair.begin(), pair.end());

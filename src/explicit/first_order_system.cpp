@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "floe/base/item.h"
+
 namespace floe {
 namespace {
 
@@ -121,13 +123,13 @@ void FirstOrderSystem::hold_spin(std::size_t b, const double* rate, double* r) c
   Eigen::Matrix3d a = inertia;
   Eigen::Vector3d right = l;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    if (!held[static_cast<std::size_t>(k)]) continue;
+    if (!item(held, k)) continue;
     a.row(k) = scale * Eigen::RowVector3d::Unit(k);
     right[k] = scale * rate[k];
   }
   omega = a.partialPivLu().solve(right);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    if (held[static_cast<std::size_t>(k)]) omega[k] = rate[k];
+    if (item(held, k)) omega[k] = rate[k];
   }
   l = inertia * omega;
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "floe/base/item.h"
+
 namespace floe {
 namespace {
 

@@ -12,6 +12,7 @@
 
 #include "base/collectives.h"
 #include "explicit/difference_operators.h"
+#include "floe/base/item.h"
 #include "floe/base/log.h"
 
 namespace floe {
@@ -130,7 +131,7 @@ Vector random_vector(const Operators<Space>& a, const Part& part) {
   constexpr int n = Space::unknowns;
   Vector start(a.size());
   for (std::int32_t b = 0; b < part.owned; ++b) {
-    std::minstd_rand random(static_cast<unsigned>(part.global[static_cast<std::size_t>(b)]) + 1U);
+    std::minstd_rand random(static_cast<unsigned>(item(part.global, b)) + 1U);
     random.discard(3);
     for (int k = 0; k < n; ++k)
       start[b * n + k] =
@@ -190,8 +191,7 @@ std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
     Eigen::MatrixXd k(m, m), c(m, m);
     for (Eigen::Index r = 0; r < m; ++r) {
       for (Eigen::Index s = 0; s <= r; ++s) {
-        const Trial &u = space[static_cast<std::size_t>(r)],
-                    &v = space[static_cast<std::size_t>(s)];
+        const Trial &u = item(space, r), &v = item(space, s);
         k(r, s) = k(s, r) = 0.5 * (a.dot(u.z, v.k) + a.dot(v.z, u.k));
         c(r, s) = c(s, r) = 0.5 * (along(u, v) + along(v, u));
       }

@@ -4,13 +4,15 @@
 
 #include <limits>
 
+#include "floe/base/item.h"
+
 namespace floe {
 namespace {
 
 /// Axis (0, 1, 2) about which a rotation unknown turns a body.
 template <class Space>
 constexpr int turns_about(int unknown) {
-  return Space::components[static_cast<std::size_t>(unknown)] - 3;
+  return item(Space::components, unknown) - 3;
 }
 
 /// A dead force F and moment M: wrench (F, a x F + M) on each body, with a = R r the turned arm.
@@ -190,7 +192,7 @@ PlacedLoad place(const Load& load, const Lattice& lattice) {
   const Point2 p = *load.point;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
-    const Point3& x = lattice.bodies.position[static_cast<std::size_t>(b)];
+    const Point3& x = item(lattice.bodies.position, b);
     const double dx = p[0] - x[0], dy = p[1] - x[1], distance = dx * dx + dy * dy;
     if (distance >= nearest) continue;
     nearest = distance;

@@ -1,5 +1,7 @@
 #include "forces/gravity.h"
 
+#include "floe/base/item.h"
+
 namespace floe {
 namespace {
 
@@ -10,15 +12,14 @@ class Gravity final : public Force<Spatial> {
   std::string_view name() const override { return "gravity"; }
   void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) override {
     for (std::int32_t b = 0; b < part_.owned; ++b)
-      wrenches.of(static_cast<std::size_t>(b))[2] -=
-          part_.bodies.mass[static_cast<std::size_t>(b)] * g_;
+      wrenches.of(static_cast<std::size_t>(b))[2] -= item(part_.bodies.mass, b) * g_;
   }
   /// Reports the potential m g u_z, 0 at rest.
   void report(const State<Spatial>& state, Columns& columns) const override {
     double energy = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b)
-      energy += part_.bodies.mass[static_cast<std::size_t>(b)] * g_ *
-                displacement(state, static_cast<std::size_t>(b)).z;
+      energy +=
+          item(part_.bodies.mass, b) * g_ * displacement(state, static_cast<std::size_t>(b)).z;
     columns.add("energy_gravity", energy);
   }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "floe/base/item.h"
+
 namespace floe {
 namespace {
 
@@ -15,11 +17,10 @@ struct RowCounts {
 RowCounts count_blocks(const Part& part) {
   const auto owned = static_cast<std::size_t>(part.owned);
   std::vector<std::vector<PetscInt>> neighbours(owned);
-  for (std::int32_t b = 0; b < part.owned; ++b)
-    neighbours[static_cast<std::size_t>(b)].push_back(b);
+  for (std::int32_t b = 0; b < part.owned; ++b) item(neighbours, b).push_back(b);
   for (const auto& [i, j] : part.beams.bodies) {
-    if (i < part.owned) neighbours[static_cast<std::size_t>(i)].push_back(j);
-    if (j < part.owned) neighbours[static_cast<std::size_t>(j)].push_back(i);
+    if (i < part.owned) item(neighbours, i).push_back(j);
+    if (j < part.owned) item(neighbours, j).push_back(i);
   }
   RowCounts counts{std::vector<PetscInt>(owned), std::vector<PetscInt>(owned),
                    std::vector<PetscInt>(owned), std::vector<PetscInt>(owned)};
@@ -29,7 +30,7 @@ RowCounts count_blocks(const Part& part) {
     list.erase(std::unique(list.begin(), list.end()), list.end());
     for (const PetscInt other : list) {
       const bool is_here = other < part.owned;
-      const bool upper = part.row[static_cast<std::size_t>(other)] >= part.row[b];
+      const bool upper = item(part.row, other) >= part.row[b];
       ++(is_here ? counts.here : counts.elsewhere)[b];
       if (upper) ++(is_here ? counts.here_upper : counts.elsewhere_upper)[b];
     }
@@ -76,8 +77,7 @@ Tangent<Space>::Tangent(const Part& part, std::span<const std::uint8_t> held, do
 
 template <class Space>
 void Tangent<Space>::set_scale(double length_scale) {
-  for (int k = 0; k < n; ++k)
-    scale_[static_cast<std::size_t>(k)] = k < Space::translations ? 1.0 : 1.0 / length_scale;
+  for (int k = 0; k < n; ++k) item(scale_, k) = k < Space::translations ? 1.0 : 1.0 / length_scale;
 }
 
 template <class Space>
@@ -99,7 +99,7 @@ void Tangent<Space>::weigh(double factor, std::span<const TurnFrame> frames) {
 template <class Space>
 void Tangent<Space>::turn_rows(std::int32_t body, std::span<double> rows, int columns) const {
   if constexpr (n - Space::translations == 3) {
-    const auto& by = frames_[static_cast<std::size_t>(body)].rows;
+    const auto& by = item(frames_, body).rows;
     for (int c = 0; c < columns; ++c) {
       const auto at = [&](int k) -> double& {
         return rows[entry_of(Space::translations + k, columns, c)];
@@ -120,7 +120,7 @@ template <class Space>
 void Tangent<Space>::turn_columns(std::int32_t body, std::span<double> block, int first,
                                   int columns) const {
   if constexpr (n - Space::translations == 3) {
-    const auto& by = frames_[static_cast<std::size_t>(body)].columns;
+    const auto& by = item(frames_, body).columns;
     const int rows = static_cast<int>(block.size()) / columns;
     for (int r = 0; r < rows; ++r) {
       double* row = &block[entry_of(r, columns, first + Space::translations)];
@@ -136,7 +136,7 @@ template <class Space>
 void Tangent<Space>::prepare_rows(std::int32_t body, std::span<double> rows, int columns) {
   if (!frames_.empty()) turn_rows(body, rows, columns);
   for (int k = 0; k < n; ++k) {
-    const double factor = is_held(body, k) ? 0.0 : factor_ * scale_[static_cast<std::size_t>(k)];
+    const double factor = is_held(body, k) ? 0.0 : factor_ * item(scale_, k);
     for (int c = 0; c < columns; ++c) rows[entry_of(k, columns, c)] *= factor;
   }
 }
@@ -157,10 +157,8 @@ void Tangent<Space>::insert(std::span<const std::int32_t> rows,
     }
   }
   std::array<PetscInt, 2> row{}, column{};
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    row[k] = part_.row[static_cast<std::size_t>(rows[k])];
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    column[k] = part_.row[static_cast<std::size_t>(columns[k])];
+  for (std::size_t k = 0; k < rows.size(); ++k) row[k] = item(part_.row, rows[k]);
+  for (std::size_t k = 0; k < columns.size(); ++k) column[k] = item(part_.row, columns[k]);
   check(MatSetValuesBlocked(matrix_, static_cast<PetscInt>(rows.size()), row.data(),
                             static_cast<PetscInt>(columns.size()), column.data(), block,
                             ADD_VALUES));
@@ -177,7 +175,7 @@ void Tangent<Space>::add_body(std::int32_t body, const Block& block) {
     const std::size_t index = entry_of(body, n, 0);
     for (int k = 0; k < n; ++k) {
       double& entry = a[entry_of(k, n, c)];
-      entry *= scale_[static_cast<std::size_t>(c)];
+      entry *= item(scale_, c);
       if (!held) continue;
       if (!increments_.empty())
         lift_[index + static_cast<std::size_t>(k)] +=
@@ -200,13 +198,13 @@ void Tangent<Space>::add_pair(std::int32_t i, std::int32_t j, const PairBlock& b
   prepare_rows(i, std::span(a).first(half), 2 * n);
   prepare_rows(j, std::span(a).subspan(half), 2 * n);
   for (int c = 0; c < 2 * n; ++c) {
-    const std::int32_t column_body = body[static_cast<std::size_t>(c / n)];
+    const std::int32_t column_body = item(body, c / n);
     const bool held = is_held(column_body, c % n);
     for (int k = 0; k < 2 * n; ++k) {
       double& entry = a[entry_of(k, 2 * n, c)];
-      entry *= scale_[static_cast<std::size_t>(c % n)];
+      entry *= item(scale_, c % n);
       if (!held) continue;
-      const std::int32_t row_body = body[static_cast<std::size_t>(k / n)];
+      const std::int32_t row_body = item(body, k / n);
       if (!increments_.empty() && row_body < part_.owned)
         lift_[entry_of(row_body, n, k % n)] += entry * increments_[entry_of(column_body, n, c % n)];
       entry = 0;

@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
@@ -100,9 +101,7 @@ class Tangent {
   void turn_columns(std::int32_t body, std::span<double> block, int first, int columns) const;
   void insert(std::span<const std::int32_t> rows, std::span<const std::int32_t> columns,
               double* block);
-  bool is_held(std::int32_t body, int k) const {
-    return (held_[static_cast<std::size_t>(body)] >> k & 1U) != 0;
-  }
+  bool is_held(std::int32_t body, int k) const { return (item(held_, body) >> k & 1U) != 0; }
 
   const Part& part_;
   std::span<const std::uint8_t> held_;

@@ -6,6 +6,7 @@
 
 #include "base/collectives.h"
 #include "beams/spatial_lanes.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "fracture/fracture.h"
 #include "fracture/lanes.h"
@@ -106,9 +107,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     dt_ = dt;
     released_.clear();
     for (const std::int32_t m : newly_broken_) {
-      const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
-      released_.push_back(
-          {part_.global[static_cast<std::size_t>(i)], part_.global[static_cast<std::size_t>(j)]});
+      const auto [i, j] = item(part_.beams.bodies, m);
+      released_.push_back({item(part_.global, i), item(part_.global, j)});
     }
     newly_broken_.clear();
     if (!options_.dynamic) {
@@ -150,7 +150,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     for (const Crack& c : cracks_) {
       if (!counts_here(c.beam)) continue;
       mine.push_back(c);
-      mine.back().beam = part_.global_beam[static_cast<std::size_t>(c.beam)];
+      mine.back().beam = item(part_.global_beam, c.beam);
     }
     persist_cracks(archive, part_, mine);
     if constexpr (damped) remember_dashpots(archive);
@@ -185,8 +185,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     std::vector<Break> all;
     for (const Crack& c : cracks_) {
       if (c.broken() && counts_here(c.beam))
-        all.push_back({c.time, part_.global_beam[static_cast<std::size_t>(c.beam)], c.place,
-                       c.mode_mix, c.dissipated, c.nominal, c.brittle()});
+        all.push_back({c.time, item(part_.global_beam, c.beam), c.place, c.mode_mix, c.dissipated,
+                       c.nominal, c.brittle()});
     }
     return all;
   }
@@ -224,7 +224,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     worst = largest_of_ranks(worst, part_.comm);
     bool softened = false;
     for (const Growth& g : growing_) {
-      const bool chosen = part_.global_beam[static_cast<std::size_t>(g.crack.beam)] == worst.index;
+      const bool chosen = item(part_.global_beam, g.crack.beam) == worst.index;
       if (g.crack.broken() && !chosen) continue;
       take(g);
       softened = true;
@@ -254,12 +254,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     double dissipated;  ///< energy dissipated by the growth [J]
   };
 
-  bool counts_here(std::int32_t m) const {
-    return part_.counts_here[static_cast<std::size_t>(m)] != 0;
-  }
+  bool counts_here(std::int32_t m) const { return item(part_.counts_here, m) != 0; }
   const Crack* crack(std::int32_t m) const {
-    const std::int32_t at = crack_of_[static_cast<std::size_t>(m)];
-    return at == none ? nullptr : &cracks_[static_cast<std::size_t>(at)];
+    const std::int32_t at = item(crack_of_, m);
+    return at == none ? nullptr : &item(cracks_, at);
   }
   bool broken(std::int32_t m) const {
     const Crack* c = crack(m);
@@ -276,7 +274,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   }
 
   BeamStrains<double> strains(std::int32_t m, const State<Spatial>& state) const {
-    const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+    const auto [i, j] = item(part_.beams.bodies, m);
     return Pointwise::strains(constants(m), record(state, i), record(state, j));
   }
   static BeamStress<double> as_stress(const BeamStrains<double>& s) {
@@ -322,7 +320,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   /// proportional path from rest, it is U_1 s kappa (D - D_old), exact for any step.
   [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s,
                                              const State<Spatial>& state) const {
-    const auto [i, j] = part_.beams.bodies[static_cast<std::size_t>(m)];
+    const auto [i, j] = item(part_.beams.bodies, m);
     const BeamConstants<double> c = constants(m);
     const BeamStrains<double> e = strains(m, state);
     const BeamStress<double> strain = as_stress(e), force = elastic_stress(c, e);
@@ -333,9 +331,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     const double before = next.damage, passed = next.kappa;
     if (known == nullptr) {
       next.beam = m;
-      initiate(next, energy, s,
-               part_.beams.width[static_cast<std::size_t>(m)] *
-                   part_.beams.height[static_cast<std::size_t>(m)],
+      initiate(next, energy, s, item(part_.beams.width, m) * item(part_.beams.height, m),
                options_.energy, options_.energy_shear);
     }
     next.kappa = s;
@@ -356,9 +352,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       g.released += energy.squeeze;
       next.time = state.time;
       for (std::size_t k = 0; k < 3; ++k)
-        next.place[k] =
-            0.5 * (part_.bodies.position[static_cast<std::size_t>(i)][k] + record(state, i)[k] +
-                   part_.bodies.position[static_cast<std::size_t>(j)][k] + record(state, j)[k]);
+        next.place[k] = 0.5 * (item(part_.bodies.position, i)[k] + record(state, i)[k] +
+                               item(part_.bodies.position, j)[k] + record(state, j)[k]);
     }
     next.dissipated += g.dissipated;
     return g;
@@ -431,7 +426,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       at = static_cast<std::int32_t>(cracks_.size());
       cracks_.push_back(c);
     } else {
-      cracks_[static_cast<std::size_t>(at)] = c;
+      item(cracks_, at) = c;
     }
     if (c.broken()) {
       BeamBlock<Frame>& block = blocks_[m / lanes];
@@ -451,7 +446,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   /// Makes beam m undamaged again.
   void restore(std::int32_t m) {
     this->set(m, beams_);
-    crack_of_[static_cast<std::size_t>(m)] = none;
+    item(crack_of_, m) = none;
     mark(static_cast<std::size_t>(m) / lanes);
   }
 

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "floe/base/item.h"
+
 namespace floe {
 namespace {
 
@@ -19,9 +21,7 @@ std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face)
 /// Returns the plane of a face; nothing for a face without area, which bounds nothing.
 std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   const auto corners = corners_of(shapes, face);
-  const auto at = [&](std::size_t k) {
-    return vector(shapes.vertices[static_cast<std::size_t>(corners[k])]);
-  };
+  const auto at = [&](std::size_t k) { return vector(item(shapes.vertices, corners[k])); };
   Vec3<double> normal{};
   for (std::size_t k = 1; k + 1 < corners.size(); ++k)
     normal = normal + cross(at(k) - at(0), at(k + 1) - at(0));
@@ -51,8 +51,7 @@ double concavity(const Shapes& shapes, std::int32_t body) {
     const auto plane = plane_of(shapes, f);
     if (!plane) continue;
     const auto beyond = [&](std::int32_t v) {
-      return dot(plane->normal, vector(shapes.vertices[static_cast<std::size_t>(v)])) -
-             plane->offset;
+      return dot(plane->normal, vector(item(shapes.vertices, v))) - plane->offset;
     };
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v)
       most = std::max(most, beyond(v));
@@ -88,8 +87,8 @@ Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
 void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed) {
   const auto b = static_cast<std::size_t>(body);
   const std::int32_t base = shapes.vertex_of[b];
-  const std::int32_t first = shapes.corner_of[static_cast<std::size_t>(shapes.face_of[b])];
-  const std::int32_t last = shapes.corner_of[static_cast<std::size_t>(shapes.face_of[b + 1])];
+  const std::int32_t first = item(shapes.corner_of, shapes.face_of[b]);
+  const std::int32_t last = item(shapes.corner_of, shapes.face_of[b + 1]);
   now_.clear(placed.size(), static_cast<std::size_t>(last - first),
              static_cast<std::size_t>(shapes.face_of[b + 1] - shapes.face_of[b]));
   for (const Vec3<double>& p : placed) now_.points.push(p);
@@ -162,8 +161,8 @@ void Clipper::clip_face(const Face& face, std::int32_t kept) {
   std::int32_t last = face.end - 1;
   for (std::int32_t c = face.begin; c < face.end; last = c++) {
     const bool a_in = place(last) >= 0, b_in = place(c) >= 0;
-    const std::int32_t a = now_.corners[static_cast<std::size_t>(last)];
-    const std::int32_t b = now_.corners[static_cast<std::size_t>(c)];
+    const std::int32_t a = item(now_.corners, last);
+    const std::int32_t b = item(now_.corners, c);
     if (a_in && !b_in) {
       left = crossing(a, b);
       next_.corners.push(kept + left);
@@ -172,7 +171,7 @@ void Clipper::clip_face(const Face& face, std::int32_t kept) {
       next_.corners.push(kept + entered);
       // The cap runs against the face: from the face's entry to its exit.
       if (left >= 0) {
-        crossings_[static_cast<std::size_t>(entered)].next = left;
+        item(crossings_, entered).next = left;
         left = -1;
       } else {
         first_entered = entered;
@@ -180,7 +179,7 @@ void Clipper::clip_face(const Face& face, std::int32_t kept) {
     }
     if (b_in) next_.corners.push(place(c));
   }
-  if (first_entered >= 0) crossings_[static_cast<std::size_t>(first_entered)].next = left;
+  if (first_entered >= 0) item(crossings_, first_entered).next = left;
   next_.faces.push({begin, static_cast<std::int32_t>(next_.corners.size()), face.on_b});
 }
 
@@ -189,10 +188,10 @@ void Clipper::close_caps(std::int32_t kept) {
     if (crossings_[start].done) continue;
     const auto begin = static_cast<std::int32_t>(next_.corners.size());
     auto k = static_cast<std::int32_t>(start);
-    while (!crossings_[static_cast<std::size_t>(k)].done) {
-      crossings_[static_cast<std::size_t>(k)].done = true;
+    while (!item(crossings_, k).done) {
+      item(crossings_, k).done = true;
       next_.corners.push(kept + k);
-      k = crossings_[static_cast<std::size_t>(k)].next;
+      k = item(crossings_, k).next;
     }
     const auto end = static_cast<std::int32_t>(next_.corners.size());
     // A cap of two corners has no area. Without it the two faces beside it share that edge, so that
@@ -214,8 +213,7 @@ Overlap Clipper::integrals() const {
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     const auto corner = [&](std::int32_t c) {
-      return now_.points[static_cast<std::size_t>(now_.corners[static_cast<std::size_t>(c)])] -
-             apex;
+      return item(now_.points, item(now_.corners, c)) - apex;
     };
     const Vec3<double> p = corner(face.begin);
     Vec3<double> q = corner(face.begin + 1);

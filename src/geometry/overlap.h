@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "floe/base/item.h"
 #include "floe/base/rotation.h"
 #include "floe/geometry/half_space.h"
 #include "floe/geometry/polyhedron.h"
@@ -92,9 +93,7 @@ class Clipper {
   void clip_face(const Face& face, std::int32_t kept);
   void close_caps(std::int32_t kept);
   std::int32_t crossing(std::int32_t inside, std::int32_t outside);
-  std::int32_t place(std::int32_t corner) const {
-    return place_[static_cast<std::size_t>(now_.corners[static_cast<std::size_t>(corner)])];
-  }
+  std::int32_t place(std::int32_t corner) const { return item(place_, item(now_.corners, corner)); }
   Overlap integrals() const;
 
   Mesh now_, next_;

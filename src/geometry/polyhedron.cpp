@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "floe/base/item.h"
+
 namespace floe {
 
 PlanProperties plan_properties(std::span<const Point2> polygon) {
@@ -119,7 +121,7 @@ Submerged submerged(const Shapes& shapes, std::int32_t body, std::span<const Poi
 
   const auto base = shapes.vertex_of[body];
   const auto corner = [&](std::int32_t k) -> const Point3& {
-    return placed[static_cast<std::size_t>(shapes.corners[k] - base)];
+    return item(placed, shapes.corners[k] - base);
   };
   // Returns the point in which the edge from a (below) to b (not below) meets the plane. Both faces
   // of an edge get the same bits.
@@ -184,7 +186,7 @@ std::optional<std::array<std::int32_t, 2>> open_edge(const Shapes& shapes, std::
   const auto b = static_cast<std::size_t>(body);
   for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
        f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
-    std::int32_t last = shapes.corners[static_cast<std::size_t>(shapes.corner_of[f + 1] - 1)];
+    std::int32_t last = item(shapes.corners, shapes.corner_of[f + 1] - 1);
     for (auto c = static_cast<std::size_t>(shapes.corner_of[f]);
          c < static_cast<std::size_t>(shapes.corner_of[f + 1]); ++c) {
       const std::int32_t next = shapes.corners[c];

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "floe/base/item.h"
 #include "floe/geometry/polyhedron.h"
 
 namespace floe {
@@ -59,14 +60,14 @@ std::optional<Prisms> as_prisms(const Shapes& shapes) {
     one = {};
     append_prism(one, std::span(prisms.corners).subspan(before), prisms.bottom, prisms.top);
     const std::int32_t face = shapes.face_of[b], faces = shapes.face_of[b + 1] - face,
-                       corner = shapes.corner_of[static_cast<std::size_t>(face)];
+                       corner = item(shapes.corner_of, face);
     bool same = faces == one.face_of[1] && one.vertices.size() == end - first &&
                 std::equal(one.vertices.begin(), one.vertices.end(),
                            shapes.vertices.begin() + static_cast<std::ptrdiff_t>(first));
     for (std::int32_t f = 0; same && f <= faces; ++f)
       same =
           shapes.corner_of[static_cast<std::size_t>(face) + static_cast<std::size_t>(f)] - corner ==
-          one.corner_of[static_cast<std::size_t>(f)];
+          item(one.corner_of, f);
     for (std::size_t c = 0; same && c < one.corners.size(); ++c)
       same = shapes.corners[static_cast<std::size_t>(corner) + c] - shapes.vertex_of[b] ==
              one.corners[c];

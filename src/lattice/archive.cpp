@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/collectives.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 
 namespace floe {
@@ -85,7 +86,7 @@ void Archive::share(const std::string& name, double& value) {
   }
   const std::vector<double> all = read(group_ + name, finite);
   if (all.size() == ranks) {
-    value = all[static_cast<std::size_t>(me)];
+    value = item(all, me);
   } else {
     value = me == 0 ? std::accumulate(all.begin(), all.end(), 0.0) : 0.0;
   }
@@ -109,7 +110,7 @@ void Archive::rows(const std::string& name, std::span<const std::int32_t> names,
                    std::span<const std::int32_t> local, std::span<double> rows, int width) {
   std::vector<std::int32_t> global;
   global.reserve(local.size());
-  for (const std::int32_t k : local) global.push_back(names[static_cast<std::size_t>(k)]);
+  for (const std::int32_t k : local) global.push_back(item(names, k));
   if (!loading_) {
     save_rows(name, global, rows, width);
     return;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "floe/base/item.h"
 #include "lattice/partition.h"
 
 namespace floe {
@@ -63,9 +64,8 @@ std::vector<std::int32_t> hilbert_order(const std::vector<Point3>& points) {
   }
   std::vector<std::int32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return keys[static_cast<std::size_t>(a)] < keys[static_cast<std::size_t>(b)];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return item(keys, a) < item(keys, b); });
   return order;
 }
 

@@ -10,6 +10,7 @@
 #include "base/hdf5.h"
 #include "base/option_values.h"
 #include "base/spelling.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
 #include "floe/lattice/lattice.h"
@@ -124,8 +125,8 @@ void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
   beams.length = in.scalars("/beams/length", m);
   beams.axis_y = in.rows<3>("/beams/axis_y", m);
   for (std::size_t k = 0; k < m; ++k) {
-    const Point3& a = bodies.position[static_cast<std::size_t>(beams.bodies[k][0])];
-    const Point3& b = bodies.position[static_cast<std::size_t>(beams.bodies[k][1])];
+    const Point3& a = item(bodies.position, beams.bodies[k][0]);
+    const Point3& b = item(bodies.position, beams.bodies[k][1]);
     const Vec3<double> e{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double distance = std::sqrt(dot(e, e));
     if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
@@ -241,9 +242,9 @@ Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin 
   check_offsets(in, "/shapes/face_of", s.face_of, bodies, s.corner_of.size() - 1);
   check_offsets(in, "/shapes/vertex_of", s.vertex_of, bodies, s.vertices.size());
   for (std::size_t b = 0; b < bodies; ++b) {
-    for (std::int32_t c = s.corner_of[static_cast<std::size_t>(s.face_of[b])];
-         c < s.corner_of[static_cast<std::size_t>(s.face_of[b + 1])]; ++c) {
-      const std::int32_t v = s.corners[static_cast<std::size_t>(c)];
+    for (std::int32_t c = item(s.corner_of, s.face_of[b]); c < item(s.corner_of, s.face_of[b + 1]);
+         ++c) {
+      const std::int32_t v = item(s.corners, c);
       if (v < s.vertex_of[b] || v >= s.vertex_of[b + 1])
         in.refuse("/shapes/corners",
                   "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/lattice/lattice.h"
 #include "lattice/permute.h"
@@ -22,7 +23,7 @@ std::vector<std::int32_t> reverse_cuthill_mckee(const Lattice& lattice) {
   std::vector<PetscInt> columns(static_cast<std::size_t>(start.back()));
   std::vector<PetscInt> fill(start.begin(), start.end() - 1);
   const auto put = [&](PetscInt row, PetscInt column) {
-    columns[static_cast<std::size_t>(fill[static_cast<std::size_t>(row)]++)] = column;
+    item(columns, item(fill, row)++) = column;
   };
   for (PetscInt k = 0; k < n; ++k) put(k, k);
   for (const auto& [i, j] : lattice.beams.bodies) {
@@ -50,11 +51,11 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
   std::vector<std::int32_t> order = reverse_cuthill_mckee(lattice);
   std::vector<std::int32_t> renumbered(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
-    renumbered[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
+    item(renumbered, order[k]) = static_cast<std::int32_t>(k);
   permute(lattice.bodies, order);
   lattice.shapes = pick(lattice.shapes, order);
   for (auto& [name, set] : lattice.sets) {
-    for (std::int32_t& body : set) body = renumbered[static_cast<std::size_t>(body)];
+    for (std::int32_t& body : set) body = item(renumbered, body);
     std::sort(set.begin(), set.end());
   }
 
@@ -62,8 +63,8 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
   // it, so that axis 3 = 1 x 2 (up, in a sheet) stays.
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
     auto& [i, j] = lattice.beams.bodies[m];
-    i = renumbered[static_cast<std::size_t>(i)];
-    j = renumbered[static_cast<std::size_t>(j)];
+    i = item(renumbered, i);
+    j = item(renumbered, j);
     if (i > j) {
       std::swap(i, j);
       for (double& component : lattice.beams.axis_y[m]) component = -component;
@@ -72,8 +73,7 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
   std::vector<std::int32_t> beams(lattice.beams.bodies.size());
   std::iota(beams.begin(), beams.end(), 0);
   std::stable_sort(beams.begin(), beams.end(), [&](std::int32_t a, std::int32_t b) {
-    return lattice.beams.bodies[static_cast<std::size_t>(a)] <
-           lattice.beams.bodies[static_cast<std::size_t>(b)];
+    return item(lattice.beams.bodies, a) < item(lattice.beams.bodies, b);
   });
   permute(lattice.beams, beams);
   return order;

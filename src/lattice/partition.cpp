@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "floe/base/item.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "lattice/permute.h"
@@ -17,7 +18,7 @@ std::vector<std::int32_t> owners(const Lattice& lattice, int ranks) {
   std::vector<std::int32_t> owner(along.size());
   for (int r = 0; r < ranks; ++r) {
     for (std::int64_t k = n * r / ranks; k < n * (r + 1) / ranks; ++k)
-      owner[static_cast<std::size_t>(along[static_cast<std::size_t>(k)])] = r;
+      item(owner, item(along, k)) = r;
   }
   return owner;
 }
@@ -25,7 +26,7 @@ std::vector<std::int32_t> owners(const Lattice& lattice, int ranks) {
 }  // namespace
 
 std::int32_t Part::local_index(std::int32_t global_body) const {
-  return local_of_[static_cast<std::size_t>(global_body)];
+  return item(local_of_, global_body);
 }
 
 std::vector<std::int32_t> Part::localise(const std::vector<std::int32_t>& global_set) const {
@@ -58,15 +59,14 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
   part.global_beams = lattice.beams.size();
   part.local_of_.assign(owner.size(), -1);
   for (std::int32_t b = 0; b < n; ++b) {
-    if (owner[static_cast<std::size_t>(b)] == me) part.global.push_back(b);
+    if (item(owner, b) == me) part.global.push_back(b);
   }
   part.owned = static_cast<std::int32_t>(part.global.size());
 
   std::vector<std::int32_t> beams, ghosts;
   for (std::int32_t m = 0; m < lattice.beams.size(); ++m) {
-    const auto [i, j] = lattice.beams.bodies[static_cast<std::size_t>(m)];
-    const bool own_i = owner[static_cast<std::size_t>(i)] == me,
-               own_j = owner[static_cast<std::size_t>(j)] == me;
+    const auto [i, j] = item(lattice.beams.bodies, m);
+    const bool own_i = item(owner, i) == me, own_j = item(owner, j) == me;
     if (!own_i && !own_j) continue;
     beams.push_back(m);
     part.counts_here.push_back(own_i);
@@ -74,22 +74,21 @@ Part partition(const Lattice& lattice, MPI_Comm comm) {
     if (!own_j) ghosts.push_back(j);
   }
   std::sort(ghosts.begin(), ghosts.end(), [&](std::int32_t a, std::int32_t b) {
-    return std::pair(owner[static_cast<std::size_t>(a)], a) <
-           std::pair(owner[static_cast<std::size_t>(b)], b);
+    return std::pair(item(owner, a), a) < std::pair(item(owner, b), b);
   });
   ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
   std::vector<std::int32_t> ghost_owner, ghost_index;
   for (const std::int32_t b : ghosts) {
-    ghost_owner.push_back(owner[static_cast<std::size_t>(b)]);
-    ghost_index.push_back(index[static_cast<std::size_t>(b)]);
+    ghost_owner.push_back(item(owner, b));
+    ghost_index.push_back(item(index, b));
   }
   part.shapes = pick(lattice.shapes, part.global);
   part.global.insert(part.global.end(), ghosts.begin(), ghosts.end());
   part.local = static_cast<std::int32_t>(part.global.size());
   for (std::int32_t k = 0; k < part.local; ++k) {
-    const auto b = static_cast<std::size_t>(part.global[static_cast<std::size_t>(k)]);
+    const auto b = static_cast<std::size_t>(item(part.global, k));
     part.local_of_[b] = k;
-    part.row.push_back(count[static_cast<std::size_t>(owner[b])] + index[b]);
+    part.row.push_back(item(count, owner[b]) + index[b]);
   }
 
   part.bodies = pick(lattice.bodies, part.global);

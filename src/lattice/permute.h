@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "floe/base/item.h"
 #include "floe/lattice/lattice.h"
 
 namespace floe {
@@ -16,7 +17,7 @@ std::vector<T> pick(const std::vector<T>& values, std::span<const std::int32_t> 
   std::vector<T> picked;
   if (values.empty()) return picked;
   picked.reserve(order.size());
-  for (const std::int32_t k : order) picked.push_back(values[static_cast<std::size_t>(k)]);
+  for (const std::int32_t k : order) picked.push_back(item(values, k));
   return picked;
 }
 
@@ -64,7 +65,7 @@ inline Shapes pick(const Shapes& s, std::span<const std::int32_t> order) {
     for (std::int32_t f = s.face_of[b]; f < s.face_of[b + 1]; ++f) {
       const auto face = static_cast<std::size_t>(f);
       for (std::int32_t c = s.corner_of[face]; c < s.corner_of[face + 1]; ++c)
-        out.corners.push_back(s.corners[static_cast<std::size_t>(c)] + shift);
+        out.corners.push_back(item(s.corners, c) + shift);
       out.corner_of.push_back(static_cast<std::int32_t>(out.corners.size()));
     }
     out.face_of.push_back(static_cast<std::int32_t>(out.corner_of.size()) - 1);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/collectives.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "lattice/pieces.h"
 #include "model/model.h"
@@ -56,7 +57,7 @@ class Piece {
 
  private:
   Eigen::Vector3d position(std::int32_t b) const {
-    const Point3& x = lattice_.bodies.position[static_cast<std::size_t>(b)];
+    const Point3& x = item(lattice_.bodies.position, b);
     return {x[0], x[1], x[2]};
   }
   const Lattice& lattice_;
@@ -72,11 +73,11 @@ Basis null_space(const Piece& piece, std::span<const std::uint8_t> held,
   bool floats = false;
   for (const std::int32_t b : piece.bodies()) {
     for (int k = 0; k < 6; ++k) {
-      if ((held[static_cast<std::size_t>(b)] >> k & 1U) == 0) continue;
+      if ((item(held, b) >> k & 1U) == 0) continue;
       const Row row = piece.row(b, k);
       gram += row.transpose() * row;
     }
-    floats = floats || (!floating.empty() && floating[static_cast<std::size_t>(b)] != 0);
+    floats = floats || (!floating.empty() && item(floating, b) != 0);
   }
   if (floats) {
     for (const int k : {2, 3, 4}) gram(k, k) += static_cast<double>(piece.bodies().size());
@@ -144,8 +145,7 @@ FreeMotions free_motions(const Lattice& lattice, std::span<const std::uint8_t> h
     const Basis basis = null_space(piece, held, floating);
     for (int m = 0; m < basis.count; ++m) {
       FreeMotion motion{first, piece.centre(), piece.radius(), {}};
-      for (int k = 0; k < 6; ++k)
-        motion.coefficients[static_cast<std::size_t>(k)] = basis.columns(k, m);
+      for (int k = 0; k < 6; ++k) item(motion.coefficients, k) = basis.columns(k, m);
       free.motions.push_back(motion);
     }
     if (basis.count > 0) choose_pins(piece, basis, held, avoid, free.pins);
@@ -171,11 +171,11 @@ void require_balance(const Model<Space>& model, const Lattice& lattice, const Fr
   for (const FreeMotion& m : free.motions) first[slot.at(m.piece)] = &m;
   std::vector<double> work(slot.size() * 12, 0.0);
   for (std::int32_t local = 0; local < part.owned; ++local) {
-    const std::int32_t body = part.global[static_cast<std::size_t>(local)];
-    const auto found = slot.find(free.piece[static_cast<std::size_t>(body)]);
+    const std::int32_t body = item(part.global, local);
+    const auto found = slot.find(item(free.piece, body));
     if (found == slot.end()) continue;
     const FreeMotion& motion = *first[found->second];
-    const Point3& x = lattice.bodies.position[static_cast<std::size_t>(body)];
+    const Point3& x = item(lattice.bodies.position, body);
     const std::array<double, 6> w = components_of(wrenches, static_cast<std::size_t>(local));
     const Vec3<double> arm{x[0] - motion.centre[0], x[1] - motion.centre[1],
                            x[2] - motion.centre[2]};
@@ -209,8 +209,8 @@ void require_balance(const Model<Space>& model, const Lattice& lattice, const Fr
                                                "translation along z", "rotation about x",
                                                "rotation about y",    "rotation about z"};
     throw InputError(std::string("boundary: nothing holds ") +
-                     names[static_cast<std::size_t>(largest - m.coefficients.begin())] +
-                     " of the piece with body " + std::to_string(m.piece) +
+                     item(names, largest - m.coefficients.begin()) + " of the piece with body " +
+                     std::to_string(m.piece) +
                      ", but the loads push it; prescribe that motion with `fix`");
   }
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/collectives.h"
+#include "floe/base/item.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 
@@ -64,10 +65,10 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
       }
       const Boundary* same = nullptr;  // the last earlier boundary with which this one was compared
       for (const std::int32_t body : set) {
-        const Boundary*& other = first[static_cast<std::size_t>(body)];
+        const Boundary*& other = item(first, body);
         if (other == nullptr) {
           other = &boundary;
-          held[static_cast<std::size_t>(body)] |= static_cast<std::uint8_t>(1U << k);
+          item(held, body) |= static_cast<std::uint8_t>(1U << k);
         } else if (other != same) {
           require_same_motion(*other, boundary, k, lattice);
           same = other;
@@ -83,7 +84,7 @@ Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Bou
     : part_(partition(lattice, comm)), inertial_mass_(part_.bodies.mass) {
   const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
   for (const std::int32_t body : part_.global)
-    prescribed_.push_back(bits_of_unknowns<Space>(all[static_cast<std::size_t>(body)]));
+    prescribed_.push_back(bits_of_unknowns<Space>(item(all, body)));
   held_ = prescribed_;
   for (const Boundary& boundary : boundaries)
     boundaries_.push_back(
@@ -171,8 +172,7 @@ void Model<Space>::pin(const std::vector<Pin>& pins) {
   for (const Pin& p : pins) {
     const std::int32_t local = part_.local_index(p.body);
     if (local >= 0)
-      held_[static_cast<std::size_t>(local)] |=
-          bits_of_unknowns<Space>(static_cast<std::uint8_t>(1U << p.component));
+      item(held_, local) |= bits_of_unknowns<Space>(static_cast<std::uint8_t>(1U << p.component));
   }
 }
 
@@ -198,7 +198,7 @@ void Model<Space>::spread(Prescription motion, double time, std::span<double> va
   for (const PlacedBoundary& placed : boundaries_) {
     const std::array<double, 6> value = (placed.boundary.*motion)(time);
     for (const std::int32_t body : placed.bodies) {
-      const std::int32_t row = rows.empty() ? body : rows[static_cast<std::size_t>(body)];
+      const std::int32_t row = rows.empty() ? body : item(rows, body);
       if (row < 0) continue;
       for (std::size_t k = 0; k < n; ++k) {
         const auto component = static_cast<std::size_t>(Space::components[k]);

@@ -5,6 +5,7 @@
 #include "base/collectives.h"
 #include "base/hdf5.h"
 #include "base/on_root.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "lattice/pieces.h"
 
@@ -61,28 +62,26 @@ double CrackLog::update() {
 void CrackLog::find_fragments(const std::vector<Break>& breaks) {
   const auto n = lattice_.bodies.position.size();
   std::vector<std::uint8_t> broken(lattice_.beams.bodies.size(), 0);
-  for (const Break& b : breaks) broken[static_cast<std::size_t>(b.beam)] = 1;
+  for (const Break& b : breaks) item(broken, b.beam) = 1;
   const std::vector<std::int32_t> piece = connected_pieces(lattice_, broken);
   std::vector<double> mass(n, 0);
-  for (std::size_t b = 0; b < n; ++b)
-    mass[static_cast<std::size_t>(piece[b])] += lattice_.bodies.mass[b];
+  for (std::size_t b = 0; b < n; ++b) item(mass, piece[b]) += lattice_.bodies.mass[b];
   std::vector<std::int32_t> roots;
   for (std::size_t b = 0; b < n; ++b) {
     if (piece[b] == static_cast<std::int32_t>(b)) roots.push_back(static_cast<std::int32_t>(b));
   }
-  std::stable_sort(roots.begin(), roots.end(), [&](std::int32_t a, std::int32_t b) {
-    return mass[static_cast<std::size_t>(a)] > mass[static_cast<std::size_t>(b)];
-  });
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](std::int32_t a, std::int32_t b) { return item(mass, a) > item(mass, b); });
   std::vector<std::int32_t> index(n);
   for (std::size_t k = 0; k < roots.size(); ++k)
-    index[static_cast<std::size_t>(roots[k])] = static_cast<std::int32_t>(k);
+    item(index, roots[k]) = static_cast<std::int32_t>(k);
   fragment_of_.assign(n, 0);
   bodies_.assign(roots.size(), 0);
   mass_.clear();
-  for (const std::int32_t r : roots) mass_.push_back(mass[static_cast<std::size_t>(r)]);
+  for (const std::int32_t r : roots) mass_.push_back(item(mass, r));
   for (std::size_t b = 0; b < n; ++b) {
-    fragment_of_[b] = index[static_cast<std::size_t>(piece[b])];
-    ++bodies_[static_cast<std::size_t>(fragment_of_[b])];
+    fragment_of_[b] = item(index, piece[b]);
+    ++item(bodies_, fragment_of_[b]);
   }
 }
 
@@ -101,7 +100,7 @@ void CrackLog::write(const std::vector<Break>& breaks) const {
   std::vector<std::int32_t> beam, bodies, brittle;
   std::vector<double> place;
   for (const Break& b : breaks) {
-    const auto [i, j] = lattice_.beams.bodies[static_cast<std::size_t>(b.beam)];
+    const auto [i, j] = item(lattice_.beams.bodies, b.beam);
     beam.push_back(b.beam);
     bodies.insert(bodies.end(), {i, j});
     brittle.push_back(b.brittle ? 1 : 0);

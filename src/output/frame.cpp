@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "floe/base/item.h"
 #include "floe/base/rotation.h"
 
 namespace floe {
@@ -128,7 +129,7 @@ void FrameWriter::write_on_faces(Hdf5File& file, const std::string& name,
                            [&](std::int64_t first, std::span<float> values) {
                              for (std::size_t k = 0; k < values.size(); k += 3) {
                                body = body_of_face(first++, body);
-                               const Point3& row = of_bodies[static_cast<std::size_t>(body)];
+                               const Point3& row = item(of_bodies, body);
                                std::copy(row.begin(), row.end(), &values[k]);
                              }
                            });
@@ -184,7 +185,7 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
     if (frame.damage[m] < 1) continue;
     const auto [i, j] = beams.bodies[m];
     const auto at = [&](std::int32_t b) {
-      const Point3& x = lattice_.bodies.position[static_cast<std::size_t>(b)];
+      const Point3& x = item(lattice_.bodies.position, b);
       return Vec3<double>{x[0], x[1], x[2]};
     };
     const Vec3<double> chord = at(j) - at(i);
@@ -194,8 +195,8 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
     e2 = (1 / std::sqrt(dot(e2, e2))) * e2;
     const Vec3<double> y = (0.5 * beams.width[m]) * e2, z = (0.5 * beams.height[m]) * cross(e1, e2);
     for (const std::int32_t b : {i, j}) {
-      const Point3& u = frame.displacement[static_cast<std::size_t>(b)];
-      const auto& q = frame.rotation[static_cast<std::size_t>(b)];
+      const Point3& u = item(frame.displacement, b);
+      const auto& q = item(frame.rotation, b);
       const Vec3<double> middle = 0.5 * (at(i) + at(j)) - at(b);
       for (const Vec3<double>& corner :
            {middle - y - z, middle + y - z, middle + y + z, middle - y + z}) {

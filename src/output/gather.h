@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "floe/base/item.h"
+
 namespace floe {
 
 /// Collects rows from all ranks on rank 0.
@@ -27,8 +29,7 @@ class Gather {
     collect(rows.data(), rows.size(), sizeof(Row), arrived.data());
     rows = {};
     std::vector<Row> ordered(arrived.empty() ? 0 : static_cast<std::size_t>(total_));
-    for (std::size_t k = 0; k < arrived.size(); ++k)
-      ordered[static_cast<std::size_t>(global_[k])] = arrived[k];
+    for (std::size_t k = 0; k < arrived.size(); ++k) item(ordered, global_[k]) = arrived[k];
     return ordered;
   }
 

@@ -13,6 +13,7 @@
 #include "base/collectives.h"
 #include "base/files.h"
 #include "base/on_root.h"
+#include "floe/base/item.h"
 #include "floe/base/log.h"
 #include "floe/base/options.h"
 #include "output/cracks.h"
@@ -94,8 +95,7 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
     Point3 mean{};
     for (const std::int32_t b : set) {
       for (std::size_t k = 0; k < 3; ++k)
-        mean[k] += lattice.bodies.position[static_cast<std::size_t>(b)][k] /
-                   static_cast<double>(set.size());
+        mean[k] += item(lattice.bodies.position, b)[k] / static_cast<double>(set.size());
     }
     impl_->sets.emplace_back(set.size(), mean);
   }
@@ -290,7 +290,7 @@ void Output<Space>::Impl::write_frame(const State<Space>& state) {
     std::vector<BeamSection> sections = model.beams()->sections(state);
     for (std::size_t k = 0; k < counted.size();
          ++k)  // counted[k] >= k, so that entries can be moved in place
-      sections[k] = sections[static_cast<std::size_t>(counted[k])];
+      sections[k] = item(sections, counted[k]);
     sections.resize(counted.size());
     frame.sections = beams(std::move(sections));
   }

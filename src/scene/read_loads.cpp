@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "floe/base/item.h"
 #include "reading.h"
 
 namespace floe {
@@ -29,7 +30,7 @@ Boundary read_boundary(Options& options, const std::string& name) {
   boundary.set = options.text("boundary: NAME: set", name);
   for (const std::string& word : options.words("boundary: NAME: fix", name)) {
     const auto at = std::find(components.begin(), components.end(), word) - components.begin();
-    boundary.fixed[static_cast<std::size_t>(at)] = true;
+    item(boundary.fixed, at) = true;
   }
   if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))
     throw InputError("boundary: " + name + ": fix: is empty; nothing would be prescribed");

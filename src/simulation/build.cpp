@@ -7,6 +7,7 @@
 #include "base/signals.h"
 #include "contact_force/contact.h"
 #include "explicit/explicit.h"
+#include "floe/base/item.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "forces/gravity.h"
@@ -71,7 +72,7 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
     const Triad<double> axes = triad(Quat<double>{w, x, y, z});
     bool above = false, below = false;
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
-      const Point3& r = shapes.vertices[static_cast<std::size_t>(v)];
+      const Point3& r = item(shapes.vertices, v);
       const double height = lattice.bodies.position[b][2] + axes.to_world({r[0], r[1], r[2]}).z;
       above = above || height > 0;
       below = below || height < 0;
@@ -119,14 +120,14 @@ void set_initial(const Scene& scene, Lattice& lattice) {
     bodies.velocity.resize(bodies.position.size(), Point3{});
     bodies.angular_velocity.resize(bodies.position.size(), Point3{});
     for (const std::int32_t body : lattice.set(initial.set, "initial: " + initial.name + ": set")) {
-      const Initial*& other = of_body[static_cast<std::size_t>(body)];
+      const Initial*& other = item(of_body, body);
       if (other != nullptr)
         throw InputError("initial: " + initial.name + ": set: body " + std::to_string(body) +
                          " has its motion from 'initial: " + other->name +
                          "' already; sets of two sections must not overlap");
       other = &initial;
-      bodies.velocity[static_cast<std::size_t>(body)] = initial.velocity;
-      bodies.angular_velocity[static_cast<std::size_t>(body)] = initial.angular_velocity;
+      item(bodies.velocity, body) = initial.velocity;
+      item(bodies.angular_velocity, body) = initial.angular_velocity;
     }
   }
 }
@@ -278,10 +279,8 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
   std::vector<std::uint8_t> prescribed = prescribed_components(lattice, scene.boundaries);
   for (std::uint8_t& bits : prescribed) bits |= static_cast<std::uint8_t>(~z_rx_ry & 0b111111);
   for (const Pin& pin : free_motions(lattice, prescribed, {}).pins)
-    prescribed[static_cast<std::size_t>(pin.body)] |=
-        static_cast<std::uint8_t>(1U << pin.component);
-  for (const std::int32_t body : part.global)
-    rest.held.push_back(prescribed[static_cast<std::size_t>(body)]);
+    item(prescribed, pin.body) |= static_cast<std::uint8_t>(1U << pin.component);
+  for (const std::int32_t body : part.global) rest.held.push_back(item(prescribed, body));
   return rest;
 }
 

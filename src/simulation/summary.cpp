@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/collectives.h"
+#include "floe/base/item.h"
 #include "floe/base/log.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
@@ -44,7 +45,7 @@ double mean_x(const Model<Space>& model, const Boundary& boundary) {
     if (placed.boundary.name != boundary.name) continue;
     for (const std::int32_t body : placed.bodies) {
       if (body >= model.part().owned) continue;
-      mine[0] += model.part().bodies.position[static_cast<std::size_t>(body)][0];
+      mine[0] += item(model.part().bodies.position, body)[0];
       mine[1] += 1;
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "water/immersion.h"
 
@@ -80,8 +81,8 @@ class Buoyancy final : public Force<Spatial>,
     double low = 0, high = 0;
     const auto b = static_cast<std::size_t>(body);
     for (std::int32_t v = part_.shapes.vertex_of[b]; v < part_.shapes.vertex_of[b + 1]; ++v) {
-      low = std::min(low, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
-      high = std::max(high, part_.shapes.vertices[static_cast<std::size_t>(v)][2]);
+      low = std::min(low, item(part_.shapes.vertices, v)[2]);
+      high = std::max(high, item(part_.shapes.vertices, v)[2]);
     }
     return 3.0 * weight_ * immersion_.volume(body) / (high - low);
   }

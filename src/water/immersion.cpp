@@ -5,6 +5,8 @@
 #include <limits>
 #include <span>
 
+#include "floe/base/item.h"
+
 namespace floe {
 
 Immersion::Immersion(const Part& part) : part_(part) {
@@ -14,7 +16,7 @@ Immersion::Immersion(const Part& part) : part_(part) {
     whole_.push_back(volume_properties(part.shapes, static_cast<std::int32_t>(b)));
     double extent = 0;
     for (std::int32_t v = part.shapes.vertex_of[b]; v < part.shapes.vertex_of[b + 1]; ++v) {
-      const Point3& r = part.shapes.vertices[static_cast<std::size_t>(v)];
+      const Point3& r = item(part.shapes.vertices, v);
       extent = std::max(extent, std::hypot(r[0], r[1], r[2]));
     }
     extent_.push_back(extent);
@@ -49,7 +51,7 @@ Prism<double> Immersion::find_prism(std::size_t b) const {
        f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
     const std::span corners(shapes.corners.data() + shapes.corner_of[f],
                             shapes.corners.data() + shapes.corner_of[f + 1]);
-    const auto at = [&](std::int32_t v) { return shapes.vertices[static_cast<std::size_t>(v)]; };
+    const auto at = [&](std::int32_t v) { return item(shapes.vertices, v); };
     if (!std::all_of(corners.begin(), corners.end(),
                      [&](std::int32_t v) { return at(v)[2] <= bottom + near; }))
       continue;
@@ -128,7 +130,7 @@ double Immersion::plan_area(std::int32_t body) const {
     face.clear();
     for (auto c = static_cast<std::size_t>(shapes.corner_of[f]);
          c < static_cast<std::size_t>(shapes.corner_of[f + 1]); ++c) {
-      const Point3& r = shapes.vertices[static_cast<std::size_t>(shapes.corners[c])];
+      const Point3& r = item(shapes.vertices, shapes.corners[c]);
       const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
       face.push_back({p.x, p.y});
     }
@@ -163,7 +165,7 @@ Submerged Immersion::clipped_polyhedron(std::int32_t body, const Triad<double>& 
   const Shapes& shapes = part_.shapes;
   placed_.clear();
   for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
-    const Point3& r = shapes.vertices[static_cast<std::size_t>(v)];
+    const Point3& r = item(shapes.vertices, v);
     const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
     placed_.push_back({p.x, p.y, p.z});
   }

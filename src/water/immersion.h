@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "floe/base/item.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
 
@@ -130,7 +131,7 @@ class Immersion {
     return part_.bodies.position[b][2] + state.record(b)[2];
   }
   /// Volume of an owned body [m^3].
-  double volume(std::int32_t body) const { return whole_[static_cast<std::size_t>(body)].volume; }
+  double volume(std::int32_t body) const { return item(whole_, body).volume; }
   /// Area of an owned body at rest seen from above [m^2].
   double plan_area(std::int32_t body) const;
   /// Whether an owned body is a prism along its axis 3.

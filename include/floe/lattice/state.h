@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "floe/base/item.h"
 #include "floe/base/rotation.h"
 
 namespace floe {
@@ -122,7 +123,7 @@ template <class Space>
 std::array<double, 6> components_of(const Wrenches<Space>& wrenches, std::size_t body) {
   std::array<double, 6> all{};
   for (std::size_t k = 0; k < Space::components.size(); ++k)
-    all[static_cast<std::size_t>(Space::components[k])] = wrenches.of(body)[k];
+    item(all, Space::components[k]) = wrenches.of(body)[k];
   return all;
 }
 /// Adds a force [N] and a moment [N m] to a wrench; a planar wrench takes the in-plane components.
@@ -131,7 +132,7 @@ void add(Wrenches<Space>& wrenches, std::size_t body, const Vec3<double>& force,
          const Vec3<double>& moment) {
   const std::array<double, 6> all{force.x, force.y, force.z, moment.x, moment.y, moment.z};
   for (std::size_t k = 0; k < Space::components.size(); ++k)
-    wrenches.of(body)[k] += all[static_cast<std::size_t>(Space::components[k])];
+    wrenches.of(body)[k] += item(all, Space::components[k]);
 }
 
 }  // namespace floe

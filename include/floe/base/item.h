@@ -12,7 +12,7 @@ namespace floe {
 
 /// Returns element `index` of a vector, span or array. Builds with assertions check the index.
 template <class Sequence, std::signed_integral Index>
-decltype(auto) at(Sequence& sequence, Index index) {
+decltype(auto) item(Sequence& sequence, Index index) {
   assert(index >= 0 && static_cast<std::size_t>(index) < std::size(sequence));
   return sequence[static_cast<std::size_t>(index)];
 }
