@@ -106,6 +106,11 @@ class Values(unittest.TestCase):
                 with unittest.mock.patch.dict(ENVIRONMENT, {"DISPLAY": ""}):
                     said = self.refused(words[0][1:], "", words)
                 self.assertIn("no display to draw on (DISPLAY is not set)", said)
+        for words in (["-draw_type", "image"], ["-draw_type", "null"], ["-nox"]):
+            with self.subTest(words=words):
+                code, lines, _ = self.run_with(STATIC, ["-snes_monitor", "draw::draw_lg", *words],
+                                               {"DISPLAY": ""}, 1)
+                self.assertEqual((code, lines), (0, []))
 
     def test_files_of_a_refused_run_go(self):
         """PETSc makes them while it begins, in the first solve or at its end."""
@@ -125,15 +130,16 @@ class Values(unittest.TestCase):
                         self.assertEqual(done.returncode, 2, done.stderr)
                         self.assertEqual(sorted(p.name for p in Path(folder).iterdir()), ["s.yaml"])
 
-    def test_files_that_were_there_stay(self):
+    def test_files_that_were_there_are_not_taken_away(self):
+        """PETSc has written over this one in the first solve, as the option asks."""
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "s.yaml").write_text(STATIC)
             Path(folder, "m").write_text("mine")
-            done = subprocess.run([str(FLOE), "s.yaml", "-ksp_view_mat", "binary:m", "-eps_type"],
-                                  cwd=folder, capture_output=True, text=True, timeout=600,
-                                  env=ENVIRONMENT)
+            done = subprocess.run([str(FLOE), "s.yaml", "-ksp_view_mat", "binary:m",
+                                   "-snes_bogus"], cwd=folder, capture_output=True, text=True,
+                                  timeout=600, env=ENVIRONMENT)
             self.assertEqual(done.returncode, 2, done.stderr)
-            self.assertEqual(Path(folder, "m").read_text(), "mine")
+            self.assertEqual(sorted(p.name for p in Path(folder).iterdir()), ["m", "s.yaml"])
 
     def test_in_the_environment(self):
         code, lines, made = self.run_with(STATIC, [], {"PETSC_OPTIONS": "-snes_rtol nan"}, 1)

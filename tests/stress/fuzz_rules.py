@@ -36,6 +36,13 @@ def words_of(text):
     return set(re.findall(r"[^\W\d]\w+|\d[\w.+-]*", text.lower()))
 
 
+def without_paths(line):
+    """A message without the paths in it, which the user may have given as long as he likes: behind
+    a key of files they may have blanks."""
+    line = re.sub(r"\b(\w*file|dir|restart): '[^']{100,}'", r"\1: ...", line)
+    return re.sub(r"[^\s']{100,}", "...", line)
+
+
 class Outcome:
     """What a case did; `broken` lists the rules that it broke."""
 
@@ -90,9 +97,7 @@ class Outcome:
         if len(lines) != 1 or not re.match(r"floe( \w+)?:",
                                            self.error) or not self.error.endswith("\n"):
             self.breaks("not one line of floe's", repr(self.error[:1000]))
-        # a path that was given may be long, with blanks too
-        elif len(re.sub(r"(?<=(?:file|.dir|tart): )'[^']{100,}'|[^\s']{100,}", "...",
-                        lines[0])) >= LONGEST_LINE:
+        elif len(without_paths(lines[0])) >= LONGEST_LINE:
             self.breaks(f"a line of {len(lines[0])} letters", lines[0][:LONGEST_LINE])
         elif not self.names_input(lines[0]):
             self.breaks("the line names nothing of the input", lines[0])

@@ -1,6 +1,8 @@
 // Options of the command line over a scene's, those of the environment, and PETSc's.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "base/environment.h"
 #include "base/spelling.h"
 #include "floe/base/command_line.h"
@@ -88,6 +90,31 @@ TEST_F(SceneOptions, OfTwoKeysThatExcludeEachOtherTheCommandLinesCounts) {
                                  "sheet: {length: 40}\nwater: {drag_linear: 1}\n",
                                  words("integrator", "quasistatic")),
                        "forces: drag"));
+}
+
+TEST(OptionSources, OfTwoKeysThatExcludeEachOtherTheStrongerSourcesCounts) {
+  constexpr std::array table{OptionSpec{"a", Kind::number, "", "", "", ""},
+                             OptionSpec{"b", Kind::number, "", "", "", ""}};
+  constexpr std::array sources{Source::checkpoint, Source::scene, Source::command_line};
+  for (const Source of_a : sources) {
+    for (const Source of_b : sources) {
+      UserOptions user;
+      const auto give = [&](const char* name, Source source) {
+        GivenOptions& options = source == Source::checkpoint ? user.checkpoint
+                                : source == Source::scene    ? user.scene
+                                                             : user.command_line;
+        options[name] = {"1", source, {}, false};
+      };
+      give("a", of_a);
+      give("b", of_b);
+      Options options(table, user, true);
+      if (of_a == of_b) {
+        EXPECT_EQ(error_of([&] { options.one_of("a", "b", {}, "both"); }), "both");
+      } else {
+        EXPECT_EQ(options.one_of("a", "b", {}, "both"), of_a > of_b ? "a" : "b");
+      }
+    }
+  }
 }
 
 TEST_F(SceneOptions, OptionsOfTheEnvironmentAreThoseOfPetscOnly) {
