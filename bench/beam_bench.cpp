@@ -40,7 +40,8 @@ void product(benchmark::State& run) {
   const std::vector<std::uint8_t> held(static_cast<std::size_t>(c.part.local), 0);
   Tangent<Space> tangent(c.part, held, 1.0, 1.0, {.type = MATBAIJ});
   tangent.begin();
-  (void)make_beam_force<Space>(c.part, with(0, Kinematics::linear))->add_tangent(c.state, tangent);
+  const auto beams = make_beam_force<Space>(c.part, with(0, Kinematics::linear));
+  (void)beams->roles().tangent->add_tangent(c.state, tangent);
   tangent.end();
   Handle<Vec> x, y;
   check(MatCreateVecs(tangent.matrix(), x.put(), y.put()));

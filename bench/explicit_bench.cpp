@@ -204,7 +204,7 @@ void scatter(benchmark::State& bench) {
 void beams(benchmark::State& bench, double damping) {
   InSpace& c = InSpace::of(bench.range(0), damping);
   for ([[maybe_unused]] auto _ : bench) {
-    c.model.beams()->add(c.state, c.wrenches);
+    c.model.forces().front()->add(c.state, c.wrenches);
     benchmark::ClobberMemory();
   }
   c.count(bench);

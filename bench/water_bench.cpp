@@ -9,7 +9,7 @@ namespace {
 
 using namespace floe;
 
-void evaluate(benchmark::State& run, const Force<Spatial>& force, bench::Sheet<Spatial>& c) {
+void evaluate(benchmark::State& run, Force<Spatial>& force, bench::Sheet<Spatial>& c) {
   for ([[maybe_unused]] auto _ : run) {
     force.add(c.state, c.wrenches);
     benchmark::DoNotOptimize(c.wrenches.values.data());
