@@ -2,7 +2,7 @@
 // of a tenth of its time, and prints what a coupled program would exchange.
 #include <cstdio>
 
-#include "floe/base/command_line.h"
+#include "floe/session/command_line.h"
 #include "floe/base/petsc.h"
 #include "floe/simulation.h"
 

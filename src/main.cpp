@@ -6,12 +6,12 @@
 #include <string>
 #include <utility>
 
-#include "base/files.h"
-#include "base/run_log.h"
-#include "base/signals.h"
-#include "floe/base/command_line.h"
-#include "floe/base/log.h"
-#include "floe/base/options.h"
+#include "files/files.h"
+#include "files/run_log.h"
+#include "session/signals.h"
+#include "floe/session/command_line.h"
+#include "floe/files/log.h"
+#include "floe/options/options.h"
 #include "floe/base/petsc.h"
 #include "floe/simulation.h"
 #include "program/go_on.h"

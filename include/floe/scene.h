@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "floe/base/given.h"
+#include "floe/options/given.h"
 #include "floe/beams/beam_options.h"
 #include "floe/beams/calibration.h"
-#include "floe/contact/contact_options.h"
+#include "floe/contact_laws/contact_options.h"
 #include "floe/contact/obstacle.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/load.h"

@@ -11,14 +11,14 @@
 #include <string>
 #include <string_view>
 
-#include "base/run_log.h"
-#include "blame.h"
-#include "failure.h"
-#include "floe/base/options.h"
-#include "launcher.h"
-#include "option_names.h"
-#include "petsc_files.h"
-#include "solver_options.h"
+#include "files/run_log.h"
+#include "session/blame.h"
+#include "session/failure.h"
+#include "floe/options/options.h"
+#include "session/launcher.h"
+#include "options/option_names.h"
+#include "session/petsc_files.h"
+#include "session/solver_options.h"
 
 namespace floe {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "contact/energies.h"
-#include "contact/laws/response.h"
+#include "contact_laws/response.h"
 #include "contact/pair.h"
 #include "contact/places.h"
 

@@ -20,7 +20,7 @@
 #include "contact/energies.h"
 #include "contact/events.h"
 #include "contact/history.h"
-#include "contact/laws/laws.h"
+#include "contact_laws/laws.h"
 #include "contact/narrow_phase.h"
 #include "contact/pair_list.h"
 #include "contact/penetrations.h"

@@ -4,7 +4,7 @@
 /// it.
 #pragma once
 
-#include "contact/laws/response.h"
+#include "contact_laws/response.h"
 
 namespace floe {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/laws/response.h"
+#include "contact_laws/response.h"
 #include "contact/pair.h"
 
 namespace floe {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "contact/separation.h"
+#include "geometry/separation.h"
 
 namespace floe {
 namespace {

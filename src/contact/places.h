@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/laws/response.h"
+#include "contact_laws/response.h"
 #include "contact/pair.h"
 #include "contact/solids.h"
 #include "floe/base/item.h"

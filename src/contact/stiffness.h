@@ -2,7 +2,7 @@
 /// Stiffness of contacts: the constants of a pair, and the bound for the stable step.
 #pragma once
 
-#include "contact/laws/laws.h"
+#include "contact_laws/laws.h"
 #include "contact/pair.h"
 #include "contact/solids.h"
 

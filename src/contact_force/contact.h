@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "floe/contact/contact_options.h"
+#include "floe/contact_laws/contact_options.h"
 #include "floe/contact/obstacle.h"
 #include "forces/force.h"
 

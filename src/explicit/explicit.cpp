@@ -3,7 +3,7 @@
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
 #include "explicit/leapfrog.h"
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "explicit/step.h"
 
 namespace floe {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "explicit/explicit.h"
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "run/dynamic_run.h"
 
 namespace floe {

@@ -12,7 +12,7 @@
 #include "base/format.h"
 #include "explicit/explicit_run.h"
 #include "explicit/first_order_system.h"
-#include "explicit/rk_stability.h"
+#include "stability/rk_stability.h"
 #include "run/dynamic_run.h"
 #include "run/numbers.h"
 

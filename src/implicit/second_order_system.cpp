@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/collectives.h"
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "model/newton.h"
 #include "run/numbers.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/hdf5.h"
+#include "files/hdf5.h"
 #include "base/on_root.h"
 #include "lattice/partition.h"
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <utility>
 
-#include "base/hdf5.h"
-#include "base/option_values.h"
-#include "base/spelling.h"
+#include "files/hdf5.h"
+#include "options/option_values.h"
+#include "options/spelling.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"

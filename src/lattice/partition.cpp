@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "floe/base/item.h"
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "lattice/permute.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/collectives.h"
-#include "base/hdf5.h"
+#include "files/hdf5.h"
 #include "base/on_root.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"

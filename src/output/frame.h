@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "base/hdf5.h"
+#include "files/hdf5.h"
 #include "beams/beam_force.h"
 #include "floe/base/rotation.h"
 #include "output/xdmf.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <utility>
 
-#include "base/files.h"
+#include "files/files.h"
 #include "floe/base/petsc.h"
 
 namespace floe {

@@ -11,11 +11,11 @@
 #include <stdexcept>
 
 #include "base/collectives.h"
-#include "base/files.h"
+#include "files/files.h"
 #include "base/on_root.h"
 #include "floe/base/item.h"
-#include "floe/base/log.h"
-#include "floe/base/options.h"
+#include "floe/files/log.h"
+#include "floe/options/options.h"
 #include "output/cracks.h"
 #include "output/fields.h"
 #include "output/gather.h"

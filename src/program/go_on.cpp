@@ -4,7 +4,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "base/option_names.h"
+#include "options/option_names.h"
 
 namespace floe::program {
 

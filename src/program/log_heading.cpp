@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "base/files.h"
+#include "files/files.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
 #include "go_on.h"

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "base/option_values.h"
-#include "base/solver_options.h"
-#include "base/spelling.h"
+#include "options/option_values.h"
+#include "session/solver_options.h"
+#include "options/spelling.h"
 #include "floe/base/version.h"
 #include "floe/scene.h"
 #include "manual.h"

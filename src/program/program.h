@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "floe/base/command_line.h"
+#include "floe/session/command_line.h"
 
 namespace floe::program {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/spelling.h"
+#include "options/spelling.h"
 #include "places.h"
 #include "program.h"
 #include "subcommands.h"

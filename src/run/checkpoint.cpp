@@ -10,11 +10,11 @@
 
 #include "base/clock.h"
 #include "base/collectives.h"
-#include "base/files.h"
+#include "files/files.h"
 #include "base/on_root.h"
-#include "base/seal.h"
-#include "base/signals.h"
-#include "floe/base/log.h"
+#include "files/seal.h"
+#include "session/signals.h"
+#include "floe/files/log.h"
 #include "floe/base/version.h"
 
 namespace floe {

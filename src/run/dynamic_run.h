@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/audit.h"
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "run/integrator.h"
 #include "run/ledger.h"

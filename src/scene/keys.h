@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "floe/base/options.h"
+#include "floe/options/options.h"
 
 namespace floe {
 

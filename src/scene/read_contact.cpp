@@ -1,7 +1,7 @@
 // Reading of contacts and obstacles.
 #include <cmath>
 
-#include "contact/restitution.h"
+#include "contact_laws/restitution.h"
 #include "floe/base/petsc.h"
 #include "reading.h"
 

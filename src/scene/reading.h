@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "floe/base/options.h"
+#include "floe/options/options.h"
 #include "floe/scene.h"
 
 namespace floe {

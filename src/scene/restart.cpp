@@ -10,10 +10,10 @@
 
 #include "base/collectives.h"
 #include "base/on_root.h"
-#include "base/option_values.h"
-#include "base/scene_text.h"
+#include "options/option_values.h"
+#include "options/scene_text.h"
 #include "floe/base/version.h"
-#include "output/run_folder.h"
+#include "run_folder/run_folder.h"
 #include "restart_changes.h"
 #include "run/checkpoint.h"
 

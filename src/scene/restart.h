@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "floe/base/given.h"
+#include "floe/options/given.h"
 #include "floe/base/petsc.h"
 
 namespace floe {

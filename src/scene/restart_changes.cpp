@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "base/option_names.h"
-#include "base/option_values.h"
+#include "options/option_names.h"
+#include "options/option_values.h"
 #include "keys.h"
 
 namespace floe {

@@ -11,10 +11,10 @@
 #include <set>
 #include <system_error>
 
-#include "floe/base/options.h"
+#include "floe/options/options.h"
 #include "floe/base/petsc.h"
 #include "keys.h"
-#include "output/run_folder.h"
+#include "run_folder/run_folder.h"
 #include "reading.h"
 #include "restart_changes.h"
 #include "units.h"

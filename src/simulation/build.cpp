@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/signals.h"
+#include "session/signals.h"
 #include "contact_force/contact.h"
 #include "explicit/explicit.h"
 #include "floe/base/item.h"
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "forces/gravity.h"
 #include "implicit/implicit.h"

@@ -11,7 +11,7 @@
 #include "floe/scene.h"
 #include "forces/dead_load.h"
 #include "output/output.h"
-#include "output/size.h"
+#include "run_folder/size.h"
 #include "run/run.h"
 #include "statics/quasistatic.h"
 

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "floe/base/options.h"
+#include "floe/options/options.h"
 
 namespace floe {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/collectives.h"
-#include "base/files.h"
-#include "base/hdf5.h"
+#include "files/files.h"
+#include "files/hdf5.h"
 #include "base/on_root.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "run/expected_cost.h"
 #include "simulation/build.h"

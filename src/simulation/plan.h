@@ -4,7 +4,7 @@
 
 #include "floe/run/result.h"
 #include "floe/scene.h"
-#include "output/size.h"
+#include "run_folder/size.h"
 
 namespace floe {
 

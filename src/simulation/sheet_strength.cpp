@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "base/collectives.h"
-#include "base/signals.h"
-#include "floe/base/log.h"
+#include "session/signals.h"
+#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "simulation/build.h"
 

@@ -6,7 +6,7 @@
 
 #include "base/collectives.h"
 #include "floe/base/item.h"
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
 #include "floe/beams/moduli.h"

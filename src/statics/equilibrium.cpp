@@ -8,8 +8,8 @@
 #include "base/audit.h"
 #include "base/collectives.h"
 #include "base/format.h"
-#include "base/signals.h"
-#include "floe/base/log.h"
+#include "session/signals.h"
+#include "floe/files/log.h"
 #include "model/newton.h"
 
 namespace floe {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/format.h"
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 #include "run/expected_cost.h"
 #include "statics/equilibrium.h"
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "base/hdf5.h"
-#include "contact/restitution.h"
+#include "files/hdf5.h"
+#include "contact_laws/restitution.h"
 #include "contact_force/contact.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Ranks that wait for each other take short turns (src/base/launcher.h); a process alone does not
+"""Ranks that wait for each other take short turns (src/session/launcher.h); a process alone does not
 ask for them."""
 import ctypes
 import os

@@ -2,9 +2,9 @@
 /// Scenes of loose blocks in contact, stepped from outside.
 #pragma once
 
-#include "contact/restitution.h"
+#include "contact_laws/restitution.h"
 #include "contact_force/contact.h"
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
 

@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/dynamics.h"
 
 namespace floe::test {

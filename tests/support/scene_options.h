@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "base/scene_text.h"
-#include "floe/base/options.h"
+#include "options/scene_text.h"
+#include "floe/options/options.h"
 #include "floe/scene.h"
 
 namespace floe {

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "floe/base/given.h"
+#include "floe/options/given.h"
 #include "model/model.h"
 #include "support/lattices.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <variant>
 
-#include "contact/laws/laws.h"
+#include "contact_laws/laws.h"
 
 namespace floe {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "floe/base/given.h"
+#include "floe/options/given.h"
 #include "run/expected_cost.h"
 #include "simulation/plan.h"
 

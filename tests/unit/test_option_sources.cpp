@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "base/environment.h"
-#include "base/spelling.h"
-#include "floe/base/command_line.h"
-#include "floe/base/options.h"
+#include "session/environment.h"
+#include "options/spelling.h"
+#include "floe/session/command_line.h"
+#include "floe/options/options.h"
 #include "support/scene_options.h"
 
 namespace floe {

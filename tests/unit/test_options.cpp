@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "floe/base/options.h"
+#include "floe/options/options.h"
 #include "floe/scene.h"
 #include "support/scene_options.h"
 

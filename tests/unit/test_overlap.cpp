@@ -8,7 +8,7 @@
 #include <cmath>
 #include <list>
 
-#include "contact/separation.h"
+#include "geometry/separation.h"
 #include "support/polyhedra.h"
 #include "support/record.h"
 

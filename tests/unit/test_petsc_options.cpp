@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "base/option_names.h"
+#include "options/option_names.h"
 #include "explicit/leapfrog.h"
 #include "floe/base/petsc.h"
 #include "implicit/liealpha.h"

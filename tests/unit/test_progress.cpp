@@ -1,7 +1,7 @@
 // Lines of progress.
 #include <gtest/gtest.h>
 
-#include "floe/base/log.h"
+#include "floe/files/log.h"
 
 namespace floe {
 namespace {

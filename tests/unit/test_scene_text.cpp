@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/scene_text.h"
+#include "options/scene_text.h"
 #include "support/scene_options.h"
 
 namespace floe {

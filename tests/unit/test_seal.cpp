@@ -8,9 +8,9 @@
 #include <sstream>
 #include <string>
 
-#include "base/files.h"
-#include "base/hdf5.h"
-#include "base/seal.h"
+#include "files/files.h"
+#include "files/hdf5.h"
+#include "files/seal.h"
 #include "floe/base/petsc.h"
 
 namespace floe::test {

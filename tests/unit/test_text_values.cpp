@@ -4,8 +4,8 @@
 #include <array>
 #include <string>
 
-#include "base/scene_text.h"
-#include "floe/base/command_line.h"
+#include "options/scene_text.h"
+#include "floe/session/command_line.h"
 #include "floe/base/petsc.h"
 #include "floe/lattice/lattice.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/laws/laws.h"
-#include "contact/restitution.h"
+#include "contact_laws/laws.h"
+#include "contact_laws/restitution.h"
 #include "support/contact_scene.h"
 #include "support/record.h"
 #include "support/roles.h"

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/restitution.h"
+#include "contact_laws/restitution.h"
 #include "contact_force/contact.h"
 #include "explicit/explicit.h"
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"

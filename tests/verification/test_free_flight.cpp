@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/flying_bar.h"
 #include "support/record.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "contact/restitution.h"
+#include "contact_laws/restitution.h"
 #include "explicit/explicit.h"
 #include "fracture/fracture.h"
 #include "simulation/build.h"

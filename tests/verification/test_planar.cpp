@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/dynamics.h"
 #include "support/record.h"
 #include "support/tension.h"

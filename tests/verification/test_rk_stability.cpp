@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "explicit/rk_stability.h"
+#include "stability/rk_stability.h"
 #include "support/explicit_run.h"
 #include "support/random.h"
 #include "support/record.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/dynamics.h"
 #include "support/random.h"
 #include "support/record.h"

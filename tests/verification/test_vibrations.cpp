@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "explicit/stable_step.h"
+#include "stability/stable_step.h"
 #include "support/dynamics.h"
 #include "support/record.h"
 #include "support/static_solution.h"

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "floe/base/given.h"
+#include "floe/options/given.h"
 
 namespace floe {
 

@@ -1,0 +1,73 @@
+/// \file
+/// The register of contact laws.
+///
+/// A law is a type with the members that IsContactLaw asks for. A new law is one header in this
+/// folder and its type in the list ContactLaws. The loop over pairs is compiled for each type of
+/// the list, and an evaluation chooses among them once. A scene names a law by its `word`, an
+/// enumerator of ContactLaw (docs/howto.md, "A contact law").
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <stdexcept>
+#include <variant>
+
+#include "contact_laws/overlap.h"
+#include "contact_laws/potential.h"
+
+namespace floe {
+
+using ContactLaws = std::variant<OverlapLaw, PotentialLaw>;
+
+/// What a law must have:
+/// - `word`, by which a scene names it;
+/// - a constructor from the options, from which the law takes its constants;
+/// - `respond`, the response to a contact with a direction, from the history of the pair;
+/// - `steepness`, for the bound of the stable step: the largest factor by which the elastic force
+///   rises with the overlap faster than k_v |S|, from the area of the largest face of a body and
+///   from its A_r [m^2].
+template <class Law>
+concept IsContactLaw = std::constructible_from<Law, const ContactOptions&> &&
+    requires(const Law& law, const ContactState& state, const PairHistory& memory) {
+  { Law::word } -> std::convertible_to<ContactLaw>;
+  { law.respond(state, memory) } -> std::same_as<ContactResponse>;
+  { Law::steepness(0.0, 0.0) } -> std::same_as<double>;
+};
+
+/// Returns the law that the options name, with its constants.
+template <std::size_t first = 0>
+ContactLaws law_of(const ContactOptions& options) {
+  using Law = std::variant_alternative_t<first, ContactLaws>;
+  static_assert(IsContactLaw<Law>);
+  if (options.law == Law::word) return Law(options);
+  if constexpr (first + 1 < std::variant_size_v<ContactLaws>) return law_of<first + 1>(options);
+  throw std::logic_error("a contact law is not in the list ContactLaws");
+}
+
+/// Returns the response of a law to an overlap. Where one body lies inside the other there is no
+/// direction and no force, and the force of the springs of friction is lost.
+/// \param overlap         in world axes, with V > 0
+/// \param depth           of its centroid below the plane of a half-space [m]; else not used
+/// \param motion          of A relative to B at the centroid of the overlap
+/// \param memory          history of the pair
+/// \param newly_eligible  the overlap is stress-free: V_p = V
+template <IsContactLaw Law>
+ContactResponse contact_response(const Law& law, const PairConstants& pair, const Overlap& overlap,
+                                 double depth, const RelativeMotion& motion, PairHistory memory,
+                                 bool newly_eligible) {
+  if (newly_eligible) memory.plastic = overlap.volume;
+  const double area = length(overlap.area);
+  if (area <= 1e-12 * pair.area) {
+    memory.springs.force = {};
+    return {.contact = {.memory = memory}, .stored = {}};
+  }
+  return law.respond({.pair = pair,
+                      .overlap = overlap,
+                      .depth = depth,
+                      .motion = motion,
+                      .area = area,
+                      .normal = (1 / area) * overlap.area},
+                     memory);
+}
+
+}  // namespace floe

@@ -1,0 +1,34 @@
+/// \file
+/// The contact law `potential` (Feng 2021; model.md, "Contact").
+#pragma once
+
+#include <algorithm>
+
+#include "contact_laws/shared_terms.h"
+
+namespace floe {
+
+/// The gradient of the energy k_v (V - V_p)^2/(2 A_r): a pressure p = k_v (V - V_p)/A_r, whose
+/// force is p S at c, with the couple p G_c.
+struct PotentialLaw {
+  static constexpr ContactLaw word = ContactLaw::potential;
+  SharedConstants constants;
+
+  explicit PotentialLaw(const ContactOptions& options) : constants(options) {}
+
+  ContactResponse respond(const ContactState& state, const PairHistory& memory) const {
+    const double stiffness = state.pair.stiffness, reference = state.pair.area;
+    ContactResponse response =
+        elastic_response(constants, state, stiffness * state.area / reference, memory);
+    const double elastic = state.elastic_volume(response.contact.memory.plastic);
+    response.contact.couple = (stiffness * elastic / reference) * state.overlap.moment;
+    response.stored.normal = 0.5 * stiffness * elastic * elastic / reference;
+    return response;
+  }
+
+  static double steepness(double widest, double reference) {
+    return std::max(1.0, widest / reference);
+  }
+};
+
+}  // namespace floe

@@ -1,0 +1,81 @@
+/// \file
+/// What a contact law is given, and its response.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "contact_laws/friction.h"
+#include "geometry/overlap.h"
+
+namespace floe {
+
+/// Constants of a pair.
+struct PairConstants {
+  double stiffness = 0;     ///< k_v = E_c/(L_a + L_b) [Pa/m]
+  double area = 0;          ///< A_r [m^2]
+  double mass = 0;          ///< m_r [kg]
+  double friction = 0;      ///< mu
+  bool half_space = false;  ///< whether B is a half-space
+};
+
+/// History of a pair.
+struct PairHistory {
+  double plastic = 0;       ///< V_p [m^3]
+  FrictionSprings springs;  ///< after the last step
+
+  static constexpr std::size_t numbers = 5;
+  /// Returns V_p, k_t and the three components of F_t, as a checkpoint holds them.
+  std::array<double, numbers> as_numbers() const {
+    const Vec3<double>& f = springs.force;
+    return {plastic, springs.stiffness, f.x, f.y, f.z};
+  }
+  /// Returns the history that gave these numbers.
+  static PairHistory from(std::span<const double, numbers> n) {
+    return {.plastic = n[0], .springs = {.stiffness = n[1], .force = {n[2], n[3], n[4]}}};
+  }
+};
+
+/// Relative motion of the two bodies at a contact.
+struct RelativeMotion {
+  Vec3<double> velocity{};  ///< of A relative to B at c [m/s]
+  Vec3<double> spin{};      ///< omega_A - omega_B [rad/s]
+};
+
+/// A contact in an evaluation, as a law sees it.
+struct ContactState {
+  const PairConstants& pair;
+  const Overlap& overlap;  ///< in world axes, with V > 0
+  double depth = 0;        ///< of c below the plane of B where B is a half-space [m]; else not used
+  const RelativeMotion& motion;
+  double area = 0;        ///< |S| [m^2]
+  Vec3<double> normal{};  ///< n = S/|S|, from B to A
+
+  /// Returns the part of the overlap that presses, V - V_p [m^3].
+  double elastic_volume(double plastic) const { return std::max(overlap.volume - plastic, 0.0); }
+};
+
+/// The wrench of a contact on A, about the centroid of the overlap; that on B is the opposite.
+struct ContactForce {
+  Vec3<double> normal{};            ///< from B to A; zero if there is no force
+  double elastic = 0, viscous = 0;  ///< along the normal [N]
+  Vec3<double> couple{};            ///< elastic [N m]
+  PairHistory memory;               ///< for the commit; the force of its springs acts now
+
+  Vec3<double> force() const { return (elastic + viscous) * normal + memory.springs.force; }
+};
+
+/// Energy that a contact stores [J].
+struct StoredEnergy {
+  double normal = 0, tangential = 0;
+};
+
+/// The response of a law to a contact.
+struct ContactResponse {
+  ContactForce contact;
+  StoredEnergy stored;
+};
+
+}  // namespace floe
