@@ -5,6 +5,7 @@
 #include "floe/base/petsc.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
+#include "floe/session/session.h"
 #include "mesh/relaxation.h"
 #include "mesh/voronoi.h"
 

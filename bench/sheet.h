@@ -10,6 +10,7 @@
 #include "floe/base/petsc.h"
 #include "floe/lattice/lattice.h"
 #include "floe/lattice/state.h"
+#include "floe/session/session.h"
 #include "lattice/partition.h"
 
 namespace floe::bench {

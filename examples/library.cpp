@@ -2,8 +2,9 @@
 // of a tenth of its time, and prints what a coupled program would exchange.
 #include <cstdio>
 
-#include "floe/session/command_line.h"
 #include "floe/base/petsc.h"
+#include "floe/session/command_line.h"
+#include "floe/session/session.h"
 #include "floe/simulation.h"
 
 int main(int argc, char** argv) {

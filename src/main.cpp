@@ -8,17 +8,19 @@
 
 #include "files/files.h"
 #include "files/run_log.h"
-#include "session/signals.h"
-#include "floe/session/command_line.h"
+#include "floe/base/petsc.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"
-#include "floe/base/petsc.h"
+#include "floe/session/command_line.h"
+#include "floe/session/session.h"
+#include "floe/session/unused_options.h"
 #include "floe/simulation.h"
 #include "program/go_on.h"
 #include "program/log_heading.h"
 #include "program/program.h"
 #include "program/signals_at_start.h"
 #include "scene/restart.h"
+#include "session/signals.h"
 #include "simulation/build.h"
 
 namespace {

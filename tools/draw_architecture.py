@@ -21,10 +21,14 @@ FONT = "font-family=\"'DejaVu Sans', Verdana, Arial, sans-serif\""
 
 # One or two lines per stage.
 ROLES = {
-    "base": ("options, log, signals, checked PETSc calls,", "rotations, ghosts of bodies, lanes"),
+    "base": ("checked PETSc calls, collectives,", "rotations, ghosts of bodies, lanes"),
+    "files": ("whole files, HDF5,", "log of a run"),
+    "options": ("table of options, YAML,", "names and values"),
+    "session": ("MPI and PETSc, command line,", "signals, crashes"),
     "geometry": ("polyhedra: volumes,", "clipping, overlap"),
     "mesh": ("Voronoi cells of", "a sheet"),
-    "contact": ("pairs, laws, history,", "obstacles; no mesh"),
+    "contact_laws": ("overlap, potential,", "friction, restitution"),
+    "contact": ("pairs, history, obstacles;", "no mesh"),
     "lattice": ("bodies, beams, sets, state;", "partition, archive"),
     "forces": ("interface of a force, tangent,", "gravity, loads, boundaries"),
     "beams": ("beam kernel, moduli,", "calibration"),
@@ -34,9 +38,11 @@ ROLES = {
     "model": ("part, forces, prescribed", "unknowns, Newton"),
     "run": ("steps around an integrator,", "ledger, checkpoints"),
     "statics": ("equilibrium,", "load steps"),
-    "explicit": ("leapfrog, Runge-Kutta,", "stable step"),
+    "stability": ("stable step", "of explicit runs"),
+    "explicit": ("leapfrog,", "Runge-Kutta"),
     "implicit": ("generalised-alpha", "method"),
-    "output": ("history, frames,", "output folder"),
+    "output": ("history, frames,", "fields"),
+    "run_folder": ("output folder,", "its lock and files"),
     "scene": ("table of keys,", "restart"),
     "simulation": ("from a scene to a model,", "and from a run to summary.json"),
 }

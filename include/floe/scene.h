@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "floe/options/given.h"
 #include "floe/beams/beam_options.h"
 #include "floe/beams/calibration.h"
-#include "floe/contact_laws/contact_options.h"
 #include "floe/contact/obstacle.h"
+#include "floe/contact_laws/contact_options.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/load.h"
 #include "floe/fracture/fracture_options.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
+#include "floe/options/given.h"
 #include "floe/water/drag_options.h"
 
 namespace floe {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "contact/energies.h"
-#include "contact_laws/response.h"
 #include "contact/pair.h"
 #include "contact/places.h"
+#include "contact_laws/response.h"
 
 namespace floe {
 

@@ -20,13 +20,13 @@
 #include "contact/energies.h"
 #include "contact/events.h"
 #include "contact/history.h"
-#include "contact_laws/laws.h"
 #include "contact/narrow_phase.h"
 #include "contact/pair_list.h"
 #include "contact/penetrations.h"
 #include "contact/places.h"
 #include "contact/solids.h"
 #include "contact/stiffness.h"
+#include "contact_laws/laws.h"
 
 namespace floe {
 

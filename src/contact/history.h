@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "contact_laws/response.h"
 #include "contact/pair.h"
+#include "contact_laws/response.h"
 
 namespace floe {
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "contact_laws/response.h"
 #include "contact/pair.h"
 #include "contact/solids.h"
+#include "contact_laws/response.h"
 #include "floe/base/item.h"
 
 namespace floe {

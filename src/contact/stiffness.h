@@ -2,9 +2,9 @@
 /// Stiffness of contacts: the constants of a pair, and the bound for the stable step.
 #pragma once
 
-#include "contact_laws/laws.h"
 #include "contact/pair.h"
 #include "contact/solids.h"
+#include "contact_laws/laws.h"
 
 namespace floe {
 

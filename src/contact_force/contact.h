@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "floe/contact_laws/contact_options.h"
 #include "floe/contact/obstacle.h"
+#include "floe/contact_laws/contact_options.h"
 #include "forces/force.h"
 
 namespace floe {

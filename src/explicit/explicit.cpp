@@ -3,8 +3,8 @@
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
 #include "explicit/leapfrog.h"
-#include "stability/stable_step.h"
 #include "explicit/step.h"
+#include "stability/stable_step.h"
 
 namespace floe {
 namespace {

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "explicit/explicit.h"
-#include "stability/stable_step.h"
 #include "run/dynamic_run.h"
+#include "stability/stable_step.h"
 
 namespace floe {
 

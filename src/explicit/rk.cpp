@@ -12,9 +12,9 @@
 #include "base/format.h"
 #include "explicit/explicit_run.h"
 #include "explicit/first_order_system.h"
-#include "stability/rk_stability.h"
 #include "run/dynamic_run.h"
 #include "run/numbers.h"
+#include "stability/rk_stability.h"
 
 namespace floe {
 namespace {

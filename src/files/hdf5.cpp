@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "files/files.h"
-#include "floe/base/petsc.h"
 #include "files/hdf5_id.h"
+#include "floe/base/petsc.h"
 
 namespace floe {
 namespace {

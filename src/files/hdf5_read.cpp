@@ -14,9 +14,9 @@
 #include <limits>
 
 #include "files/hdf5.h"
+#include "files/hdf5_id.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
-#include "files/hdf5_id.h"
 
 namespace floe {
 namespace {

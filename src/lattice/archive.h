@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "files/hdf5.h"
 #include "base/on_root.h"
+#include "files/hdf5.h"
 #include "lattice/partition.h"
 
 namespace floe {

@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "files/hdf5.h"
-#include "options/option_values.h"
-#include "options/spelling.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/base/rotation.h"
 #include "floe/lattice/lattice.h"
 #include "geometry/overlap.h"
+#include "options/option_values.h"
+#include "options/spelling.h"
 
 namespace floe {
 namespace {

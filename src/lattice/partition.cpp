@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "floe/base/item.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
 #include "lattice/permute.h"
 
 namespace floe {

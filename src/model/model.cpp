@@ -9,8 +9,8 @@
 
 #include "base/collectives.h"
 #include "floe/base/item.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
 
 namespace floe {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cctype>
 
-#include "options/spelling.h"
 #include "options/option_values.h"
+#include "options/spelling.h"
 
 namespace floe {
 namespace {

@@ -276,8 +276,4 @@ std::string some_of(const std::vector<std::string>& items) {
   if (items.size() > most) text += " and " + std::to_string(items.size() - most) + " more";
   return text;
 }
-void throw_verdict(std::string verdict, MPI_Comm comm) {
-  broadcast(verdict, comm);
-  if (!verdict.empty()) throw InputError(verdict);
-}
 }  // namespace floe

@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "floe/options/given.h"
 #include "floe/base/petsc.h"
+#include "floe/options/given.h"
 
 namespace floe {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/collectives.h"
-#include "files/hdf5.h"
 #include "base/on_root.h"
+#include "files/hdf5.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "lattice/pieces.h"

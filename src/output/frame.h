@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "files/hdf5.h"
 #include "beams/beam_force.h"
+#include "files/hdf5.h"
 #include "floe/base/rotation.h"
 #include "output/xdmf.h"
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "base/collectives.h"
-#include "files/files.h"
 #include "base/on_root.h"
+#include "files/files.h"
 #include "floe/base/item.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"

@@ -8,13 +8,13 @@
 #include <string_view>
 #include <vector>
 
-#include "options/option_values.h"
-#include "session/solver_options.h"
-#include "options/spelling.h"
 #include "floe/base/version.h"
 #include "floe/scene.h"
 #include "manual.h"
+#include "options/option_values.h"
+#include "options/spelling.h"
 #include "scenes.h"
+#include "session/solver_options.h"
 #include "subcommands.h"
 
 namespace floe::program {

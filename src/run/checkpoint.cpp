@@ -10,12 +10,12 @@
 
 #include "base/clock.h"
 #include "base/collectives.h"
-#include "files/files.h"
 #include "base/on_root.h"
+#include "files/files.h"
 #include "files/seal.h"
-#include "session/signals.h"
-#include "floe/files/log.h"
 #include "floe/base/version.h"
+#include "floe/files/log.h"
+#include "session/signals.h"
 
 namespace floe {
 namespace {

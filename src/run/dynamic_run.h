@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "base/audit.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
 #include "run/integrator.h"
 #include "run/ledger.h"
 #include "run/run.h"

@@ -14,8 +14,8 @@
 #include <random>
 
 #include "base/collectives.h"
-#include "files/files.h"
 #include "base/on_root.h"
+#include "files/files.h"
 #include "files/run_log.h"
 #include "floe/files/log.h"
 #include "run_folder/result_files.h"

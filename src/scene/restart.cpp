@@ -10,12 +10,12 @@
 
 #include "base/collectives.h"
 #include "base/on_root.h"
+#include "floe/base/version.h"
 #include "options/option_values.h"
 #include "options/scene_text.h"
-#include "floe/base/version.h"
-#include "run_folder/run_folder.h"
 #include "restart_changes.h"
 #include "run/checkpoint.h"
+#include "run_folder/run_folder.h"
 
 namespace floe {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "floe/options/given.h"
 #include "floe/base/petsc.h"
+#include "floe/options/given.h"
 
 namespace floe {
 

@@ -5,9 +5,9 @@
 #include <set>
 #include <string>
 
+#include "keys.h"
 #include "options/option_names.h"
 #include "options/option_values.h"
-#include "keys.h"
 
 namespace floe {
 namespace {

@@ -11,12 +11,12 @@
 #include <set>
 #include <system_error>
 
-#include "floe/options/options.h"
 #include "floe/base/petsc.h"
+#include "floe/options/options.h"
 #include "keys.h"
-#include "run_folder/run_folder.h"
 #include "reading.h"
 #include "restart_changes.h"
+#include "run_folder/run_folder.h"
 #include "units.h"
 
 namespace floe {

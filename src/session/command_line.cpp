@@ -4,11 +4,11 @@
 #include <array>
 #include <string_view>
 
-#include "session/environment.h"
-#include "options/scene_text.h"
 #include "floe/base/petsc.h"
 #include "options/option_names.h"
 #include "options/option_values.h"
+#include "options/scene_text.h"
+#include "session/environment.h"
 
 namespace floe {
 namespace {

@@ -8,10 +8,11 @@
 #include <string_view>
 
 #include "files/run_log.h"
-#include "session/run_place.h"
+#include "floe/base/petsc.h"
+#include "floe/session/session.h"
 #include "session/blame.h"
 #include "session/failure.h"
-#include "floe/base/petsc.h"
+#include "session/run_place.h"
 
 namespace floe {
 namespace {

@@ -4,8 +4,8 @@
 /// scene. Session therefore switches that off, and this file reads them.
 #pragma once
 
-#include "floe/options/given.h"
 #include "floe/base/petsc.h"
+#include "floe/options/given.h"
 
 namespace floe {
 

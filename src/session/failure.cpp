@@ -12,10 +12,11 @@
 #include <stdexcept>
 
 #include "files/run_log.h"
-#include "session/run_place.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
+#include "floe/session/session.h"
 #include "session/launcher.h"
+#include "session/run_place.h"
 
 namespace floe {
 namespace {

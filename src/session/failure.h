@@ -3,16 +3,12 @@
 /// exit code.
 #pragma once
 
-#include <new>
 #include <stdexcept>
 #include <string>
 
 namespace floe {
 
 constexpr int exit_failed = 1, exit_bad_input = 2;
-
-/// PETSc, or a solver behind PETSc, could not allocate memory.
-class OutOfMemory : public std::bad_alloc {};
 
 /// An error of PETSc, after the first solve, that names an option.
 class OptionFailed : public std::runtime_error {

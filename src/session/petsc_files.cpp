@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
+#include "floe/session/session.h"
 #include "options/option_values.h"
 
 namespace floe {

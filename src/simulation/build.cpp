@@ -4,16 +4,16 @@
 #include <cmath>
 #include <numeric>
 
-#include "session/signals.h"
 #include "contact_force/contact.h"
 #include "explicit/explicit.h"
 #include "floe/base/item.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
 #include "forces/gravity.h"
 #include "implicit/implicit.h"
 #include "run/expected_cost.h"
 #include "scene/reading.h"
+#include "session/signals.h"
 #include "simulation/lattice_command.h"
 #include "simulation/mesh_file.h"
 #include "simulation/plan.h"

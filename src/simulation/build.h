@@ -11,8 +11,8 @@
 #include "floe/scene.h"
 #include "forces/dead_load.h"
 #include "output/output.h"
-#include "run_folder/size.h"
 #include "run/run.h"
+#include "run_folder/size.h"
 #include "statics/quasistatic.h"
 
 namespace floe {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/collectives.h"
+#include "base/on_root.h"
 #include "files/files.h"
 #include "files/hdf5.h"
-#include "base/on_root.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"
 

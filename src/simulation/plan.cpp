@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
 #include "run/expected_cost.h"
 #include "simulation/build.h"
 

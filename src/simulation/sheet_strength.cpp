@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "base/collectives.h"
-#include "session/signals.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/log.h"
+#include "session/signals.h"
 #include "simulation/build.h"
 
 namespace floe {

@@ -6,10 +6,10 @@
 
 #include "base/collectives.h"
 #include "floe/base/item.h"
-#include "floe/files/log.h"
 #include "floe/base/petsc.h"
 #include "floe/base/version.h"
 #include "floe/beams/moduli.h"
+#include "floe/files/log.h"
 #include "simulation/build.h"
 
 namespace floe {

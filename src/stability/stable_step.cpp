@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "base/collectives.h"
-#include "stability/difference_operators.h"
 #include "floe/base/item.h"
 #include "floe/files/log.h"
+#include "stability/difference_operators.h"
 
 namespace floe {
 namespace {

@@ -8,9 +8,9 @@
 #include "base/audit.h"
 #include "base/collectives.h"
 #include "base/format.h"
-#include "session/signals.h"
 #include "floe/files/log.h"
 #include "model/newton.h"
+#include "session/signals.h"
 
 namespace floe {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <optional>
 
-#include "files/hdf5.h"
-#include "contact_laws/restitution.h"
 #include "contact_force/contact.h"
+#include "contact_laws/restitution.h"
+#include "files/hdf5.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"
 

@@ -2,8 +2,8 @@
 /// Scenes of loose blocks in contact, stepped from outside.
 #pragma once
 
-#include "contact_laws/restitution.h"
 #include "contact_force/contact.h"
+#include "contact_laws/restitution.h"
 #include "stability/stable_step.h"
 #include "support/blocks.h"
 #include "support/dynamics.h"

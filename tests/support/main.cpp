@@ -7,6 +7,7 @@
 
 #include "base/audit.h"
 #include "floe/base/petsc.h"
+#include "floe/session/session.h"
 
 #ifdef __SANITIZE_ADDRESS__
 /// MPI and PETSc keep what they have until the process ends.

@@ -6,9 +6,9 @@
 
 #include <string>
 
-#include "options/scene_text.h"
 #include "floe/options/options.h"
 #include "floe/scene.h"
+#include "options/scene_text.h"
 
 namespace floe {
 

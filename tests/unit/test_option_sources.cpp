@@ -3,10 +3,11 @@
 
 #include <array>
 
-#include "session/environment.h"
-#include "options/spelling.h"
-#include "floe/session/command_line.h"
 #include "floe/options/options.h"
+#include "floe/session/command_line.h"
+#include "floe/session/unused_options.h"
+#include "options/spelling.h"
+#include "session/environment.h"
 #include "support/scene_options.h"
 
 namespace floe {

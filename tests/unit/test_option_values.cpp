@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include "floe/options/options.h"
 #include "options/option_names.h"
 #include "options/option_values.h"
-#include "floe/options/options.h"
 #include "scene/keys.h"
 #include "support/scene_options.h"
 

@@ -10,10 +10,10 @@
 #include <set>
 #include <string>
 
-#include "options/option_names.h"
 #include "explicit/leapfrog.h"
 #include "floe/base/petsc.h"
 #include "implicit/liealpha.h"
+#include "options/option_names.h"
 #include "support/implicit_run.h"
 
 namespace floe::test {

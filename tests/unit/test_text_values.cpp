@@ -4,10 +4,10 @@
 #include <array>
 #include <string>
 
-#include "options/scene_text.h"
-#include "floe/session/command_line.h"
 #include "floe/base/petsc.h"
 #include "floe/lattice/lattice.h"
+#include "floe/session/command_line.h"
+#include "options/scene_text.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "simulation/lattice_command.h"
 #include "scene/units.h"
+#include "simulation/lattice_command.h"
 
 namespace floe {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact_laws/restitution.h"
 #include "contact_force/contact.h"
+#include "contact_laws/restitution.h"
 #include "explicit/explicit.h"
 #include "stability/stable_step.h"
 #include "support/blocks.h"

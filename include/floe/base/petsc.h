@@ -1,18 +1,15 @@
 /// \file
-/// The layer between floe and PETSc: a checked call, an owning handle, and the lifetimes of MPI and
-/// PETSc.
+/// The layer between floe and PETSc: errors, a checked call, and an owning handle.
 #pragma once
 
 #include <petsc.h>
 
-#include <array>
 #include <functional>
+#include <new>
 #include <source_location>
 #include <stdexcept>
 #include <string>
 #include <utility>
-
-#include "floe/options/given.h"
 
 namespace floe {
 
@@ -43,10 +40,34 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Throws after a failed PETSc or MPI call: InputError if the user asked for something that PETSc
-/// lacks, otherwise std::runtime_error. Nothing catches the latter: the terminate handler prints it
-/// and aborts all ranks, because unwinding on one rank would run collective destructors and hang.
+/// PETSc, or a solver behind PETSc, could not allocate memory.
+class OutOfMemory : public std::bad_alloc {};
+
+/// Throws InputError with rank 0's verdict on all ranks, unless the verdict is empty: for checks
+/// that one rank makes and whose result all ranks must share. Collective; works before
+/// PetscInitialize too.
+void throw_verdict(std::string verdict, MPI_Comm comm);
+
+/// Throws after a failed PETSc or MPI call: OutOfMemory, what the handler of set_failure_handler()
+/// throws, otherwise std::runtime_error. Nothing catches the latter: the terminate handler prints
+/// it and aborts all ranks, because unwinding on one rank would run collective destructors and
+/// hang.
 [[noreturn]] void fail(int ierr, const std::source_location& where);
+
+/// Throws for errors whose cause it knows, given PETSc's code and its message in one line.
+using FailureHandler = void (*)(int ierr, const std::string& petsc_says);
+/// Sets the function that fail() calls first.
+void set_failure_handler(FailureHandler handler);
+
+/// Makes PETSc keep the message of an error for fail(); PETSc's default handler would print a page.
+/// Call before PetscInitialize.
+void keep_petsc_messages();
+
+/// Marks MPI as unable to finalise, because a library that MPI_Finalize calls has failed. ~Mpi then
+/// ends the process with exit code 1.
+void give_up_on_mpi();
+/// Whether MPI was given up.
+bool mpi_is_given_up();
 
 inline void check(int ierr, const std::source_location& where = std::source_location::current()) {
   if (ierr != 0) [[unlikely]]
@@ -96,46 +117,6 @@ class Handle {
  private:
   T object_ = nullptr;
 };
-
-/// Sets the function that a rank calls last, with the printed line, when it ends on an uncaught
-/// error. The function must neither fail nor wait for other ranks. An empty function removes it.
-void set_last_words(std::function<void(const std::string&)> last_words);
-
-/// Marks MPI as unable to finalise, because a library that MPI_Finalize calls has failed. ~Mpi then
-/// ends the process with exit code 1.
-void give_up_on_mpi();
-
-/// Holds MPI from construction to destruction, and installs the terminate handler (print, last
-/// words, MPI_Abort).
-class Mpi {
- public:
-  Mpi(int& argc, char**& argv);
-  ~Mpi();
-  Mpi(const Mpi&) = delete;
-  Mpi& operator=(const Mpi&) = delete;
-};
-
-/// Holds PETSc from construction to destruction, with the options of PETSc's families among `user`.
-/// PETSc reads no other options: neither petscrc files nor PETSC_OPTIONS (see read_environment).
-/// \param program  name of the program, argv[0]
-class Session {
- public:
-  explicit Session(const char* program, const UserOptions& user = {});
-  ~Session();
-  Session(const Session&) = delete;
-  Session& operator=(const Session&) = delete;
-
- private:
-  // PETSc keeps pointers to both.
-  std::string program_;
-  std::array<char*, 2> words_{};
-  char** word_ = nullptr;
-};
-
-/// Removes the files that options of PETSc have made in a run that is refused (logs, files of
-/// viewers), unless they were there before. Call after the end of the session, when PETSc has
-/// closed them.
-void drop_petsc_files() noexcept;
 
 /// Return the rank of this process and the number of ranks.
 inline int rank(MPI_Comm comm = PETSC_COMM_WORLD) {

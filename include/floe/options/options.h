@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "floe/options/given.h"
 #include "floe/base/petsc.h"
+#include "floe/options/given.h"
 
 namespace floe {
 
@@ -199,21 +199,6 @@ class Options {
 
 /// Joins at most six of the items: "a, b and 7 more".
 std::string some_of(const std::vector<std::string>& items);
-
-/// Throws InputError with rank 0's verdict on all ranks, unless the verdict is empty: for checks
-/// that one rank makes and whose result all ranks must share. Collective; works before
-/// PetscInitialize too.
-void throw_verdict(std::string verdict, MPI_Comm comm);
-
-/// Throws InputError that names the first option of PETSc's database that was never queried.
-/// Collective. Call it after the first solve, because MUMPS reads options late. Viewers are exempt:
-/// PETSc may query them at the end.
-/// \param exempt  names of further exempt options
-void reject_unused_options(const std::set<std::string>& exempt = {});
-
-/// Warns on rank 0's standard error of every option that was never queried. Call it at the end of a
-/// run.
-void warn_unused_options();
 
 /// Formats a table as text for a terminal, as Markdown, and as part of a man page (groff_man(7)).
 std::string help_text(std::span<const OptionSpec> table);
