@@ -4,7 +4,7 @@
 ///
 /// The parts: Solids (what may touch), PairList with Eligibility and near_pairs() (the pairs that
 /// may touch), Places and NarrowPhase (places, gaps and overlaps of an evaluation), a law of
-/// contact/laws, ActiveContacts (forces and energies of an evaluation), ContactHistory and
+/// contact_laws, ActiveContacts (forces and energies of an evaluation), ContactHistory and
 /// ContactBooks (what a step keeps), ContactEvents and penetrations() (checks).
 ///
 /// Pairs are sorted, and every rank computes a pair by the same instructions. So the wrench of a
