@@ -20,7 +20,7 @@ namespace floe {
 struct Record {
   double time = 0;  ///< [s]
   std::int64_t step = 0;
-  /// Names and values of the columns, SI units, in the order of history.csv (docs/output.md).
+  /// Names and values of the columns, SI units, in the order of history.csv (model.md, "Files").
   std::vector<std::pair<std::string, double>> columns;
 };
 
