@@ -6,7 +6,7 @@
 
 #include "files/files.h"
 #include "floe/base/petsc.h"
-#include "floe/base/version.h"
+#include "floe/session/version.h"
 #include "go_on.h"
 
 namespace floe::program {

@@ -1,7 +1,7 @@
 #include "manual.h"
 
-#include "floe/base/version.h"
 #include "floe/scene.h"
+#include "floe/session/version.h"
 #include "subcommands.h"
 
 namespace floe::program {

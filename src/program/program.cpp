@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "floe/base/version.h"
 #include "floe/scene.h"
+#include "floe/session/version.h"
 #include "manual.h"
 #include "options/option_values.h"
 #include "options/spelling.h"

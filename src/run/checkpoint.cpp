@@ -13,8 +13,8 @@
 #include "base/on_root.h"
 #include "files/files.h"
 #include "files/seal.h"
-#include "floe/base/version.h"
 #include "floe/files/log.h"
+#include "floe/session/version.h"
 #include "session/signals.h"
 
 namespace floe {

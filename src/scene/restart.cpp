@@ -10,7 +10,7 @@
 
 #include "base/collectives.h"
 #include "base/on_root.h"
-#include "floe/base/version.h"
+#include "floe/session/version.h"
 #include "options/option_values.h"
 #include "options/scene_text.h"
 #include "restart_changes.h"

@@ -7,9 +7,9 @@
 #include "base/collectives.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
-#include "floe/base/version.h"
 #include "floe/beams/moduli.h"
 #include "floe/files/log.h"
+#include "floe/session/version.h"
 #include "simulation/build.h"
 
 namespace floe {

@@ -1,4 +1,4 @@
-#include "floe/base/version.h"
+#include "floe/session/version.h"
 
 #include <hdf5.h>
 #include <petsc.h>
