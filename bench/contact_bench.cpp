@@ -54,12 +54,12 @@ void evaluate(benchmark::State& state, double gap, double turn = 0.02, double dr
   for ([[maybe_unused]] auto _ : state) {
     side = -side;
     for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].pose.x.z += side * drift;
-    contacts.place(bodies, 0);
+    contacts.place(bodies, 0, 0);
     contacts.evaluate(wrenches);
-    contacts.commit(bodies, 1e-4);
+    contacts.commit(bodies, 0.5e-4, 1e-4);
   }
   const auto listed = static_cast<double>(contacts.list().size());
-  contacts.place(bodies, 0);
+  contacts.place(bodies, 0, 0);
   contacts.evaluate(wrenches);
   const auto touching = static_cast<double>(contacts.touching());
   state.counters["listed"] = listed;

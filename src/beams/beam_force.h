@@ -37,7 +37,7 @@ inline constexpr double folded_cosine = 0.2;
 using BeamSection = std::array<double, 6>;
 
 /// The beams of a part as a force. With dashpots (damping_ratio > 0) the wrenches depend on
-/// velocities too, and commit() adds up the losses.
+/// velocities too, and the force does work.
 template <class Space>
 class BeamForce : public Force<Space> {
  public:

@@ -23,9 +23,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
                      public HasTangent<typename Beam::Space>,
                      public Damps<typename Beam::Space>,
                      public DoesWork<typename Beam::Space>,
-                     public LimitsStep<typename Beam::Space>,
-                     public Commits<typename Beam::Space>,
-                     public Persists {
+                     public LimitsStep<typename Beam::Space> {
  public:
   using Pointwise = Beam;
   using Space = typename Beam::Space;
@@ -47,7 +45,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
 
   std::string_view name() const override { return "beam"; }
   Roles<Space> roles() override {
-    Roles<Space> roles{.tangent = this, .step = this, .commits = this, .persists = this};
+    Roles<Space> roles{.tangent = this, .step = this};
     if constexpr (damped) roles.damping = this, roles.work = this;
     return roles;
   }
@@ -105,15 +103,10 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
 
   double stiffness_bound(std::int32_t body) const override { return item(stiffness_, body); }
 
-  void commit(const State<Space>&, double dt) override {
-    if constexpr (damped) {
-      take_losses(dt);
-      step_ = dt;
-    }
-  }
-
-  double power(const State<Space>&) const override { return -power_lost_; }
-  void take_work(double work) override { lost_ -= work; }
+  void powers(std::span<double> out) const override { out.front() = -power_lost_; }
+  /// The power comes out of the loop that adds the wrenches. With other velocities it would take
+  /// another pass over all beams.
+  LaterPowers later_powers() const override { return LaterPowers::never; }
 
   /// Estimated from the stiffnesses of a beam at its present length, over the mass of its lighter
   /// body: k_n along the beam, and k_s (l0/l)^2 + |N|/l across. Linear beams have none, since their
@@ -136,16 +129,10 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     return std::sqrt(fastest2);
   }
 
-  void report(const State<Space>& state, Columns& columns) const override {
+  void report(const State<Space>& state, std::span<const double> works,
+              Columns& columns) const override {
     columns.add("energy_strain", stored(state));
-    if constexpr (damped) columns.add("energy_damping", lost_by_now());
-  }
-
-  void persist(Archive& archive) override {
-    if constexpr (damped) {
-      archive.share("energy_damping", lost_);
-      archive.common("step", step_);
-    }
+    if constexpr (damped) columns.add("energy_damping", 0.0 - works.front());
   }
 
   std::int64_t folded(const State<Space>& state) const override {
@@ -175,15 +162,6 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     });
     return energy;
   }
-
-  /// Energy that dashpots have lost up to the time of the last evaluation [J]. The velocities of
-  /// leapfrog lag half a step: at t_n the sum holds the powers up to n - 3/2, and 3/4 of a step of
-  /// the last power makes the balance of second order (summation by parts of the power
-  /// v_{n+1/2} C (v_{n-1/2} + v_{n+1/2})/2 that the scheme loses between t_n and t_n+1).
-  /// take_losses() omits the same share of the very first power.
-  virtual double lost_by_now() const { return lost_ + 0.75 * step_ * power_lost_; }
-  /// Adds the losses of a step of dt [s] that follows the last evaluation.
-  virtual void take_losses(double dt) { lost_ += (step_ > 0 ? dt : 0.25 * dt) * power_lost_; }
 
   /// Number of blocks that the loop prefetches ahead. The constants stream through the cache once
   /// per step; a beam costs 15 ns with the prefetch and 17 ns without.
@@ -227,8 +205,6 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   std::vector<DashpotBlock> dashpots_;
   std::vector<double> stiffness_;  ///< per local body: bound, summed over its beams [N/m]
   double power_lost_ = 0;          ///< in dashpots, in the last evaluation [W]
-  double lost_ = 0;                ///< by dashpots, taken over so far [J]
-  double step_ = 0;                ///< length of the last step [s]
 };
 
 }  // namespace floe

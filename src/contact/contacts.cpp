@@ -33,9 +33,8 @@ void Contacts::take_on(std::span<const BodyPair> pairs) {
   places_.restart(list_.involved().size());
 }
 
-void Contacts::place(std::span<const MovingPose> bodies, double time) {
-  const double half_a_step_ago = time - 0.5 * books_.last_dt;
-  places_.place(solids_, list_.involved(), bodies, time, half_a_step_ago);
+void Contacts::place(std::span<const MovingPose> bodies, double time, double velocity_time) {
+  places_.place(solids_, list_.involved(), bodies, time, velocity_time);
 }
 
 void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
@@ -91,19 +90,18 @@ void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
               pair, a, b, motion, response.stored, wrenches);
 }
 
-void Contacts::commit(std::span<const MovingPose> bodies, double dt) {
+void Contacts::commit(std::span<const MovingPose> bodies, double velocity_time, double dt) {
   history_.clear();
-  places_.set_obstacle_velocities(solids_, places_.time() + 0.5 * dt);
-  ContactPower power;
-  for (const ActiveContact& active : active_.contacts()) commit(active, bodies, dt, power);
-  books_.take(active_.power(), power, active_.stored(), dt);
+  places_.set_obstacle_velocities(solids_, velocity_time);
+  later_power_ = {};
+  for (const ActiveContact& active : active_.contacts()) commit(active, bodies, dt);
+  start_.take(active_.stored());
   list_.end_step();
   active_.end_step();
 }
 
-/// Commits one contact and adds its power with the velocities half a step after the evaluation.
-void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> bodies, double dt,
-                      ContactPower& power) {
+/// Commits one contact and adds its power with the velocities after the step.
+void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> bodies, double dt) {
   const Pair& pair = list_.pair(active.pair);
   const ContactForce& contact = active.contact;
   const Placed a = places_.moving(pair.slot_a, item(bodies, pair.slot_a));
@@ -111,10 +109,10 @@ void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> b
                                        : places_.moving(pair.slot_b, item(bodies, pair.slot_b));
   const RelativeMotion motion = relative_motion(a, b, active.centre);
   if (pair.counted) {
-    add_power(contact, motion, power);
+    add_power(contact, motion, later_power_);
     events_.note(active, pair, places_.time());
   }
-  if (is_obstacle(pair.b)) power.obstacles += power_of_obstacle(active, a, b);
+  if (is_obstacle(pair.b)) later_power_.obstacles += power_of_obstacle(active, a, b);
   const FrictionSprings springs =
       slid(contact.memory.springs, contact.normal, motion.velocity, 0.5 * (a.spin + b.spin), dt);
   history_.add({.a = pair.a,

@@ -4,8 +4,8 @@
 ///
 /// The parts: Solids (what may touch), PairList with Eligibility and near_pairs() (the pairs that
 /// may touch), Places and NarrowPhase (places, gaps and overlaps of an evaluation), a law of
-/// contact_laws, ActiveContacts (forces and energies of an evaluation), ContactHistory and
-/// ContactBooks (what a step keeps), ContactEvents and penetrations() (checks).
+/// contact_laws, ActiveContacts (forces and energies of an evaluation), ContactHistory (springs and
+/// crushed volumes from step to step), ContactEvents and penetrations() (checks).
 ///
 /// Pairs are sorted, and every rank computes a pair by the same instructions. So the wrench of a
 /// body does not depend on how bodies are distributed over ranks.
@@ -64,9 +64,10 @@ class Contacts {
   void take_on(std::span<const BodyPair> pairs);
 
   /// Sets the places and motions of bodies and obstacles for an evaluation.
-  /// \param bodies  the involved ones, by slot
-  /// \param time    of their poses [s]
-  void place(std::span<const MovingPose> bodies, double time);
+  /// \param bodies         the involved ones, by slot
+  /// \param time           of their poses [s]
+  /// \param velocity_time  of their velocities [s]
+  void place(std::span<const MovingPose> bodies, double time, double velocity_time);
   /// Computes the overlaps of the pairs taken on.
   /// \param overlaps  filled, in the order of take_on()
   void overlaps_taken_on(std::span<PairOverlap> overlaps);
@@ -74,11 +75,11 @@ class Contacts {
   /// \param wrenches   on the involved bodies, by slot
   /// \param offloaded  called when the first overlap of an offloaded pair is needed
   void evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded = {});
-  /// Makes the findings of the last evaluation history: friction, crushing, energies.
-  /// \param bodies  the involved ones after the step, by slot; velocities are half a step after the
-  ///                evaluation
-  /// \param dt      length of the step [s]
-  void commit(std::span<const MovingPose> bodies, double dt);
+  /// Makes the findings of the last evaluation history: friction, crushing.
+  /// \param bodies         the involved ones after the step, by slot
+  /// \param velocity_time  of their velocities [s]
+  /// \param dt             length of the step [s]
+  void commit(std::span<const MovingPose> bodies, double velocity_time, double dt);
   /// Makes a pair whose beam broke eligible from the next build on; its overlap at that time counts
   /// as stress-free.
   void release(const BodyPair& pair) { list_.release(pair); }
@@ -88,8 +89,15 @@ class Contacts {
   const ContactWrench& on_obstacle(std::size_t k) const { return active_.on_obstacle(k); }
   /// Returns the number of overlapping counted pairs in the last evaluation.
   std::int64_t touching() const { return active_.touching(); }
+  /// Returns the power of the counted pairs in the last evaluation, until its step is committed.
+  const ContactPower& power() const { return active_.power(); }
+  /// Returns the power of the contacts that commit() took over, with the velocities after the step.
+  const ContactPower& later_power() const { return later_power_; }
   /// Returns the energies of the counted pairs at the last evaluation.
-  ContactEnergies energies() const { return books_.energies(active_.power(), active_.stored()); }
+  /// \param work  until then [J]
+  ContactEnergies energies(const ContactPower& work) const {
+    return contact_energies(work, active_.stored(), start_);
+  }
   /// Returns the counted pairs of the last evaluation of which one lies wholly inside the other,
   /// without a force.
   std::vector<BodyPair> enclosed() const;
@@ -106,8 +114,8 @@ class Contacts {
   /// \param rows     of the pairs of all ranks, sorted by pair
   /// \param changed  whether pairs had become eligible since the last build
   void restore(std::span<const double> rows, bool changed);
-  /// Work and energies over the whole run, which a checkpoint keeps.
-  ContactBooks& books() { return books_; }
+  /// The energy stored at the start, which a checkpoint keeps.
+  StoredAtStart& stored_at_start() { return start_; }
 
  private:
   template <IsContactLaw Law>
@@ -116,8 +124,7 @@ class Contacts {
   template <IsContactLaw Law>
   void touch(const Law& law, std::int32_t index, const PairOverlap& met, const PairHistory* memory,
              std::span<ContactWrench> wrenches);
-  void commit(const ActiveContact& active, std::span<const MovingPose> bodies, double dt,
-              ContactPower& power);
+  void commit(const ActiveContact& active, std::span<const MovingPose> bodies, double dt);
 
   Solids solids_;
   ContactOptions options_;
@@ -127,7 +134,8 @@ class Contacts {
   NarrowPhase narrow_;
   ActiveContacts active_;
   ContactHistory history_;
-  ContactBooks books_;
+  ContactPower later_power_;
+  StoredAtStart start_;
   ContactEvents events_;
 };
 

@@ -1,8 +1,10 @@
 /// \file
-/// Work and energies of contacts in steps of leapfrog. Velocities lag half a step behind places, so
-/// the forces of an evaluation do work over half of the step before it and half of the step after
-/// it.
+/// Powers and energies of contacts.
 #pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
 
 #include "contact_laws/response.h"
 
@@ -10,16 +12,19 @@ namespace floe {
 
 /// Power of the terms of contacts on the bodies [W], or the integral of this power [J].
 struct ContactPower {
-  double elastic = 0, viscous = 0, friction = 0;
-  double obstacles = 0;  ///< power of moving obstacles on bodies
+  static constexpr std::size_t terms = 4;
 
-  /// Adds last_dt/2 times the power `before` and dt/2 times the power `after`.
-  void add_half_step(double last_dt, const ContactPower& before, double dt,
-                     const ContactPower& after) {
-    elastic += 0.5 * (last_dt * before.elastic + dt * after.elastic);
-    viscous += 0.5 * (last_dt * before.viscous + dt * after.viscous);
-    friction += 0.5 * (last_dt * before.friction + dt * after.friction);
-    obstacles += 0.5 * (last_dt * before.obstacles + dt * after.obstacles);
+  double elastic = 0, viscous = 0, friction = 0;
+  double obstacles = 0;  ///< of moving obstacles on bodies
+
+  /// Returns the terms that write() has written.
+  static ContactPower of(std::span<const double> numbers) {
+    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+  }
+  /// Writes the terms. \param out  of length `terms`
+  void write(std::span<double> out) const {
+    const std::array<double, terms> all{elastic, viscous, friction, obstacles};
+    std::copy(all.begin(), all.end(), out.begin());
   }
 };
 
@@ -33,40 +38,31 @@ struct ContactEnergies {
   double external = 0;  ///< done on bodies by moving obstacles
 };
 
-/// Work of the counted contacts over a run.
-struct ContactBooks {
-  ContactPower work;            ///< up to the middle of the last step [J]
-  double last_dt = 0;           ///< length of the last step [s]
-  double stored_at_start = 0;   ///< in the first committed evaluation [J]
-  bool start_is_known = false;  ///< whether a step was taken over
+/// Energy that contacts stored in the first evaluation that was committed. Crushing counts from
+/// there.
+struct StoredAtStart {
+  double energy = 0;      ///< [J]
+  bool is_known = false;  ///< whether an evaluation was committed
 
-  /// Takes over a step.
-  /// \param before, after  power in the evaluation, with the velocities half a step before it and
-  ///                       half a step after it
-  /// \param stored         energy in the evaluation
-  /// \param dt             length of the step after the evaluation [s]
-  void take(const ContactPower& before, const ContactPower& after, const StoredEnergy& stored,
-            double dt) {
-    if (!start_is_known) stored_at_start = stored.normal + stored.tangential;
-    start_is_known = true;
-    work.add_half_step(last_dt, before, dt, after);
-    last_dt = dt;
-  }
-
-  /// Energies at the time of an evaluation.
-  /// \param power   in the evaluation, with the velocities half a step before it
-  /// \param stored  energy in the evaluation
-  ContactEnergies energies(const ContactPower& power, const StoredEnergy& stored) const {
-    ContactPower now = work;
-    now.add_half_step(last_dt, power, 0, {});
-    ContactEnergies e;
-    e.stored = stored.normal + stored.tangential;
-    e.viscous = -now.viscous;
-    e.friction = -now.friction - stored.tangential;
-    e.crushing = start_is_known ? stored_at_start - now.elastic - stored.normal : 0.0;
-    e.external = now.obstacles;
-    return e;
+  /// \param stored  in a committed evaluation
+  void take(const StoredEnergy& stored) {
+    if (!is_known) energy = stored.normal + stored.tangential;
+    is_known = true;
   }
 };
+
+/// Returns the energies at the time of an evaluation.
+/// \param work    until then [J]
+/// \param stored  in the evaluation
+inline ContactEnergies contact_energies(const ContactPower& work, const StoredEnergy& stored,
+                                        const StoredAtStart& start) {
+  ContactEnergies e;
+  e.stored = stored.normal + stored.tangential;
+  e.viscous = -work.viscous;
+  e.friction = -work.friction - stored.tangential;
+  e.crushing = start.is_known ? start.energy - work.elastic - stored.normal : 0.0;
+  e.external = work.obstacles;
+  return e;
+}
 
 }  // namespace floe

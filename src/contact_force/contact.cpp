@@ -52,6 +52,7 @@ std::vector<double> as_numbers(const std::vector<BodyPair>& pairs) {
 }
 
 class DistributedContact final : public Contact,
+                                 public DoesWork<Spatial>,
                                  public LimitsStep<Spatial>,
                                  public Commits<Spatial>,
                                  public Persists,
@@ -73,9 +74,13 @@ class DistributedContact final : public Contact,
 
   std::string_view name() const override { return "contact"; }
   Roles<Spatial> roles() override {
-    return {.step = this, .commits = this, .persists = this, .broken_pairs = this, .remarks = this};
+    return {.work = this,
+            .step = this,
+            .commits = this,
+            .persists = this,
+            .broken_pairs = this,
+            .remarks = this};
   }
-  bool has_history() const override { return true; }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     if (contacts_.list().changed() || !expiry_.started() ||
@@ -83,7 +88,7 @@ class DistributedContact final : public Contact,
       build(state);
     halo_.gather(state, bodies_);
     std::fill(mine_.begin(), mine_.end(), ContactWrench{});
-    contacts_.place(bodies_, state.time);
+    contacts_.place(bodies_, state.time, state.velocity_time);
     balance_.evaluate(contacts_, mine_);
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = halo_.local();
@@ -124,10 +129,18 @@ class DistributedContact final : public Contact,
 
   void commit(const State<Spatial>& state, double dt) override {
     halo_.gather(state, bodies_);
-    contacts_.commit(bodies_, dt);
+    contacts_.commit(bodies_, state.velocity_time, dt);
     expiry_.after_step(state, dt);
     dt_ = dt;
     obstacle_forces_.take(contacts_, dt, part_.comm);
+  }
+
+  std::size_t works() const override { return ContactPower::terms; }
+  void powers(std::span<double> out) const override { contacts_.power().write(out); }
+  LaterPowers later_powers() const override { return LaterPowers::at_once; }
+  /// The motion of every contact after the step is known in commit() only, which finds the powers.
+  void powers_with(const State<Spatial>&, std::span<double> out) const override {
+    contacts_.later_power().write(out);
   }
 
   void release(std::span<const BodyPair> pairs) override {
@@ -137,8 +150,9 @@ class DistributedContact final : public Contact,
     for (std::size_t k = 0; k + 1 < all.size(); k += 2) contacts_.release({all[k], all[k + 1]});
   }
 
-  void report(const State<Spatial>&, Columns& columns) const override {
-    const ContactEnergies e = contacts_.energies();
+  void report(const State<Spatial>&, std::span<const double> works,
+              Columns& columns) const override {
+    const ContactEnergies e = contacts_.energies(ContactPower::of(works));
     columns.add("energy_contact", e.stored);
     columns.add("energy_contact_viscous", e.viscous);
     columns.add("energy_friction", e.friction);
@@ -160,7 +174,6 @@ class DistributedContact final : public Contact,
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
   void build(const State<Spatial>& state);
-  void persist_books(Archive& archive);
   void restore(const std::vector<double>& rows, const std::vector<double>& released, bool changed,
                const PairListExpiry& expiry);
 
@@ -202,7 +215,9 @@ void DistributedContact::build(const State<Spatial>& state) {
 /// pair list from the state, since results do not depend on the list any more; before that the list
 /// of the run is built again, since it decides when contacts become possible.
 void DistributedContact::persist(Archive& archive) {
-  persist_books(archive);
+  StoredAtStart& start = contacts_.stored_at_start();
+  archive.share("stored_at_start", start.energy);
+  archive.common("start_is_known", start.is_known);
   archive.common("dt", dt_);
   obstacle_forces_.persist_time(archive);
   std::vector<double> rows, released;
@@ -219,17 +234,6 @@ void DistributedContact::persist(Archive& archive) {
   archive.common("released", released);
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
   if (archive.loading()) restore(rows, released, changed, expiry);
-}
-
-void DistributedContact::persist_books(Archive& archive) {
-  ContactBooks& books = contacts_.books();
-  archive.share("work_elastic", books.work.elastic);
-  archive.share("work_viscous", books.work.viscous);
-  archive.share("work_friction", books.work.friction);
-  archive.share("work_obstacles", books.work.obstacles);
-  archive.share("stored_at_start", books.stored_at_start);
-  archive.common("last_dt", books.last_dt, not_negative);
-  archive.common("start_is_known", books.start_is_known);
 }
 
 /// Goes on from a checkpoint.

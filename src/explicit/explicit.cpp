@@ -17,7 +17,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
  public:
   LeapfrogRun(Model<Space>& model, const ExplicitOptions& options, Observer<Space> observer)
       : Base(ts_leapfrog, model, options, std::move(observer)),
-        step_(model, this->state(), this->wrenches()) {
+        step_(model, this->state(), this->wrenches(), this->work_ledger()) {
     this->result().stepper = ts_leapfrog;
     step_.start();
     register_leapfrog();
@@ -58,9 +58,11 @@ class LeapfrogRun final : public ExplicitRun<Space> {
   StableStep find_stable_step() override {
     StableStep stable = stable_step(this->model(), this->state());
     // Forces keep by-products of their last evaluation (their power), which the search has changed.
-    this->evaluate();
+    evaluate();
     return stable;
   }
+  void evaluate() override { step_.evaluate(); }
+  std::span<const double> works() const override { return step_.works(); }
   /// Keeps velocities half of the next step behind.
   void step_changed(double before) override { step_.stagger(this->dt() - before); }
   typename Base::Energies energies() const override {
@@ -69,9 +71,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
   }
   void persist_own(Archive& archive) override {
     Base::persist_own(archive);
-    double work = step_.boundary_work();
-    archive.share("boundary_work", work);
-    step_.set_boundary_work(work);
+    step_.persist(archive);
   }
 
   ExplicitStep<Space> step_;

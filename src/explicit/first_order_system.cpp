@@ -31,6 +31,9 @@ FirstOrderSystem::FirstOrderSystem(const Model<Spatial>& model)
         {model.inertial_mass()[b], three(all.inertia[b].data()), four(all.orientation[b].data())});
     if (model.prescribed()[b] != 0) held_.push_back(static_cast<std::int32_t>(b));
   }
+  for (const auto& force : model.forces()) {
+    if (const auto* role = force->roles().work) works_ += role->works();
+  }
   offset_.resize(held_.size() * 3);
   place_.resize(static_cast<std::size_t>(model.part().local) * Spatial::unknowns);
   rate_ = acceleration_ = place_;
@@ -83,7 +86,7 @@ void FirstOrderSystem::to_records(std::span<const double> y, double time,
     put(spin(bodies_[b], q, l), r + Spatial::angular_velocity);
     put(l, r + Spatial::angular_momentum);
   }
-  state.time = time;
+  state.set_time(time);
   prescribe(state);
 }
 
@@ -178,12 +181,14 @@ void FirstOrderSystem::rates(const State<Spatial>& state, const Wrenches<Spatial
       }
     }
   }
-  double* work = &rates[bodies_size()];
+  std::span<double> powers = rates.subspan(bodies_size());
   for (const auto& force : model_.forces()) {
     const auto* role = force->roles().work;
-    *work++ = role != nullptr ? role->power(state) : 0.0;
+    if (role == nullptr) continue;
+    role->powers(powers.first(role->works()));
+    powers = powers.subspan(role->works());
   }
-  *work = boundary;
+  powers.front() = boundary;
 }
 
 double FirstOrderSystem::kinetic(const State<Spatial>& state) const {

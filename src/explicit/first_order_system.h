@@ -5,8 +5,8 @@
 /// On each rank y holds 13 numbers per owned body,
 ///   u' = v,  q' = (0, omega) q / 2,  v' = F/m,  L' = tau,   omega = R I^-1 R^T L,
 /// (u displacement, q rotation from rest, L angular momentum in the world, R the principal axes),
-/// followed by the integrals of this rank's powers: one per force (DoesWork::power), and that of
-/// the boundaries.
+/// followed by the integrals of this rank's powers: those of the forces (DoesWork::powers), and
+/// that of the boundaries.
 ///
 /// Prescribed components are not integrated: at every stage they have the boundary's value at the
 /// stage's time. Where some components of the angular velocity are prescribed (h) and others free
@@ -38,9 +38,9 @@ class FirstOrderSystem {
   /// Length of y on this rank, and the length of its part for bodies.
   std::size_t size() const { return bodies_size() + works(); }
   std::size_t bodies_size() const { return owned_ * width; }
-  std::size_t works() const {
-    return model_.forces().size() + 1;
-  }  ///< number of integrals of power, the boundaries' last
+  /// Number of integrals of power: those of the forces, in the order of WorkLedger::all(), and that
+  /// of the boundaries.
+  std::size_t works() const { return works_; }
 
   /// Sets the initial velocities and angular momenta of the bodies. Prescribed components get their
   /// prescribed velocities. Returns the boundaries' work for that, less work_of_state() [J].
@@ -79,7 +79,7 @@ class FirstOrderSystem {
   }
 
   const Model<Spatial>& model_;
-  std::size_t owned_;
+  std::size_t owned_, works_ = 1;
   std::vector<Body> bodies_;
   std::vector<std::int32_t> held_;  ///< owned bodies with a prescribed component
   std::vector<double>

@@ -1,6 +1,6 @@
 // Explicit dynamics by PETSc's TSRK, with bodies as vectors (FirstOrderSystem). After each accepted
 // step quaternions are normalised, prescribed components are set to their exact values and
-// integrals of powers are handed to their owners. That changes the solution, so TS evaluates the
+// integrals of powers are added to the works. That changes the solution, so TS evaluates the
 // first stage anew even if the method could reuse its last one (TSPostStep compares the vector's
 // state). A restart from a checkpoint is therefore the same to the last bit.
 #include <petscts.h>
@@ -228,10 +228,7 @@ bool RkRun::stepped() {
     const Numbers numbers(solution_);
     equations_.to_records(*numbers, now, state());
     const double* work = &(*numbers)[equations_.bodies_size()];
-    for (const auto& force : model().forces()) {
-      if (auto* role = force->roles().work) role->take_work(*work);
-      ++work;
-    }
+    for (double& sum : work_ledger().all()) sum += *work++;
     boundary_work_ += *work;
     equations_.from_records(state(), *numbers);
   }
@@ -246,7 +243,7 @@ bool RkRun::stepped() {
 std::unique_ptr<Run> make_rk_run(Model<Spatial>& model, const ExplicitOptions& options,
                                  Observer<Spatial> observer) {
   for (const auto& force : model.forces()) {
-    if (const auto* role = force->roles().commits; role != nullptr && role->has_history())
+    if (force->roles().commits != nullptr)
       throw InputError("ts_type: 'rk' cannot step force '" + std::string(force->name()) +
                        "': it remembers what happened, and stages of a step have not happened "
                        "(integrator: explicit steps it with leapfrog)");

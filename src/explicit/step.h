@@ -4,21 +4,30 @@
 #pragma once
 
 #include "base/collectives.h"
+#include "explicit/leapfrog_work.h"
 #include "explicit/planar_leapfrog_stepper.h"
 #include "model/model.h"
+#include "run/work_ledger.h"
 
 namespace floe {
 
-/// Leapfrog with positions at t_n, velocities at t_n - dt/2, and the wrenches of the last
-/// evaluation.
+/// Leapfrog with positions at t_n, velocities at t_n - dt/2, the wrenches of the last evaluation,
+/// and the works of the forces.
 template <class Space>
 class ExplicitStep {
  public:
   using Energies = LeapfrogStepper::Energies;
 
-  /// All must outlive this object. \param model  with all of its forces
-  ExplicitStep(Model<Space>& model, State<Space>& state, Wrenches<Space>& wrenches)
-      : model_(model), state_(state), wrenches_(wrenches), stepper_(model) {}
+  /// All must outlive this object.
+  /// \param model  with all of its forces
+  /// \param works  of the model's forces; commit() adds to them
+  ExplicitStep(Model<Space>& model, State<Space>& state, Wrenches<Space>& wrenches,
+               WorkLedger& works)
+      : model_(model),
+        state_(state),
+        wrenches_(wrenches),
+        stepper_(model),
+        work_(model.forces(), works.all()) {}
 
   /// Sets the bodies' initial velocities, at t_0, and evaluates the forces. Collective.
   void start() {
@@ -27,21 +36,33 @@ class ExplicitStep {
     evaluate();
   }
   /// Moves velocities back by half of dt [s], with the wrenches of the last evaluation.
-  void stagger(double dt) { stepper_.stagger(state_, wrenches_, dt); }
+  void stagger(double dt) {
+    stepper_.stagger(state_, wrenches_, dt);
+    state_.velocity_time -= 0.5 * dt;
+  }
 
-  /// Evaluates all forces at t_n. Collective.
+  /// Evaluates all forces at t_n, with the velocities half of the last step before. Collective.
   void evaluate() {
+    state_.velocity_time = state_.time - 0.5 * work_.last_dt();
     model_.part().ghosts.update(state_.records, Space::record);
     model_.evaluate(state_, wrenches_);
   }
   /// Kick and drift of the owned bodies, from t_n to t_n + dt. Returns the square of the largest
   /// speed [m^2/s^2], which is not finite if a body's speed is not.
-  double advance(double dt) { return stepper_.step(state_, wrenches_, dt); }
-  /// Lets forces take over the history of the step: damage, slip, energies. Collective.
+  double advance(double dt) {
+    const double middle = state_.time + 0.5 * dt;
+    const double speed2 = stepper_.step(state_, wrenches_, dt);
+    state_.velocity_time = middle;
+    return speed2;
+  }
+  /// Lets forces take over the history of the step (damage, slip), and adds the step to their
+  /// works. Collective.
   void commit(double dt) {
+    work_.take_powers();
     for (const auto& force : model_.forces()) {
       if (auto* role = force->roles().commits) role->commit(state_, dt);
     }
+    work_.take_step(state_, dt);
   }
   /// Makes pairs whose beam broke in this step eligible for contact from the next evaluation on.
   /// Collective.
@@ -62,14 +83,23 @@ class ExplicitStep {
   std::array<double, 6> momentum(double dt) const {
     return stepper_.momentum(state_, wrenches_, dt);
   }
+  /// Works of the forces at t_n, of which evaluate() has found the forces [J].
+  std::span<const double> works() const { return work_.works(); }
   double boundary_work() const { return stepper_.boundary_work(); }
-  void set_boundary_work(double work) { stepper_.set_boundary_work(work); }
+  /// Saves or loads what the next step needs beside the state and the works. Collective.
+  void persist(Archive& archive) {
+    double work = stepper_.boundary_work();
+    archive.share("boundary_work", work);
+    stepper_.set_boundary_work(work);
+    work_.persist(archive);
+  }
 
  private:
   Model<Space>& model_;
   State<Space>& state_;
   Wrenches<Space>& wrenches_;
   LeapfrogStepperOf<Space> stepper_;
+  LeapfrogWork<Space> work_;
 };
 
 }  // namespace floe

@@ -23,8 +23,6 @@ template <class Space>
 class DeadLoad final : public Force<Space>,
                        public HasTangent<Space>,
                        public DoesWork<Space>,
-                       public Commits<Space>,
-                       public Persists,
                        public DependsOnTime {
  public:
   DeadLoad(const Part& part, PlacedLoad placed, Kinematics kinematics)
@@ -35,22 +33,20 @@ class DeadLoad final : public Force<Space>,
       if (local >= 0 && local < part.owned) bodies_.push_back(local);
     }
     arm_ = {placed.arm[0], placed.arm[1], placed.arm[2]};
-    places_.resize(bodies_.size());
-    last_force_ = force(0);
-    last_moment_ = moment(0);
+    arms_.resize(bodies_.size());
   }
 
   std::string_view name() const override { return "load"; }
-  Roles<Space> roles() override {
-    return {.tangent = this, .work = this, .commits = this, .persists = this, .time = this};
-  }
+  Roles<Space> roles() override { return {.tangent = this, .work = this, .time = this}; }
 
   void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
-    const Vec3<double> f = force(state.time), m = moment(state.time);
-    for (const std::int32_t body : bodies_) {
-      const auto b = static_cast<std::size_t>(body);
-      floe::add(wrenches, b, f, m + cross(linear_ ? arm_ : turned_arm(state, b), f));
+    force_ = force(state.time), moment_ = moment(state.time);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const auto b = static_cast<std::size_t>(bodies_[k]);
+      arms_[k] = linear_ ? arm_ : turned_arm(state, b);
+      floe::add(wrenches, b, force_, moment_ + cross(arms_[k], force_));
     }
+    power_ = power_with(state);
   }
 
   /// The second variation of -F.a along a spin t is (F.a)|t|^2 - (F.t)(a.t).
@@ -86,56 +82,28 @@ class DeadLoad final : public Force<Space>,
     return true;
   }
 
-  /// Adds the work over the step by the trapezoidal rule; moments act on the rotation vector of the
-  /// step.
-  void commit(const State<Space>& state, double) override {
-    const Vec3<double> f = force(state.time), m = moment(state.time);
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      const Place now = place_of(state, bodies_[k]);
-      const Vec3<double> turn = log_rotation(product(now.q, conjugate(places_[k].q)));
-      work_ += 0.5 * (dot(f + last_force_, now.at - places_[k].at) + dot(m + last_moment_, turn));
-      places_[k] = now;
-    }
-    last_force_ = f;
-    last_moment_ = m;
+  void powers(std::span<double> out) const override { out.front() = power_; }
+  LaterPowers later_powers() const override { return LaterPowers::at_once; }
+  void powers_with(const State<Space>& state, std::span<double> out) const override {
+    out.front() = power_with(state);
   }
-
-  double power(const State<Space>& state) const override {
-    const Vec3<double> f = force(state.time), m = moment(state.time);
-    double sum = 0;
+  /// Adds the mean force times the displacement of its point, and the mean moment times the
+  /// rotation vector of the way.
+  void add_works(const State<Space>& from, const State<Space>& to,
+                 std::span<double> works) const override {
+    const Vec3<double> f = force(to.time) + force(from.time),
+                       m = moment(to.time) + moment(from.time);
     for (const std::int32_t body : bodies_) {
-      const auto b = static_cast<std::size_t>(body);
-      const Vec3<double> spin = angular_velocity(state, b);
-      const Vec3<double> arm = linear_ ? arm_ : turned_arm(state, b);
-      sum += dot(f, velocity(state, b) + cross(spin, arm)) + dot(m, spin);
+      const Place now = place_of(to, body), before = place_of(from, body);
+      const Vec3<double> turn = log_rotation(product(now.q, conjugate(before.q)));
+      works.front() += 0.5 * (dot(f, now.at - before.at) + dot(m, turn));
     }
-    return sum;
   }
-  void take_work(double work) override { work_ += work; }
   double time_dependent_until() const override { return load_.ramp.seconds; }
 
-  void persist(Archive& archive) override {
-    archive.share("work", work_);
-    std::vector<double> last{last_force_.x,  last_force_.y,  last_force_.z,
-                             last_moment_.x, last_moment_.y, last_moment_.z};
-    archive.common("last", last);
-    last.resize(6);
-    last_force_ = {last[0], last[1], last[2]};
-    last_moment_ = {last[3], last[4], last[5]};
-    constexpr std::size_t width = 7;
-    std::vector<double> rows;
-    rows.reserve(width * places_.size());
-    for (const Place& p : places_)
-      rows.insert(rows.end(), {p.at.x, p.at.y, p.at.z, p.q.w, p.q.x, p.q.y, p.q.z});
-    archive.rows("places", bodies_, rows, width);
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const double* r = &rows[width * k];
-      places_[k] = {{r[0], r[1], r[2]}, {r[3], r[4], r[5], r[6]}};
-    }
-  }
-
   /// Reports the potential of the dead force; applied moments have none.
-  void report(const State<Space>& state, Columns& columns) const override {
+  void report(const State<Space>& state, std::span<const double> works,
+              Columns& columns) const override {
     const Vec3<double> f = force(state.time);
     double energy = 0;
     for (const std::int32_t body : bodies_) {
@@ -143,7 +111,7 @@ class DeadLoad final : public Force<Space>,
       energy -= dot(f, displacement(state, b) + (turned_arm(state, b) - arm_));
     }
     columns.add("energy_load", energy);
-    columns.add("energy_external", work_);
+    columns.add("energy_external", works.front());
   }
 
  private:
@@ -160,10 +128,21 @@ class DeadLoad final : public Force<Space>,
     return rotate(rotation(state, body), arm_);
   }
 
+  /// Power of the wrenches of the last evaluation with the velocities of a state [W].
+  double power_with(const State<Space>& state) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const auto b = static_cast<std::size_t>(bodies_[k]);
+      const Vec3<double> spin = angular_velocity(state, b);
+      sum += dot(force_, velocity(state, b) + cross(spin, arms_[k])) + dot(moment_, spin);
+    }
+    return sum;
+  }
+
   /// Displacement of the point where the force acts [m], and rotation of its body.
   struct Place {
-    Vec3<double> at{0, 0, 0};
-    Quat<double> q{1, 0, 0, 0};
+    Vec3<double> at;
+    Quat<double> q;
   };
   Place place_of(const State<Space>& state, std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
@@ -173,12 +152,13 @@ class DeadLoad final : public Force<Space>,
   Load load_;
   const Part& part_;
   std::vector<std::int32_t> bodies_;
-  std::vector<Place> places_;  ///< at the last commit
-  Vec3<double> last_force_{}, last_moment_{};
-  double work_ = 0;  ///< done on this rank's bodies so far [J]
   double share_ = 1;
   bool linear_;
   Vec3<double> arm_{};
+  // By-products of the last evaluation:
+  Vec3<double> force_{}, moment_{};  ///< on each body [N, N m]
+  std::vector<Vec3<double>> arms_;   ///< per body: from the centroid to the force [m]
+  double power_ = 0;                 ///< [W]
 };
 
 }  // namespace

@@ -57,17 +57,39 @@ class Damps {
   ~Damps() = default;
 };
 
-/// Role of a force with a power that its potential does not account for, for integrators that
-/// integrate this power themselves.
+/// Tells when a force knows the powers of its wrenches with the velocities after a step.
+enum class LaterPowers {
+  at_once,             ///< after the step: DoesWork::powers_with()
+  in_next_evaluation,  ///< in the next evaluation: DoesWork::kept_powers()
+  never,
+};
+
+/// Role of a force that does work for which its potential does not account. The force tells powers;
+/// the integrator keeps their integrals, the works, and hands them to Force::report(). All numbers
+/// are this rank's share, negative where bodies lose energy.
 template <class Space>
 class DoesWork {
  public:
-  /// Power on this rank's bodies in the last evaluation [W]; negative where bodies lose energy.
-  /// \param state  of the last evaluation
-  virtual double power(const State<Space>& state) const = 0;
-  /// Adds the integral of power() over a step to the work of the force.
-  /// \param work  [J]
-  virtual void take_work(double work) = 0;
+  /// Number of powers, and so of works. A force with the role Damps has one.
+  virtual std::size_t works() const { return 1; }
+  /// Writes the powers of the last evaluation, with the velocities of the state that it evaluated
+  /// [W]. To be asked before the step is committed.
+  virtual void powers(std::span<double> out) const = 0;
+
+  virtual LaterPowers later_powers() const = 0;
+  /// Writes the powers of the wrenches of the last evaluation with the velocities of another state
+  /// [W], for LaterPowers::at_once. To be asked after the step was committed.
+  /// \param state  after the step
+  virtual void powers_with(const State<Space>& /*state*/, std::span<double> /*out*/) const {}
+  /// Writes the powers of the wrenches that the last commit took over, with the velocities of the
+  /// last evaluation [W], for LaterPowers::in_next_evaluation; 0 before the first commit.
+  virtual void kept_powers(std::span<double> /*out*/) const {}
+
+  /// Adds the works of the way from one state to the next to `works` [J], for integrators that know
+  /// places at both ends of a step. Default: nothing, for forces without power where nothing moves,
+  /// and for those with the role Damps.
+  virtual void add_works(const State<Space>& /*from*/, const State<Space>& /*to*/,
+                         std::span<double> /*works*/) const {}
 
  protected:
   ~DoesWork() = default;
@@ -108,17 +130,16 @@ class LimitsStep {
   ~LimitsStep() = default;
 };
 
-/// Role of a force with history that an accepted step changes: damage, slip, dissipated energy.
+/// Role of a force whose wrenches depend on a history, which an accepted step changes: damage,
+/// slip. Dynamics can use such a force only by integrators that evaluate once per step and never
+/// take a step back.
 template <class Space>
 class Commits {
  public:
   /// Makes the findings of the last evaluation history, after a load step or a step of leapfrog.
-  /// \param state  after the step; velocities of leapfrog lag half a step
+  /// \param state  after the step; its velocities are those at state.velocity_time
   /// \param dt     length of the step [s]
   virtual void commit(const State<Space>& state, double dt) = 0;
-  /// Whether wrenches depend on this history. Only integrators that evaluate once per step and
-  /// never take a step back can use such a force.
-  virtual bool has_history() const { return false; }
 
  protected:
   ~Commits() = default;
@@ -201,7 +222,10 @@ class Force {
   virtual void add(const State<Space>& state, Wrenches<Space>& wrenches) = 0;
   /// Adds this rank's share of the energies [J] and counts of the force.
   /// \param state  of the last evaluation
-  virtual void report(const State<Space>& state, Columns& columns) const = 0;
+  /// \param works  that the force has done until then [J], DoesWork::works() numbers; empty for a
+  ///               force without that role
+  virtual void report(const State<Space>& state, std::span<const double> works,
+                      Columns& columns) const = 0;
   virtual Roles<Space> roles() { return {}; }
 };
 

@@ -15,7 +15,8 @@ class Gravity final : public Force<Spatial> {
       wrenches.of(static_cast<std::size_t>(b))[2] -= item(part_.bodies.mass, b) * g_;
   }
   /// Reports the potential m g u_z, 0 at rest.
-  void report(const State<Spatial>& state, Columns& columns) const override {
+  void report(const State<Spatial>& state, std::span<const double>,
+              Columns& columns) const override {
     double energy = 0;
     for (std::int32_t b = 0; b < part_.owned; ++b)
       energy +=

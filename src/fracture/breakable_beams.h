@@ -23,7 +23,10 @@ void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& crac
 
 /// Breakable beams of a part: a force, and the cracks of its beams.
 template <Kinematics kinematics, bool damped, template <class> class Frame>
-class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, public Fracture {
+class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
+                             public Commits<Spatial>,
+                             public Persists,
+                             public Fracture {
   using Base = SpatialBeams<kinematics, damped, Frame>;
   using Base::blocks_, Base::dashpots_, Base::part_, Base::constants, Base::for_each, Base::record;
   using typename Base::Pointwise;
@@ -42,7 +45,12 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     for (std::size_t m = 0; m < all.size(); ++m) strengths_[m / lanes].set(m % lanes, all[m]);
   }
 
-  bool has_history() const override { return true; }
+  Roles<Spatial> roles() override {
+    Roles<Spatial> roles = Base::roles();
+    roles.commits = this;
+    roles.persists = this;
+    return roles;
+  }
 
   /// A block with an overloaded or damaged beam is added as a whole, with softened stiffnesses. So
   /// every beam is computed by the same instructions, whatever its neighbours in the block.
@@ -100,8 +108,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   }
 
   /// Makes the damage of the last evaluation (dynamics) or of advance() (statics) history.
-  void commit(const State<Spatial>& state, double dt) override {
-    Base::commit(state, dt);
+  void commit(const State<Spatial>&, double dt) override {
+    if constexpr (damped) std::swap(viscous_, viscous_now_);
     for (const Growth& g : growing_) take(g);
     growing_.clear();
     dt_ = dt;
@@ -117,8 +125,14 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
     }
   }
 
-  void report(const State<Spatial>& state, Columns& columns) const override {
-    Base::report(state, columns);
+  /// The forces of dashpots jump when beams break. Those at the start of the last step are kept,
+  /// since the energy balance of leapfrog is exact for linear strains with both.
+  LaterPowers later_powers() const override { return LaterPowers::in_next_evaluation; }
+  void kept_powers(std::span<double> out) const override { out.front() = -power_before_; }
+
+  void report(const State<Spatial>& state, std::span<const double> works,
+              Columns& columns) const override {
+    Base::report(state, works, columns);
     double fracture = dissipated_;
     std::array<double, 3> counts{};  // damaged, broken, brittle
     const auto count = [&](const Crack& c, double sign) {
@@ -143,7 +157,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
   }
 
   void persist(Archive& archive) override {
-    Base::persist(archive);
     archive.share("energy_fracture", dissipated_);
     archive.common("last_dt", dt_);
     std::vector<Crack> mine;
@@ -289,16 +302,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>, pub
       for (double* rest : {&c.ksz, &c.ksy, &c.kt, &c.kby, &c.kbz}) *rest *= left.rest;
     }
     return c;
-  }
-
-  /// Between t_n and t_{n+1} dashpots do the work dt/2 v_{n+1/2}.(F_n + F_{n+1}), and their forces
-  /// jump when beams break. With the kept F_n the balance is exact for linear strains.
-  double lost_by_now() const override {
-    return this->lost_ + 0.5 * this->step_ * (power_before_ + this->power_lost_);
-  }
-  void take_losses(double) override {
-    this->lost_ = lost_by_now();
-    std::swap(viscous_, viscous_now_);
   }
 
   double stored(const State<Spatial>& state) const override {

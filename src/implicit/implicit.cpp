@@ -65,7 +65,7 @@ class ImplicitRun final : public DynamicRun<Space> {
   void expect_motion();
   bool first() override;
   bool stepped();
-  void keep_books(double h);
+  void keep_books();
   void land();
   std::string failure(TSConvergedReason reason) const;
 
@@ -145,6 +145,7 @@ class ImplicitRun final : public DynamicRun<Space> {
          contraction_ =
              0;  // norm of the residual [N], and its ratio to that of the iteration before
   typename Equations::Forces forces_, forces_before_;
+  State<Space> before_;                                          // at the last accepted step
   double kinetic_ = 0, boundary_work_ = 0, numerical_loss_ = 0;  // of this rank [J]
   std::int64_t newton_before_ = 0;                               // iterations before the restart
 };
@@ -242,6 +243,7 @@ bool ImplicitRun<Space>::first() {
   this->evaluate();
   equations_.forces(v_, memory.a, wrenches(), forces_before_);
   kinetic_ = equations_.kinetic(v_);
+  before_ = state();
   check(VecCopy(x_, x_before_));
   check(VecCopy(v_, v_before_));
   return this->sample_if_due();
@@ -252,7 +254,7 @@ bool ImplicitRun<Space>::first() {
 /// is the work of forces and boundaries. The part of it that is not in the kinetic energy is the
 /// method's numerical loss.
 template <class Space>
-void ImplicitRun<Space>::keep_books(double h) {
+void ImplicitRun<Space>::keep_books() {
   const LieAlphaHistory memory = liealpha_memory(ts_);
   equations_.forces(v_, memory.a, wrenches(), forces_);
   const ReadNumbers x(x_), x_before(x_before_), v(v_), v_before(v_before_);
@@ -277,14 +279,16 @@ void ImplicitRun<Space>::keep_books(double h) {
     numerical_loss_ += share;
   }
   for (std::size_t k = 0; k < forces_.losses.size(); ++k) {
-    const Roles<Space> roles = model().forces()[k]->roles();
+    const std::span<double> works = this->work_ledger().of(k);
+    if (works.empty()) continue;
     if (forces_.losses[k].empty()) {
-      if (roles.commits != nullptr) roles.commits->commit(state(), h);
+      model().forces()[k]->roles().work->add_works(before_, state(), works);
     } else {
-      roles.work->take_work(work(forces_before_.losses[k], forces_.losses[k]));
+      works.front() += work(forces_before_.losses[k], forces_.losses[k]);
     }
   }
   std::swap(forces_, forces_before_);
+  before_ = state();
 }
 
 /// Work after an accepted step: energies, samples, the next step. False: the run ends here.
@@ -303,7 +307,7 @@ bool ImplicitRun<Space>::stepped() {
   const double h = now - before;
   equations_.take(now, x_, v_);
   this->evaluate();
-  keep_books(h);
+  keep_books();
   equations_.rebase(x_);
   check(VecCopy(x_, x_before_));
   check(VecCopy(v_, v_before_));
@@ -426,7 +430,7 @@ void ImplicitRun<Space>::persist_own(Archive& archive) {
 std::unique_ptr<Run> make_implicit_run(Model<Spatial>& model, const DynamicOptions& options,
                                        Observer<Spatial> observer) {
   for (const auto& force : model.forces()) {
-    if (const auto* role = force->roles().commits; role != nullptr && role->has_history())
+    if (force->roles().commits != nullptr)
       throw InputError("integrator: implicit cannot step force '" + std::string(force->name()) +
                        "': it remembers what happened, and Newton's trials have not happened "
                        "(integrator: explicit steps it)");

@@ -125,7 +125,7 @@ void SecondOrderSystem<Space>::take(double time, Vec x, Vec v) {
     std::copy_n(&(*rates)[at], moves, record + Space::velocity);
     turning_.take(b, turn_of(*places, b), turn_of(*rates, b), record);
   }
-  state_.time = time;
+  state_.set_time(time);
   part_.ghosts.update(state_.records, Space::record);
 }
 
@@ -332,7 +332,7 @@ void SecondOrderSystem<Space>::persist(Archive& archive) {
   const double now = state_.time;
   assemble(assembled_.time, assembled_.x, assembled_.v, assembled_.a, assembled_.by_velocity,
            assembled_.by_acceleration);
-  state_.time = now;
+  state_.set_time(now);
 }
 
 template class SecondOrderSystem<Spatial>;

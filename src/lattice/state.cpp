@@ -6,6 +6,7 @@ State<Spatial> in_space(const State<Planar>& state, bool linear) {
   const std::size_t bodies = state.records.size() / Planar::record;
   State<Spatial> all(bodies);
   all.time = state.time;
+  all.velocity_time = state.velocity_time;
   for (std::size_t b = 0; b < bodies; ++b) {
     double* r = all.record(b);
     const Vec3<double> u = displacement(state, b), t = linear_rotation(state, b),

@@ -159,7 +159,7 @@ void require_balance(const Model<Space>& model, const Lattice& lattice, const Fr
   if (free.motions.empty()) return;
   const Part& part = model.part();
   State<Space> rest(static_cast<std::size_t>(part.local));
-  rest.time = time;
+  rest.set_time(time);
   Wrenches<Space> wrenches(static_cast<std::size_t>(part.local));
   model.evaluate(rest, wrenches);
 

@@ -210,9 +210,15 @@ void Model<Space>::spread(Prescription motion, double time, std::span<double> va
 }
 
 template <class Space>
-std::vector<std::pair<std::string, double>> Model<Space>::report(const State<Space>& state) const {
+std::vector<std::pair<std::string, double>> Model<Space>::report(
+    const State<Space>& state, std::span<const double> works) const {
   Columns columns;
-  for (const auto& force : forces_) force->report(state, columns);
+  for (const auto& force : forces_) {
+    const auto* role = force->roles().work;
+    const std::size_t count = role != nullptr ? role->works() : 0;
+    force->report(state, works.first(count), columns);
+    works = works.subspan(count);
+  }
   // Forces of the same kind (several loads) share a column.
   std::vector<std::pair<std::string, double>> sums;
   for (const auto& [name, value] : columns.values()) {

@@ -132,7 +132,11 @@ class Model {
   void prescribe_accelerations(double time, std::span<double> accelerations) const;
 
   /// Sums the columns that the forces report over all ranks. Collective.
-  std::vector<std::pair<std::string, double>> report(const State<Space>& state) const;
+  /// \param state  of the last evaluation
+  /// \param works  of all forces until then, on this rank [J]: DoesWork::works() numbers of each
+  ///               force that does work, in the order of forces()
+  std::vector<std::pair<std::string, double>> report(const State<Space>& state,
+                                                     std::span<const double> works) const;
 
  private:
   using Prescription = std::array<double, 6> (Boundary::*)(double) const;

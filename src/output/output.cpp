@@ -197,7 +197,7 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
     }
     s.loads[load.name] = sum_over_ranks(mine, part.comm);
   }
-  s.forces = accepted.forces.empty() ? model.report(accepted.state) : accepted.forces;
+  s.forces = accepted.forces;
   s.forces.insert(s.forces.end(), accepted.columns.begin(), accepted.columns.end());
   if (cracks) s.forces.emplace_back("fragments", cracks->update());
   return s;

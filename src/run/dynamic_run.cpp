@@ -20,6 +20,7 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
       observer_(std::move(observer)),
       state_(static_cast<std::size_t>(model.part().local)),
       wrenches_(static_cast<std::size_t>(model.part().local)),
+      works_(model),
       checkpoints_(options_.checkpoint, model.part()),
       what_(what),
       type_(type) {
@@ -142,6 +143,7 @@ void DynamicRun<Space>::persist(Archive& archive) {
   persist_own(archive);
   archive.enter("ledger");
   ledger_.persist(archive);
+  works_.persist(archive);
   archive.enter("bodies");
   const std::vector<std::int32_t> owned = owned_bodies(model_.part());
   archive.rows("records", owned, std::span(state_.records).first(owned.size() * Space::record),
@@ -170,6 +172,7 @@ bool DynamicRun<Space>::restart() {
   model_.part().ghosts.update(state_.records, Space::record);
   before_ = done_;
   time_ = state_.time;
+  state_.set_time(time_);
   return true;
 }
 
@@ -317,7 +320,7 @@ void DynamicRun<Space>::save() {
 template <class Space>
 std::vector<std::string> DynamicRun<Space>::column_names() const {
   std::vector<std::string> names;
-  for (const auto& [name, value] : model_.report(state_)) names.push_back(name);
+  for (const auto& [name, value] : model_.report(state_, works_.all())) names.push_back(name);
   const Columns own = own_columns();
   for (const auto& [name, value] : own.values()) names.push_back(name);
   for (const auto& [name, value] : ledger_.columns()) names.push_back(name);
@@ -402,7 +405,7 @@ bool DynamicRun<Space>::sample(bool last) {
   const auto [kinetic, boundary] = energies();
   const auto all = sum_over_ranks(std::array{kinetic, boundary}, model_.part().comm);
   take_remarks();
-  auto reported = model_.report(state_);
+  auto reported = model_.report(state_, works());
   const Columns own = own_columns();
   for (const auto& [name, value] : own.values())
     reported.emplace_back(name, sum_over_ranks(value, model_.part().comm));

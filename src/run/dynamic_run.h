@@ -21,6 +21,7 @@
 #include "run/integrator.h"
 #include "run/ledger.h"
 #include "run/run.h"
+#include "run/work_ledger.h"
 
 namespace floe {
 
@@ -101,6 +102,8 @@ class DynamicRun : public Run {
   };
   /// Energies at the state, whose wrenches are known.
   virtual Energies energies() const = 0;
+  /// Works of the forces at the state, whose wrenches are known [J]. Default: as in the ledger.
+  virtual std::span<const double> works() const { return works_.all(); }
   /// Further columns of the integrator, for this rank's bodies at the state.
   virtual Columns own_columns() const { return {}; }
   /// Saves or loads the integrator's own history, apart from records, time and dt.
@@ -149,9 +152,11 @@ class DynamicRun : public Run {
   const Wrenches<Space>& wrenches() const { return wrenches_; }
   Wrenches<Space>& wrenches() { return wrenches_; }
   RunResult& result() { return result_; }
+  /// The works of the forces, to which the integrator adds.
+  WorkLedger& work_ledger() { return works_; }
 
   /// Updates the ghosts and evaluates all forces at the state. Collective.
-  void evaluate();
+  virtual void evaluate();
   /// Hands the state to the observer if a sample is due at its time. False: the run ends here.
   bool sample_if_due() { return !due() || sample(); }
   /// Whether the present state was sampled.
@@ -208,6 +213,7 @@ class DynamicRun : public Run {
   const Observer<Space> observer_;
   State<Space> state_;
   Wrenches<Space> wrenches_;
+  WorkLedger works_;
   Ledger ledger_;
   Checkpoints checkpoints_;
   std::string_view what_;

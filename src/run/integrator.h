@@ -24,8 +24,7 @@ struct Accepted {
   /// Columns of the integrator itself (energies).
   std::vector<std::pair<std::string, double>> columns = {};
   bool last = false;  ///< no further state follows
-  /// Columns of the forces at this state; empty: the forces still have the evaluation and can be
-  /// asked.
+  /// Columns of the forces at this state.
   std::vector<std::pair<std::string, double>> forces = {};
 };
 

@@ -42,6 +42,7 @@ Equilibrium<Space>::Equilibrium(Model<Space>& model)
       state_(static_cast<std::size_t>(part_.local)),
       wrenches_(static_cast<std::size_t>(part_.local)),
       share_(static_cast<std::size_t>(part_.local)),
+      works_(model),
       rotations_(static_cast<std::size_t>(part_.owned), model.kinematics()),
       turned2_(static_cast<std::size_t>(part_.owned), 0.0),
       tangent_(part_, model.held(), model.length_scale(), typical_stiffness(model),
@@ -304,7 +305,7 @@ void Equilibrium<Space>::fill_right_hand_side(std::vector<double>& increments) {
 template <class Space>
 bool Equilibrium<Space>::predict(double time) {
   std::vector<double> increments = increments_to(time);
-  state_.time = time;
+  state_.set_time(time);
   take(x_);
   fill_residual(f_);
   PetscReal norm = 0;
@@ -388,8 +389,10 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
   }
   fill_residual(f_);
   audit("a load step");
-  for (const auto& force : model_.forces()) {
-    if (auto* role = force->roles().commits) role->commit(state_, time - before.state.time);
+  for (std::size_t k = 0; k < model_.forces().size(); ++k) {
+    const Roles<Space> roles = model_.forces()[k]->roles();
+    if (roles.work != nullptr) roles.work->add_works(before.state, state_, works_.of(k));
+    if (roles.commits != nullptr) roles.commits->commit(state_, time - before.state.time);
   }
   return true;
 }

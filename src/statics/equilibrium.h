@@ -14,10 +14,12 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "floe/base/petsc.h"
+#include "run/work_ledger.h"
 #include "statics/quasistatic.h"
 #include "statics/static_rotations.h"
 
@@ -50,6 +52,8 @@ class Equilibrium {
 
   const State<Space>& state() const { return state_; }
   const Wrenches<Space>& wrenches() const { return wrenches_; }
+  /// Works of the forces up to the state [J], as Model::report() takes them.
+  std::span<const double> works() const { return works_.all(); }
   std::int64_t newton_iterations() const { return iterations_; }
   std::int64_t factorisations() const { return assemblies_; }
   const std::string& why() const { return why_; }
@@ -125,6 +129,7 @@ class Equilibrium {
   const Part& part_;
   State<Space> state_;
   Wrenches<Space> wrenches_, share_;
+  WorkLedger works_;
   StaticRotations<Space> rotations_;
   /// Per owned body: square of the accumulated rotation [rad^2]. Rounding grows even when the
   /// quaternion returns to rest, so a full turn counts as one.

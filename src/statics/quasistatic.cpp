@@ -180,7 +180,11 @@ void QuasistaticRun<Space>::not_solved(double step, double next, bool divisible)
 template <class Space>
 void QuasistaticRun<Space>::accept() {
   result_.newton_iterations = equilibrium_->newton_iterations();
-  observer_({equilibrium_->state(), equilibrium_->wrenches(), result_.steps});
+  const State<Space>& state = equilibrium_->state();
+  observer_({.state = state,
+             .wrenches = equilibrium_->wrenches(),
+             .step = result_.steps,
+             .forces = model_.report(state, equilibrium_->works())});
 }
 
 /// Whether the pins carry nothing; else the run ends here.

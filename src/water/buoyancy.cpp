@@ -106,7 +106,8 @@ class Buoyancy final : public Force<Spatial>,
 
   /// Reports the potential of the displaced water: rho g times int_V (-z) dV, the work of pushing
   /// the body from the air into the water.
-  void report(const State<Spatial>& state, Columns& columns) const override {
+  void report(const State<Spatial>& state, std::span<const double>,
+              Columns& columns) const override {
     double energy = 0;
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const Submerged s = immersion_.of(state, body);

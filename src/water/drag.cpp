@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "lattice/archive.h"
 #include "water/immersion.h"
 
 namespace floe {
@@ -95,18 +94,14 @@ class WettedBodies<Planar> {
   std::vector<LaneNumbers> area_;  ///< [m^2]
 };
 
-/// Drag on the owned bodies. In the energy ledger the force F_n at t_n does the work
-/// dt/2 F_n.(v_n-1/2 + v_n+1/2), since velocities are known half a step apart. The kinetic energy
-/// m v_n-1/2.v_n+1/2 / 2 of a free body falls by the same amount, to rounding. The first half is a
-/// by-product of the evaluation, and a report at t_n counts it; commit() adds the second half.
+/// Drag on the owned bodies. The forces of the last evaluation are kept, for their power with the
+/// velocities after the step.
 template <class Space>
 class Drag final : public Force<Space>,
                    public HasTangent<Space>,
                    public Damps<Space>,
                    public DoesWork<Space>,
-                   public LimitsStep<Space>,
-                   public Commits<Space>,
-                   public Persists {
+                   public LimitsStep<Space> {
  public:
   Drag(const Part& part, const DragOptions& options)
       : part_(part),
@@ -119,12 +114,7 @@ class Drag final : public Force<Space>,
 
   std::string_view name() const override { return "drag"; }
   Roles<Space> roles() override {
-    return {.tangent = this,
-            .damping = this,
-            .work = this,
-            .step = this,
-            .commits = this,
-            .persists = this};
+    return {.tangent = this, .damping = this, .work = this, .step = this};
   }
 
   void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
@@ -172,7 +162,9 @@ class Drag final : public Force<Space>,
   }
   double stiffness_bound(std::int32_t) const override { return 0; }
 
-  void commit(const State<Space>& state, double dt) override {
+  void powers(std::span<double> out) const override { out.front() = power_; }
+  LaterPowers later_powers() const override { return LaterPowers::at_once; }
+  void powers_with(const State<Space>& state, std::span<double> out) const override {
     double power = 0;
     for (std::size_t b = 0; b < forces_.size(); ++b) {
       const double* v = state.record(b) + Space::velocity;
@@ -180,12 +172,8 @@ class Drag final : public Force<Space>,
       for (std::size_t k = 0; k < Space::translations; ++k) mine += forces_[b][k] * v[k];
       power += mine;
     }
-    lost_ -= 0.5 * (last_dt_ * power_ + dt * power);
-    last_dt_ = dt;
+    out.front() = power;
   }
-
-  double power(const State<Space>&) const override { return power_; }
-  void take_work(double work) override { lost_ -= work; }
 
   /// Derivative of the force to the velocity along the flow, over the mass.
   std::optional<double> rate_estimate(const State<Space>& state) const override {
@@ -202,13 +190,8 @@ class Drag final : public Force<Space>,
     return fastest;
   }
 
-  void persist(Archive& archive) override {
-    archive.share("energy_drag", lost_);
-    archive.common("last_dt", last_dt_);
-  }
-
-  void report(const State<Space>&, Columns& columns) const override {
-    columns.add("energy_drag", lost_ - 0.5 * last_dt_ * power_);
+  void report(const State<Space>&, std::span<const double> works, Columns& columns) const override {
+    columns.add("energy_drag", 0.0 - works.front());
   }
 
  private:
@@ -256,8 +239,6 @@ class Drag final : public Force<Space>,
   bool quadratic_;
   std::vector<std::array<double, 4>> forces_;  ///< of the last evaluation [N], padded
   double power_ = 0;                           ///< of the last evaluation [W]
-  double lost_ = 0;                            ///< by the bodies, taken over so far [J]
-  double last_dt_ = 0;                         ///< length of the last step [s]
 };
 
 }  // namespace

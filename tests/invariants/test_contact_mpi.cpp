@@ -95,6 +95,7 @@ TEST(ContactOnRanks, RestartGoesOnToTheLastBit) {
     std::optional<Hdf5File> out;
     if (rank(PETSC_COMM_WORLD) == 0) out.emplace(Hdf5File::create(file));
     Archive memory(part, out ? &*out : nullptr, false);
+    through.persist(memory);
     memory.enter("contact");
     contact(through).persist(memory);
     if (out) out->close();
@@ -104,6 +105,7 @@ TEST(ContactOnRanks, RestartGoesOnToTheLastBit) {
     std::optional<Hdf5File> in;
     if (rank(PETSC_COMM_WORLD) == 0) in.emplace(Hdf5File::open(file));
     Archive memory(part, in ? &*in : nullptr, true);
+    resumed.persist(memory);
     memory.enter("contact");
     contact(resumed).persist(memory);
   }

@@ -100,7 +100,7 @@ class Damaged(CheckpointTest):
                             ("ledger/started", 2.0), ("ledger/largest", np.inf),
                             ("bodies/records", np.nan),
                             ("bodies/records", np.inf), ("bodies/records_bodies", -1),
-                            ("force_0_beam/energy_damping", np.nan),
+                            ("works/force_0_beam", np.nan),
                             ("output/history_rows", -1.0), ("output/fields_frames", 1.5),
                             ("output/last_sample", np.nan)):
             with self.subTest(name=name, value=value):

@@ -24,7 +24,8 @@ class DynamicsIn {
       : model_(lattice, comm, scene.boundaries),
         state_(static_cast<std::size_t>(model_.part().local)),
         wrenches_(static_cast<std::size_t>(model_.part().local)),
-        step_(with_forces(scene, lattice, model_), state_, wrenches_) {
+        works_(with_forces(scene, lattice, model_)),
+        step_(model_, state_, wrenches_, works_) {
     step_.start();
   }
   DynamicsIn(const DynamicsIn&) = delete;
@@ -63,8 +64,15 @@ class DynamicsIn {
   double boundary_work() const { return step_.boundary_work(); }
   double kinetic() const { return step_.energies(dt_).kinetic; }
   std::array<double, 6> momentum() const { return step_.momentum(dt_); }
+  /// Works of the forces at the time of the state [J].
+  std::span<const double> works() const { return step_.works(); }
+  /// Saves or loads what a step needs beside the state and the histories of forces.
+  void persist(Archive& archive) {
+    works_.persist(archive);
+    step_.persist(archive);
+  }
   double reported(const std::string& name) const {
-    for (const auto& [column, value] : model_.report(state_)) {
+    for (const auto& [column, value] : model_.report(state_, step_.works())) {
       if (column == name) return value;
     }
     return 0;
@@ -82,6 +90,7 @@ class DynamicsIn {
   Model<Space> model_;
   State<Space> state_;
   Wrenches<Space> wrenches_;
+  WorkLedger works_;
   ExplicitStep<Space> step_;
   double dt_ = 0;
 };

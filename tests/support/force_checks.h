@@ -23,9 +23,10 @@ inline std::vector<double> wrenches_of(Force<Spatial>& force, const State<Spatia
 }
 
 /// Sum of the energies that a force reports [J].
-inline double potential_of(Force<Spatial>& force, const State<Spatial>& state) {
-  Columns columns;
-  force.report(state, columns);
+/// \param works  empty: the force has done no work yet
+inline double potential_of(Force<Spatial>& force, const State<Spatial>& state,
+                           const std::vector<double>& works = {}) {
+  const Columns columns = report(force, state, works);
   double sum = 0;
   for (const auto& [name, value] : columns.values()) sum += value;
   return sum;

@@ -78,9 +78,8 @@ class OneBeam {
     force->add(state_, wrenches_);
   }
   double reported(const std::string& name) const {
-    Columns columns;
-    force->report(state_, columns);
     double sum = 0;
+    const Columns columns = report(*force, state_);
     for (const auto& [column, value] : columns.values()) sum += column == name ? value : 0;
     return sum;
   }

@@ -26,10 +26,22 @@ bool add_losses(Force<Space>& force, const State<Space>& state, Wrenches<Space>&
   if (role != nullptr) role->add_losses(state, wrenches);
   return role != nullptr;
 }
+/// The powers of the last evaluation; none if the force does no work.
 template <class Space>
-double power(Force<Space>& force, const State<Space>& state) {
+std::vector<double> powers(Force<Space>& force) {
   const auto* role = force.roles().work;
-  return role != nullptr ? role->power(state) : 0.0;
+  std::vector<double> all(role != nullptr ? role->works() : 0);
+  if (role != nullptr) role->powers(all);
+  return all;
+}
+/// The columns of the force. \param works  empty: it has done no work yet
+template <class Space>
+Columns report(Force<Space>& force, const State<Space>& state, std::vector<double> works = {}) {
+  const auto* role = force.roles().work;
+  if (works.empty()) works.resize(role != nullptr ? role->works() : 0);
+  Columns columns;
+  force.report(state, works, columns);
+  return columns;
 }
 template <class Space>
 double stiffness_bound(Force<Space>& force, std::int32_t body) {

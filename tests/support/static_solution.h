@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,8 +34,9 @@ template <class Space>
 struct StaticSolutionIn {
   std::unique_ptr<Model<Space>> model;
   std::vector<PlacedLoad> loads;
-  std::vector<State<Space>> states;  ///< the first at time 0, then one per load step
-  Wrenches<Space> wrenches;          ///< of the last state; minus the reactions where held
+  std::vector<State<Space>> states;       ///< the first at time 0, then one per load step
+  std::map<std::string, double> columns;  ///< of the forces, at the last state
+  Wrenches<Space> wrenches;               ///< of the last state; minus the reactions where held
   RunResult result;
 
   const State<Space>& first() const { return states.front(); }
@@ -63,6 +65,7 @@ StaticSolutionIn<Space> solve_static(const Scene& scene, const Lattice& lattice,
       [&](const Accepted<Space>& a) {
         s.states.push_back(a.state);
         s.wrenches = a.wrenches;
+        s.columns = {a.forces.begin(), a.forces.end()};
       },
       rest ? &*rest : nullptr);
   EXPECT_TRUE(s.result.done) << s.result.message;

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "explicit/leapfrog_work.h"
 #include "run/checkpoint.h"
+#include "run/work_ledger.h"
 #include "simulation/build.h"
 #include "support/lattices.h"
 #include "support/roles.h"
@@ -237,44 +239,57 @@ TEST_F(Checkpoint, KeepsTheHistoryOfForces) {
   load.name = "p", load.point = Point2{0.4, 0.7}, load.force = {1e3, 0, -1e4};
   load.moment = {0, 2e3, 0}, load.ramp.seconds = 1;
   scene.loads = {load};
-  const auto make = [&] {
-    auto model =
-        std::make_unique<Model<Spatial>>(lattice, PETSC_COMM_WORLD, std::vector<Boundary>{});
-    add_forces(scene, place_loads(scene, lattice), *model);
-    return model;
-  };
-  const auto persist_forces = [](Model<Spatial>& model) {
-    return [&model](Archive& archive) {
+  struct Stepped {
+    Model<Spatial> model;
+    WorkLedger works;
+    LeapfrogWork<Spatial> steps;
+    Stepped(const Lattice& whole, const Scene& what)
+        : model(whole, PETSC_COMM_WORLD, {}),
+          works(with_forces(model, whole, what)),
+          steps(model.forces(), works.all()) {}
+    static Model<Spatial>& with_forces(Model<Spatial>& to, const Lattice& whole,
+                                       const Scene& what) {
+      add_forces(what, place_loads(what, whole), to);
+      return to;
+    }
+    void persist(Archive& archive) {
       for (std::size_t k = 0; k < model.forces().size(); ++k) {
         archive.enter("force_" + std::to_string(k));
         if (auto* role = model.forces()[k]->roles().persists) role->persist(archive);
       }
-    };
+      works.persist(archive);
+      steps.persist(archive);
+    }
+    auto report(const State<Spatial>& state) const { return model.report(state, steps.works()); }
   };
-  const auto model = make(), other = make();
-  const auto local = static_cast<std::size_t>(model->part().local);
+  Stepped one(lattice, scene), other(lattice, scene);
+  const auto local = static_cast<std::size_t>(one.model.part().local);
   State<Spatial> state(local);
   Wrenches<Spatial> wrenches(local);
-  const auto move = [&](Model<Spatial>& which, int step) {
+  const auto move = [&](Stepped& which, int step) {
     for (std::size_t b = 0; b < local; ++b) {
-      const double g = which.part().global[b], s = 1e-4 * (step + std::sin(g));
+      const double g = which.model.part().global[b], s = 1e-4 * (step + std::sin(g));
       double* r = state.record(b);
       r[0] = s, r[1] = -s, r[2] = 2 * s;
       r[Spatial::velocity] = 10 * s, r[Spatial::velocity + 2] = -s;
     }
     state.time = 0.1 * step;
-    which.evaluate(state, wrenches);
-    for (const auto& force : which.forces()) commit(*force, state, 0.1);
+    which.model.evaluate(state, wrenches);
+    which.steps.take_powers();
+    for (const auto& force : which.model.forces()) commit(*force, state, 0.1);
+    which.steps.take_step(state, 0.1);
   };
-  for (int step = 1; step <= 3; ++step) move(*model, step);
-  Checkpoints(kept.options, model->part()).save(persist_forces(*model));
-  Checkpoints(kept.options, other->part()).load(persist_forces(*other));
+  for (int step = 1; step <= 3; ++step) move(one, step);
+  Checkpoints(kept.options, one.model.part()).save([&](Archive& archive) { one.persist(archive); });
+  Checkpoints(kept.options, other.model.part()).load([&](Archive& archive) {
+    other.persist(archive);
+  });
   // From here on both are the same, to the last bit.
-  other->evaluate(state, wrenches);
-  EXPECT_EQ(model->report(state), other->report(state));
-  move(*model, 4), move(*other, 4);
-  const auto report = model->report(state);
-  EXPECT_EQ(report, other->report(state));
+  other.model.evaluate(state, wrenches);
+  EXPECT_EQ(one.report(state), other.report(state));
+  move(one, 4), move(other, 4);
+  const auto report = one.report(state);
+  EXPECT_EQ(report, other.report(state));
   for (const auto& [name, value] : report) EXPECT_NE(value, 0) << name;
 }
 

@@ -43,7 +43,7 @@ Contacts at_start(const Lattice& lattice, const ContactOptions& options,
   std::vector<MovingPose> moving;
   for (const std::int32_t b : contacts.list().involved())
     moving.push_back({poses[static_cast<std::size_t>(b)], {}, {}});
-  contacts.place(moving, 0);
+  contacts.place(moving, 0, 0);
   std::vector<ContactWrench> wrenches(moving.size());
   contacts.evaluate(wrenches);
   return contacts;

@@ -48,7 +48,7 @@ struct Crowd {
     for (const std::int32_t b : contacts.list().involved())
       involved.push_back(bodies[static_cast<std::size_t>(b)]);
     std::vector<ContactWrench> some(involved.size()), all(bodies.size());
-    contacts.place(involved, time);
+    contacts.place(involved, time, time);
     contacts.evaluate(some);
     for (std::size_t s = 0; s < some.size(); ++s)
       all[static_cast<std::size_t>(contacts.list().involved()[s])] = some[s];
@@ -94,7 +94,7 @@ TEST(ContactList, CountsBodiesInsideOthers) {
                                          {{{0, 0, z}, {1, 0, 0, 0}}, {}, {}}};
     contacts.build(std::vector{bodies[0].pose, bodies[1].pose}, std::vector<std::uint8_t>(2, 1), 0);
     std::vector<ContactWrench> wrenches(2);
-    contacts.place(bodies, 0);
+    contacts.place(bodies, 0, 0);
     contacts.evaluate(wrenches);
     EXPECT_EQ(contacts.enclosed().size(), z < 0.4 ? 1U : 0U) << z;
     EXPECT_EQ(wrenches[1].force.z > 0, z > 0.4) << z;

@@ -1,6 +1,7 @@
 // Forces of a planar model against those of a spatial one on states in the plane.
 #include <gtest/gtest.h>
 
+#include "explicit/leapfrog_work.h"
 #include "floe/base/petsc.h"
 #include "forces/dead_load.h"
 #include "model/model.h"
@@ -30,12 +31,11 @@ double difference(const Wrenches<Planar>& planar, const Wrenches<Spatial>& spati
 }
 
 /// Columns that two forces report are the same.
-void expect_same_report(const Force<Planar>& planar, const State<Planar>& p,
-                        const Force<Spatial>& spatial, const State<Spatial>& s,
-                        double tolerance = 1e-12) {
-  Columns mine, full;
-  planar.report(p, mine);
-  spatial.report(s, full);
+void expect_same_report(Force<Planar>& planar, const State<Planar>& p, Force<Spatial>& spatial,
+                        const State<Spatial>& s, double tolerance = 1e-12,
+                        const std::vector<double>& planar_works = {},
+                        const std::vector<double>& spatial_works = {}) {
+  const Columns mine = report(planar, p, planar_works), full = report(spatial, s, spatial_works);
   ASSERT_EQ(mine.values().size(), full.values().size());
   for (std::size_t k = 0; k < mine.values().size(); ++k) {
     EXPECT_EQ(mine.values()[k].first, full.values()[k].first);
@@ -68,8 +68,8 @@ TEST(PlanarForces, BeamsInLanes) {
           EXPECT_LT(difference(w, expected, local), 1e-13 + rounding)
               << damping << ' ' << common << ' ' << turn;
           if (damping > 0) {
-            EXPECT_LT(power(*planar, state), 0);
-            EXPECT_NEAR(power(*planar, state) / power(*spatial, full), 1, 1e-12);
+            EXPECT_LT(powers(*planar)[0], 0);
+            EXPECT_NEAR(powers(*planar)[0] / powers(*spatial)[0], 1, 1e-12);
           }
           expect_same_report(*planar, state, *spatial, full, 1e-12 + rounding);
           EXPECT_EQ(planar->folded(state), spatial->folded(full));
@@ -152,7 +152,9 @@ TEST(PlanarForces, Loads) {
       const bool linear = kinematics == Kinematics::linear;
       const auto planar = make_load<Planar>(part, place(load, lattice), kinematics);
       const auto spatial = make_load<Spatial>(part, place(load, lattice), kinematics);
-      // Along a path, since a load's work is what it did from commit to commit.
+      // Along a path, on which the load does work.
+      State<Planar> before(local);
+      std::vector<double> works(1), spatial_works(1);
       for (const double time : {0.5, 1.0, 1.7}) {
         State<Planar> state = deformed_in_plane(part, 0.1 * time, (linear ? 1e-6 : 0.4) * time);
         state.time = time;
@@ -162,10 +164,12 @@ TEST(PlanarForces, Loads) {
         planar->add(state, w);
         spatial->add(full, expected);
         EXPECT_LT(difference(w, expected, local), 1e-15);
-        EXPECT_NEAR(power(*planar, state) / power(*spatial, full), 1, 1e-13);
-        commit(*planar, state, 0.1);
-        commit(*spatial, full, 0.1);
-        expect_same_report(*planar, state, *spatial, full);
+        EXPECT_NEAR(powers(*planar)[0] / powers(*spatial)[0], 1, 1e-13);
+        planar->roles().work->add_works(before, state, works);
+        spatial->roles().work->add_works(in_space(before, linear), full, spatial_works);
+        EXPECT_NE(works[0], 0);
+        expect_same_report(*planar, state, *spatial, full, 1e-12, works, spatial_works);
+        before = state;
       }
     }
   }
@@ -185,9 +189,17 @@ TEST(PlanarForces, Drag) {
     planar->add(state, w);
     spatial->add(full, expected);
     EXPECT_LT(difference(w, expected, local), 1e-14);
-    commit(*planar, state, 0.1);
-    commit(*spatial, full, 0.1);
-    expect_same_report(*planar, state, *spatial, full);
+    std::vector<double> works(1), spatial_works(1);
+    LeapfrogWork<Planar> steps(std::span(&planar, 1), works);
+    LeapfrogWork<Spatial> spatial_steps(std::span(&spatial, 1), spatial_works);
+    steps.take_powers();
+    steps.take_step(state, 0.1);
+    spatial_steps.take_powers();
+    spatial_steps.take_step(full, 0.1);
+    EXPECT_NE(works[0], 0);
+    expect_same_report(*planar, state, *spatial, full, 1e-12,
+                       {steps.works().begin(), steps.works().end()},
+                       {spatial_steps.works().begin(), spatial_steps.works().end()});
   }
 }
 

@@ -70,7 +70,7 @@ Course run(const Scene& scene, const Lattice& lattice, double end, double dt, do
       if (name == "energy_balance_error") r.balance_error.push_back(value);
       if (name == "energy_kinetic") r.kinetic.push_back(value);
     }
-    for (const auto& [name, value] : model.report(a.state))
+    for (const auto& [name, value] : a.forces)
       if (name == "energy_drag") r.drag.push_back(value);
   });
   EXPECT_TRUE(r.result.done) << r.result.message;

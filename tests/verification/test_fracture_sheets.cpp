@@ -175,12 +175,8 @@ TEST(FractureOfStrips, DisplacementControlFollowsTheSoftening) {
   scene.boundaries.push_back(tip);
   const test::StaticSolution s = test::solve_static(scene, lattice);
   ASSERT_TRUE(s.result.done) << s.result.message;
-  double fracture = 0, strain = 0, broken = 0;
-  for (const auto& [name, value] : s.model->report(s.last())) {
-    if (name == "energy_fracture") fracture = value;
-    if (name == "energy_strain") strain = value;
-    if (name == "beams_broken") broken = value;
-  }
+  const double fracture = s.columns.at("energy_fracture"), strain = s.columns.at("energy_strain"),
+               broken = s.columns.at("beams_broken");
   EXPECT_EQ(broken, 1);
   const double nominal = 15 * 0.98 * w * h;
   EXPECT_NEAR(fracture, nominal, 1e-2 * nominal);

@@ -42,10 +42,13 @@ struct Planar {
   static void at_rest(double*) {}
 };
 
-/// The records of owned bodies and ghosts, in local order, at one time [s, or pseudo-time].
+/// The records of owned bodies and ghosts, in local order.
 template <class Space>
 struct State {
-  double time = 0;
+  double time = 0;  ///< of places [s, or pseudo-time]
+  /// Time of the velocities [s]. Those of leapfrog are half a step before or after `time`; with
+  /// other integrators both times are equal.
+  double velocity_time = 0;
   std::vector<double> records;
   /// Largest velocity [m/s] and angular velocity [rad/s] of an owned body in the last spatial
   /// leapfrog step; other integrators leave both unchanged.
@@ -55,6 +58,8 @@ struct State {
   explicit State(std::size_t bodies) : records(bodies * Space::record, 0.0) {
     for (std::size_t b = 0; b < bodies; ++b) Space::at_rest(record(b));
   }
+  /// Sets the time of places and velocities [s].
+  void set_time(double now) { time = velocity_time = now; }
   double* record(std::size_t body) { return records.data() + body * Space::record; }
   const double* record(std::size_t body) const { return records.data() + body * Space::record; }
 };
