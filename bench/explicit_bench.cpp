@@ -18,7 +18,7 @@
 #include "beams/lanes.h"
 #include "beams/spatial.h"
 #include "explicit/leapfrog.h"
-#include "explicit/planar_leapfrog_stepper.h"
+#include "leapfrog/planar_leapfrog_stepper.h"
 #include "model/model.h"
 #include "sheet.h"
 

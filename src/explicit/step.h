@@ -4,8 +4,8 @@
 #pragma once
 
 #include "base/collectives.h"
-#include "explicit/leapfrog_work.h"
-#include "explicit/planar_leapfrog_stepper.h"
+#include "leapfrog/leapfrog_work.h"
+#include "leapfrog/planar_leapfrog_stepper.h"
 #include "model/model.h"
 #include "run/work_ledger.h"
 

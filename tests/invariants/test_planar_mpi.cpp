@@ -3,8 +3,8 @@
 
 #include <cstring>
 
-#include "explicit/planar_leapfrog_stepper.h"
 #include "floe/base/petsc.h"
+#include "leapfrog/planar_leapfrog_stepper.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "explicit/leapfrog_work.h"
+#include "leapfrog/leapfrog_work.h"
 #include "run/checkpoint.h"
 #include "run/work_ledger.h"
 #include "simulation/build.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "explicit/leapfrog_work.h"
+#include "leapfrog/leapfrog_work.h"
 #include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"

@@ -1,7 +1,7 @@
 // Works of the forces over steps of leapfrog: the quadrature by hand, and against the kinetic
 // energy of free bodies.
 
-#include "explicit/leapfrog_work.h"
+#include "leapfrog/leapfrog_work.h"
 
 #include <gtest/gtest.h>
 

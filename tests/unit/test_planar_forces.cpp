@@ -1,9 +1,9 @@
 // Forces of a planar model against those of a spatial one on states in the plane.
 #include <gtest/gtest.h>
 
-#include "explicit/leapfrog_work.h"
 #include "floe/base/petsc.h"
 #include "forces/dead_load.h"
+#include "leapfrog/leapfrog_work.h"
 #include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "explicit/rigid_body_step.h"
+#include "leapfrog/rigid_body_step.h"
 #include "model/model.h"
 
 namespace floe {

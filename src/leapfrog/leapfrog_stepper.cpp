@@ -1,4 +1,4 @@
-#include "explicit/leapfrog_stepper.h"
+#include "leapfrog/leapfrog_stepper.h"
 
 #include <Eigen/LU>
 

@@ -1,4 +1,4 @@
-#include "explicit/planar_leapfrog_stepper.h"
+#include "leapfrog/planar_leapfrog_stepper.h"
 
 #include <algorithm>
 #include <cmath>

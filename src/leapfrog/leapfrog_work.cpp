@@ -1,4 +1,4 @@
-#include "explicit/leapfrog_work.h"
+#include "leapfrog/leapfrog_work.h"
 
 #include <algorithm>
 

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "explicit/leapfrog_stepper.h"
+#include "leapfrog/leapfrog_stepper.h"
 #include "model/model.h"
 
 namespace floe {
