@@ -44,7 +44,8 @@ class Told final : public Force<Spatial>, public DoesWork<Spatial> {
 
 /// Three steps of 1, 2 and 4 s. The wrenches of evaluation n have the powers p_n with the
 /// velocities before it and q_n with those after it.
-constexpr std::array<double, 4> dts{1, 2, 4}, before{3, 5, 7, 11}, after{13, 17, 19};
+constexpr std::array dts{1.0, 2.0, 4.0}, after{13.0, 17.0, 19.0};
+constexpr std::array before{3.0, 5.0, 7.0, 11.0};
 
 /// Works after each evaluation.
 std::vector<double> works_of(LaterPowers kind) {

@@ -191,9 +191,10 @@ TEST(Linear, WithBuoyancyItIsNot) {
 }
 
 /// Held on the left, pulled on the right by a velocity, pushed and turned elsewhere, in flowing
-/// water. With linear kinematics all of it a hundredth: spatial dynamics take 2 sin(theta/2) for an
-/// angle theta there, planar ones the angle.
-double size_of(Kinematics kinematics) { return kinematics == Kinematics::linear ? 0.01 : 1; }
+/// water. With linear kinematics all of it three hundredths: spatial dynamics take 2 sin(theta/2)
+/// for an angle theta there, planar ones the angle; and they round rotations by 1e-16 per step,
+/// which the work of a small rotation shows.
+double size_of(Kinematics kinematics) { return kinematics == Kinematics::linear ? 0.03 : 1; }
 Scene moving(Kinematics kinematics, double damping) {
   const double size = size_of(kinematics);
   Scene scene = tension_scene(12, 0.5, 1, 5);
