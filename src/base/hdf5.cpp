@@ -196,6 +196,10 @@ void Hdf5File::write(const std::string& name, std::span<const std::int32_t> valu
   write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
             native<std::int32_t>());
 }
+void Hdf5File::write(const std::string& name, std::span<const Vec3<double>> vectors) {
+  const auto values = reinterpret_cast<const double*>(vectors.data());
+  write(name, std::span(values, 3 * vectors.size()), 3);
+}
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {
   errno = 0;

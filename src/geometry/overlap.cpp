@@ -11,8 +11,6 @@
 namespace floe {
 namespace {
 
-Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
-
 std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face) {
   return {shapes.corners.data() + shapes.corner_of[face],
           shapes.corners.data() + shapes.corner_of[face + 1]};
@@ -21,7 +19,7 @@ std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face)
 /// Returns the plane of a face; nothing for a face without area, which bounds nothing.
 std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   const auto corners = corners_of(shapes, face);
-  const auto at = [&](std::size_t k) { return vector(item(shapes.vertices, corners[k])); };
+  const auto at = [&](std::size_t k) { return item(shapes.vertices, corners[k]); };
   Vec3<double> normal{};
   for (std::size_t k = 1; k + 1 < corners.size(); ++k)
     normal = normal + cross(at(k) - at(0), at(k + 1) - at(0));
@@ -51,7 +49,7 @@ double concavity(const Shapes& shapes, std::int32_t body) {
     const auto plane = plane_of(shapes, f);
     if (!plane) continue;
     const auto beyond = [&](std::int32_t v) {
-      return dot(plane->normal, vector(item(shapes.vertices, v))) - plane->offset;
+      return dot(plane->normal, item(shapes.vertices, v)) - plane->offset;
     };
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v)
       most = std::max(most, beyond(v));

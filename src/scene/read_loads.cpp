@@ -40,13 +40,13 @@ Boundary read_boundary(Options& options, const std::string& name) {
       options.one_of(displacement, velocity, name,
                      "boundary: " + name + ": give either velocity or displacement, not both");
   if (given == displacement) {
-    boundary.displacement = options.numbers<3>(displacement, name);
+    boundary.displacement = options.vector(displacement, name);
     check_fixed(options, boundary, "displacement", *boundary.displacement, 0);
   } else {
-    boundary.velocity = given == velocity ? options.numbers<3>(velocity, name) : Point3{};
+    boundary.velocity = given == velocity ? options.vector(velocity, name) : Point3{};
     check_fixed(options, boundary, "velocity", *boundary.velocity, 0);
   }
-  boundary.angular_velocity = options.numbers<3>("boundary: NAME: angular_velocity", name);
+  boundary.angular_velocity = options.vector("boundary: NAME: angular_velocity", name);
   check_fixed(options, boundary, "angular_velocity", boundary.angular_velocity, 3);
   boundary.ramp.seconds = options.number("boundary: NAME: ramp", name);
   return boundary;
@@ -70,8 +70,8 @@ Load read_load(Options& options, const std::string& name) {
   if (given.empty()) throw InputError(either + "neither is there");
   if (given == set) load.set = options.text(set, name);
   if (given == point) load.point = options.numbers<2>(point, name);
-  load.force = options.numbers<3>("load: NAME: force", name);
-  load.moment = options.numbers<3>("load: NAME: moment", name);
+  load.force = options.vector("load: NAME: force", name);
+  load.moment = options.vector("load: NAME: moment", name);
   load.ramp.seconds = options.number("load: NAME: ramp", name);
   constexpr Point3 nothing{};
   if (load.force == nothing && load.moment == nothing)

@@ -75,8 +75,8 @@ void read_dynamics(Options& options, Scene& scene) {
   }
   for (const std::string& name : options.names("initial")) {
     const Initial initial{name, options.text("initial: NAME: set", name),
-                          options.numbers<3>("initial: NAME: velocity", name),
-                          options.numbers<3>("initial: NAME: angular_velocity", name)};
+                          options.vector("initial: NAME: velocity", name),
+                          options.vector("initial: NAME: angular_velocity", name)};
     scene.initials.push_back(initial);
   }
 }

@@ -72,8 +72,8 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
     const Triad<double> axes = triad(Quat<double>{w, x, y, z});
     bool above = false, below = false;
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
-      const Point3& r = item(shapes.vertices, v);
-      const double height = lattice.bodies.position[b][2] + axes.to_world({r[0], r[1], r[2]}).z;
+      const double height =
+          lattice.bodies.position[b].z + axes.to_world(item(shapes.vertices, v)).z;
       above = above || height > 0;
       below = below || height < 0;
     }
@@ -180,11 +180,11 @@ namespace {
 void check_point(const PlacedLoad& placed, const Lattice& lattice) {
   const auto body = static_cast<std::size_t>(placed.bodies.front());
   const Bodies& bodies = lattice.bodies;
-  const auto& inertia = bodies.inertia[body];
+  const Point3& inertia = bodies.inertia[body];
   // Largest distance over radius of gyration: a rod has 1.7, a cone 2.5.
   constexpr double widest = 4;
   double reach =
-      widest * std::sqrt(*std::max_element(inertia.begin(), inertia.end()) / bodies.mass[body]);
+      widest * std::sqrt(std::max({inertia.x, inertia.y, inertia.z}) / bodies.mass[body]);
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
     const auto& [a, b] = lattice.beams.bodies[m];
     if (a == placed.bodies.front() || b == placed.bodies.front())

@@ -255,8 +255,7 @@ std::vector<BodyMotion> RunningIn<Space>::bodies() const {
   if (state_ == nullptr) return all;
   const Part& part = model_->part();
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
-    const Point3& x = part.bodies.position[b];
-    all.push_back({part.global[b], Vec3<double>{x[0], x[1], x[2]} + displacement(*state_, b),
+    all.push_back({part.global[b], part.bodies.position[b] + displacement(*state_, b),
                    rotation(*state_, b), velocity(*state_, b), angular_velocity(*state_, b)});
   }
   return all;

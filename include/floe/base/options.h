@@ -19,6 +19,7 @@
 
 #include "floe/base/given.h"
 #include "floe/base/petsc.h"
+#include "floe/base/rotation.h"
 
 namespace floe {
 
@@ -114,6 +115,11 @@ class Options {
     std::array<double, N> values{};
     read_numbers(key, name, values);
     return values;
+  }
+  /// Returns an option of three numbers as a vector.
+  Vec3<double> vector(std::string_view key, std::string_view name = {}) {
+    const auto [x, y, z] = numbers<3>(key, name);
+    return {x, y, z};
   }
   /// Returns the enumerator whose number is the position of the chosen word in OptionSpec::allowed.
   template <class Enum>
