@@ -197,10 +197,10 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
 }
 
 std::vector<std::pair<std::string, double>> columns_of(const Sample& sample) {
-  constexpr std::array axes{"_x", "_y", "_z"};
   std::vector<std::pair<std::string, double>> columns;
   const auto add = [&](const std::string& name, const Point3& p) {
-    for (std::size_t k = 0; k < axes.size(); ++k) columns.emplace_back(name + axes[k], p[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      columns.emplace_back(name + "_" + std::string(component_names[k]), p[k]);
   };
   for (const auto& [name, b] : sample.boundaries) {
     add(name + "_force", b.force);

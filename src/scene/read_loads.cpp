@@ -9,8 +9,6 @@
 namespace floe {
 namespace {
 
-constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
-
 /// Refuses values of components that are not fixed, which would be ignored in silence.
 void check_fixed(Options& options, const Boundary& boundary, const std::string& key, Point3& values,
                  std::size_t first) {
@@ -18,7 +16,7 @@ void check_fixed(Options& options, const Boundary& boundary, const std::string& 
     if (values[k] == 0 || boundary.fixed[first + k]) continue;
     options.refuse_part(
         "boundary: NAME: " + key, boundary.name, "boundary: " + boundary.name + ": " + key,
-        text_of(values[k]) + " has no effect: '" + std::string(components[first + k]) +
+        text_of(values[k]) + " has no effect: '" + std::string(component_names[first + k]) +
             "' is not in 'boundary: " + boundary.name + ": fix'");
     values[k] = 0;
   }
@@ -29,7 +27,8 @@ Boundary read_boundary(Options& options, const std::string& name) {
   boundary.name = name;
   boundary.set = options.text("boundary: NAME: set", name);
   for (const std::string& word : options.words("boundary: NAME: fix", name)) {
-    const auto at = std::find(components.begin(), components.end(), word) - components.begin();
+    const auto at =
+        std::find(component_names.begin(), component_names.end(), word) - component_names.begin();
     item(boundary.fixed, at) = true;
   }
   if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))

@@ -361,12 +361,11 @@ TEST(LatticeFile, WrongShapesAndTypesAreRefused) {
 using Held = std::vector<std::uint8_t>;
 
 Boundary fix(const std::string& set, const std::string& components) {
-  constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
   Boundary b;
   b.name = b.set = set;
   for (std::size_t k = 0; k < 6; ++k)
-    b.fixed[k] =
-        (" " + components + " ").find(" " + std::string(names[k]) + " ") != std::string::npos;
+    b.fixed[k] = (" " + components + " ").find(" " + std::string(component_names[k]) + " ") !=
+                 std::string::npos;
   return b;
 }
 
