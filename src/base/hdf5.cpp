@@ -60,7 +60,8 @@ int copy_file(const std::string& from, const std::string& to) {
 /// systems have no locks.
 Hdf5Id unlocked() {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  H5Pset_file_locking(access, false, true);
+  constexpr bool lock = false, unless_disabled = true;
+  H5Pset_file_locking(access, lock, unless_disabled);
   return {access, H5Pclose};
 }
 

@@ -201,9 +201,12 @@ void check_offsets(const Reader& in, const std::string& name,
     in.refuse(name, "must grow from 0 to " + std::to_string(end));
 }
 
-/// Checks that the faces of each body close and are counter-clockwise seen from outside, and, with
-/// `centred_at_origin`, that the centroid is the origin.
-void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
+/// Where the centroid of a body has to be in the frame of its vertices.
+enum class Centroid { at_origin, anywhere };
+
+/// Checks that the faces of each body close and are counter-clockwise seen from outside, and that
+/// the centroid is where it has to be.
+void check_solids(const Reader& in, const Shapes& s, Centroid centroid) {
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
     const std::string name = "body " + std::to_string(b);
@@ -223,14 +226,14 @@ void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
     if (!(p.volume > 0))
       in.refuse("/shapes/corners",
                 name + ": faces must be counter-clockwise seen from outside, around a volume > 0");
-    if (!centred_at_origin) continue;
+    if (centroid == Centroid::anywhere) continue;
     constexpr double centred = 1e-6;  // relative to the body's size
     if (std::hypot(p.centroid.x, p.centroid.y, p.centroid.z) > centred * std::cbrt(p.volume))
       in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
   }
 }
 
-Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin = true) {
+Shapes read_shapes(const Reader& in, std::size_t bodies, Centroid centroid) {
   Shapes s;
   if (!in.file().has("/shapes")) return s;
   s.vertices = in.rows<Point3>("/shapes/vertices",
@@ -252,7 +255,7 @@ Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin 
                   "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
     }
   }
-  check_solids(in, s, centred_at_origin);
+  check_solids(in, s, centroid);
   return s;
 }
 
@@ -290,7 +293,7 @@ Lattice read_lattice(const std::string& file) {
   lattice.bodies = read_bodies(in);
   const auto n = static_cast<std::size_t>(lattice.bodies.size());
   lattice.beams = read_beams(in, lattice.bodies);
-  lattice.shapes = read_shapes(in, n);
+  lattice.shapes = read_shapes(in, n, Centroid::at_origin);
   if (in.file().has("/sets")) {
     for (const std::string& name : in.file().members("/sets")) {
       auto& set = lattice.sets[name] = in.indices("/sets/" + name, n);
@@ -306,7 +309,7 @@ Lattice read_lattice(const std::string& file) {
 
 Shapes read_polyhedron(const std::string& file, const std::string& key) {
   const Reader in(file, key);
-  Shapes shapes = read_shapes(in, 1, false);
+  Shapes shapes = read_shapes(in, 1, Centroid::anywhere);
   if (shapes.empty()) in.refuse("/shapes", "is not there");
   const double size = std::cbrt(volume_properties(shapes, 0).volume);
   constexpr double rounding = 1e-6;

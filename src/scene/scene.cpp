@@ -182,7 +182,8 @@ Scene read_all(Options& options, const std::string& path) {
 std::set<std::string> idle_without_command_line(const std::string& path, const UserOptions& user) {
   std::set<std::string> labels;
   try {
-    Options options(scene_keys(), {{}, user.scene, {}}, true);
+    Options options(scene_keys(), {.environment = {}, .scene = user.scene, .command_line = {}},
+                    Options::Idle::kept);
     try {
       (void)read_all(options, path);
     } catch (const InputError&) {  // the command line may correct it

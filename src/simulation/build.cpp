@@ -140,7 +140,10 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
                               ObserverOf<Space> observer) {
   if (scene.integrator == Integrator::quasistatic)
     return make_quasistatic_run(model,
-                                {scene.time.end, scene.time.dt, scene.limit.steps, hooks.on_plan},
+                                {.end = scene.time.end,
+                                 .dt = scene.time.dt,
+                                 .most_steps = scene.limit.steps,
+                                 .on_plan = hooks.on_plan},
                                 std::move(observer), out_of_plane);
   ExplicitOptions options;
   options.end = scene.time.end;
@@ -151,18 +154,18 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
   options.fields = scene.output.fields;
   options.most_steps = scene.limit.steps;
   options.on_plan = hooks.on_plan;
-  options.checkpoint = {scene.check_only ? "" : checkpoint_file(scene),
-                        scene.checkpoint.every,
-                        scene.checkpoint.at_end,
-                        scene.output.dir + "/STOP",
-                        scene.checkpoint.restart,
-                        hooks.lattice_id,
-                        fingerprint(scene.obstacles),
-                        scene.options_yaml,
-                        scene.path,
-                        scene.checkpoint.wall_time,
-                        hooks.prepare,
-                        hooks.others};
+  options.checkpoint = {.file = scene.check_only ? "" : checkpoint_file(scene),
+                        .every = scene.checkpoint.every,
+                        .at_end = scene.checkpoint.at_end,
+                        .stop_file = scene.output.dir + "/STOP",
+                        .restart = scene.checkpoint.restart,
+                        .lattice = hooks.lattice_id,
+                        .obstacles = fingerprint(scene.obstacles),
+                        .options = scene.options_yaml,
+                        .scene = scene.path,
+                        .wall_time = scene.checkpoint.wall_time,
+                        .prepare = hooks.prepare,
+                        .others = hooks.others};
   if constexpr (std::is_same_v<Space, Spatial>) {
     if (scene.integrator == Integrator::implicit)
       return make_implicit_run(model, options, std::move(observer));

@@ -182,12 +182,17 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
   setting_.mesh.keep();
   setting_.mesh.keep = [] {};
   if (rank() == 0) packed_.unpack(setting_.lattice);  // other ranks need positions only
-  output_ = std::make_unique<Output<Space>>(
-      OutputOptions{scene_.output.dir, scene_.output.history, scene_.output.fields},
-      std::move(setting_.lattice), *model_, loads_, scene_.options_yaml,
-      restart_ ? &*restart_ : nullptr);
+  output_ = std::make_unique<Output<Space>>(OutputOptions{.dir = scene_.output.dir,
+                                                          .history = scene_.output.history,
+                                                          .fields = scene_.output.fields},
+                                            std::move(setting_.lattice), *model_, loads_,
+                                            scene_.options_yaml, restart_ ? &*restart_ : nullptr);
   if (first_) {
-    output_->accept({first_->state, first_->wrenches, 0, first_->columns, false, first_->forces});
+    output_->accept({.state = first_->state,
+                     .wrenches = first_->wrenches,
+                     .step = 0,
+                     .columns = first_->columns,
+                     .forces = first_->forces});
     show(0);
   }
   first_.reset();
