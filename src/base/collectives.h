@@ -14,6 +14,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "floe/base/rotation.h"
+
 namespace floe {
 
 /// Returns MPI's data type of a number.
@@ -46,6 +48,10 @@ template <class T, std::size_t n>
 std::array<T, n> sum_over_ranks(std::array<T, n> mine, MPI_Comm comm) {
   sum_over_ranks(std::span<T>(mine), comm);
   return mine;
+}
+inline Vec3<double> sum_over_ranks(const Vec3<double>& mine, MPI_Comm comm) {
+  const auto [x, y, z] = sum_over_ranks(std::array{mine.x, mine.y, mine.z}, comm);
+  return {x, y, z};
 }
 
 /// Replace each number by the maximum over the ranks. NaN counts as infinity: MPI may lose a NaN or

@@ -29,13 +29,10 @@ std::unique_ptr<BeamForce<Space>> make(const Part& part, const BeamOptions& opti
 Triad<double> beam_triad(const Bodies& bodies, const Beams& beams, std::int32_t m) {
   const auto k = static_cast<std::size_t>(m);
   const auto [i, j] = beams.bodies[k];
-  const Point3& xi = item(bodies.position, i);
-  const Point3& xj = item(bodies.position, j);
-  const Vec3<double> e0{xj[0] - xi[0], xj[1] - xi[1], xj[2] - xi[2]};
+  const Vec3<double> e0 = item(bodies.position, j) - item(bodies.position, i);
   const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
-  const Point3& axis = beams.axis_y[k];
-  Vec3<double> e2{axis[0], axis[1], axis[2]};
-  e2 = e2 - dot(e2, e1) * e1;
+  const Vec3<double>& axis = beams.axis_y[k];
+  Vec3<double> e2 = axis - dot(axis, e1) * e1;
   e2 = (1.0 / std::sqrt(dot(e2, e2))) * e2;
   return {e1, e2, cross(e1, e2)};
 }
@@ -79,8 +76,7 @@ BeamStiffness beam_damping(const Part& part, std::int32_t m, const BeamStiffness
   const double mass = harmonic(item(part.bodies.mass, i), item(part.bodies.mass, j));
   const Triad<double> t = beam_triad(part.bodies, part.beams, m);
   const auto turning = [&](const Vec3<double>& axis) {
-    const Point3 a{axis.x, axis.y, axis.z};
-    return harmonic(inertia_about(part.bodies, i, a), inertia_about(part.bodies, j, a));
+    return harmonic(inertia_about(part.bodies, i, axis), inertia_about(part.bodies, j, axis));
   };
   if (options.damping_modes == DampingModes::axial) return {dashpot(mass, k.kn), 0, 0, 0, 0, 0};
   return {dashpot(mass, k.kn),           dashpot(mass, k.ksz),

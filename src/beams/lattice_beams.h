@@ -117,8 +117,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
       const Constants c = constants(m);
       const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      const Point3 &from = part_.bodies.position[a], &to = part_.bodies.position[b];
-      const Vec3<double> chord = Vec3<double>{to[0] - from[0], to[1] - from[1], to[2] - from[2]} +
+      const Vec3<double> chord = (part_.bodies.position[b] - part_.bodies.position[a]) +
                                  (displacement(state, b) - displacement(state, a));
       const double l = std::sqrt(dot(chord, chord)), stretch = c.l0 / l;
       const double across =

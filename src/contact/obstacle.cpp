@@ -63,7 +63,7 @@ Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>&
   const auto b = static_cast<std::size_t>(body);
   for (auto v = static_cast<std::size_t>(shapes.vertex_of[b]);
        v < static_cast<std::size_t>(shapes.vertex_of[b + 1]); ++v)
-    o.vertices.push_back({shapes.vertices[v][0], shapes.vertices[v][1], shapes.vertices[v][2]});
+    o.vertices.push_back(shapes.vertices[v]);
   return o;
 }
 
@@ -75,8 +75,7 @@ Obstacle box(const Vec3<double>& centre, const Vec3<double>& size, const Vec3<do
   std::vector<Point3> low, high;
   for (const auto& [x, y] : {std::array{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}) {
     for (const double z : {-0.5, 0.5}) {
-      const Vec3<double> r = rotate(q, {x * size.x, y * size.y, z * size.z});
-      (z < 0 ? low : high).push_back({r.x, r.y, r.z});
+      (z < 0 ? low : high).push_back(rotate(q, {x * size.x, y * size.y, z * size.z}));
     }
   }
   return polyhedron(between(low, high), 0, centre);

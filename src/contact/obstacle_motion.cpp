@@ -6,7 +6,7 @@
 namespace floe {
 namespace {
 
-bool is_zero(const Vec3<double>& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+bool is_zero(const Vec3<double>& v) { return v == Vec3<double>{}; }
 }  // namespace
 
 // Most obstacles rest or move steadily, so sines and cosines are computed only if needed.

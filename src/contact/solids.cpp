@@ -25,8 +25,7 @@ double least_width(std::span<const Vec3<double>> vertices, std::span<const HalfS
 /// Returns the area of a face [m^2].
 double face_area(const Shapes& shapes, std::int32_t face) {
   const auto corner = [&](std::int32_t c) {
-    const Point3& p = item(shapes.vertices, item(shapes.corners, c));
-    return Vec3<double>{p[0], p[1], p[2]};
+    return item(shapes.vertices, item(shapes.corners, c));
   };
   const std::int32_t begin = item(shapes.corner_of, face), end = item(shapes.corner_of, face + 1);
   Vec3<double> twice{};
@@ -66,8 +65,7 @@ void Solids::add(std::int32_t body, double mass) {
   added.first_vertex = static_cast<std::int32_t>(vertices_.size());
   added.first_plane = static_cast<std::int32_t>(planes_.size());
   for (std::int32_t v = item(shapes_.vertex_of, body); v < item(shapes_.vertex_of, body + 1); ++v) {
-    const Point3& p = item(shapes_.vertices, v);
-    vertices_.push_back({p[0], p[1], p[2]});
+    vertices_.push_back(item(shapes_.vertices, v));
     added.radius = std::max(added.radius, length(vertices_.back()));
   }
   append_half_spaces(shapes_, body, planes_);

@@ -16,7 +16,8 @@ ContactHalo::ContactHalo(const Part& part) : part_(part), alone_(size(part.comm)
                          part.comm, &counts);
   std::vector<double> mine;
   for (std::size_t b = 0; b < owned; ++b) {
-    mine.insert(mine.end(), part.bodies.position[b].begin(), part.bodies.position[b].end());
+    const Point3& x = part.bodies.position[b];
+    mine.insert(mine.end(), {x.x, x.y, x.z});
     mine.insert(mine.end(), part.bodies.orientation[b].begin(), part.bodies.orientation[b].end());
   }
   const std::vector<double> all = all_gathered(mine, part.comm);

@@ -27,8 +27,7 @@ FirstOrderSystem::FirstOrderSystem(const Model<Spatial>& model)
     : model_(model), owned_(static_cast<std::size_t>(model.part().owned)) {
   const Bodies& all = model.part().bodies;
   for (std::size_t b = 0; b < owned_; ++b) {
-    bodies_.push_back(
-        {model.inertial_mass()[b], three(all.inertia[b].data()), four(all.orientation[b].data())});
+    bodies_.push_back({model.inertial_mass()[b], all.inertia[b], four(all.orientation[b].data())});
     if (model.prescribed()[b] != 0) held_.push_back(static_cast<std::int32_t>(b));
   }
   for (const auto& force : model.forces()) {
@@ -43,9 +42,8 @@ double FirstOrderSystem::begin(State<Spatial>& state) {
   const Bodies& all = model_.part().bodies;
   for (std::size_t b = 0; b < owned_; ++b) {
     double* r = state.record(b);
-    if (!all.velocity.empty()) std::copy_n(all.velocity[b].data(), 3, r + Spatial::velocity);
-    if (!all.angular_velocity.empty())
-      std::copy_n(all.angular_velocity[b].data(), 3, r + Spatial::angular_velocity);
+    if (!all.velocity.empty()) put(all.velocity[b], r + Spatial::velocity);
+    if (!all.angular_velocity.empty()) put(all.angular_velocity[b], r + Spatial::angular_velocity);
     const Triad<double> axes =
         triad(product(normalised(four(r + Spatial::rotation)), bodies_[b].axes));
     const Vec3<double> w = axes.to_local(three(r + Spatial::angular_velocity));

@@ -181,7 +181,7 @@ void RkRun::set_tolerances() {
     for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
       double* at = &(*a)[b * FirstOrderSystem::width];
       const Point3& inertia = part.bodies.inertia[b];
-      const double moment = *std::max_element(inertia.begin(), inertia.end());
+      const double moment = std::max({inertia.x, inertia.y, inertia.z});
       std::fill_n(at + FirstOrderSystem::displacement, 3, absolute * model().length_scale());
       std::fill_n(at + FirstOrderSystem::rotation, 4, absolute);
       std::fill_n(at + FirstOrderSystem::velocity, 3, absolute * model().length_scale() / time);

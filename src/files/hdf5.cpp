@@ -60,7 +60,8 @@ int copy_file(const std::string& from, const std::string& to) {
 /// systems have no locks.
 Hdf5Id unlocked() {
   const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-  H5Pset_file_locking(access, false, true);
+  constexpr bool lock = false, unless_disabled = true;
+  H5Pset_file_locking(access, lock, unless_disabled);
   return {access, H5Pclose};
 }
 
@@ -195,6 +196,10 @@ void Hdf5File::write(const std::string& name, std::span<const float> values, int
 void Hdf5File::write(const std::string& name, std::span<const std::int32_t> values, int columns) {
   write_any(name, values.data(), static_cast<std::int64_t>(values.size()), columns,
             native<std::int32_t>());
+}
+void Hdf5File::write(const std::string& name, std::span<const Vec3<double>> vectors) {
+  const auto values = reinterpret_cast<const double*>(vectors.data());
+  write(name, std::span(values, 3 * vectors.size()), 3);
 }
 
 void Hdf5File::attribute(const std::string& object, const std::string& name, double value) {

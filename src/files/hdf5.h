@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "files/files.h"
+#include "floe/base/rotation.h"
 
 namespace floe {
 
@@ -46,6 +47,8 @@ class Hdf5File {
   void write(const std::string& name, std::span<const double> values, int columns = 1);
   void write(const std::string& name, std::span<const float> values, int columns = 1);
   void write(const std::string& name, std::span<const std::int32_t> values, int columns = 1);
+  /// Writes a dataset of one row x y z per vector.
+  void write(const std::string& name, std::span<const Vec3<double>> vectors);
   /// Writes rows that are made block by block, so that only one block is in memory.
   /// \param make  called for each block in order, with the index of its first row and the values to
   /// fill

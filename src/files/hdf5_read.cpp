@@ -123,7 +123,8 @@ Hdf5File Hdf5File::open(const std::string& path, const std::string& key) {
   if (const std::string problem = system_problem(path); !problem.empty())
     throw InputError(where + problem);
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, true, true);
+  constexpr bool lock = true, unless_disabled = true;
+  H5Pset_file_locking(access, lock, unless_disabled);
   const BoundedMemory bounded;
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
   if (id >= 0) return {id, path, path, key};

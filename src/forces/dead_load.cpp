@@ -32,7 +32,7 @@ class DeadLoad final : public Force<Space>,
       const std::int32_t local = part.local_index(body);
       if (local >= 0 && local < part.owned) bodies_.push_back(local);
     }
-    arm_ = {placed.arm[0], placed.arm[1], placed.arm[2]};
+    arm_ = placed.arm;
     arms_.resize(bodies_.size());
   }
 
@@ -55,12 +55,11 @@ class DeadLoad final : public Force<Space>,
     const Vec3<double> f = force(state.time);
     for (const std::int32_t body : bodies_) {
       const Vec3<double> a = turned_arm(state, static_cast<std::size_t>(body));
-      const std::array<double, 3> fs{f.x, f.y, f.z}, as{a.x, a.y, a.z};
       Eigen::Matrix3d k;
       for (int r = 0; r < 3; ++r) {
         for (int s = 0; s < 3; ++s) {
           const auto i = static_cast<std::size_t>(r), j = static_cast<std::size_t>(s);
-          k(r, s) = (r == s ? dot(f, a) : 0.0) - 0.5 * (fs[i] * as[j] + as[i] * fs[j]);
+          k(r, s) = (r == s ? dot(f, a) : 0.0) - 0.5 * (f[i] * a[j] + a[i] * f[j]);
         }
       }
       if (!tangent.symmetric()) {
@@ -115,13 +114,9 @@ class DeadLoad final : public Force<Space>,
   }
 
  private:
-  Vec3<double> force(double time) const {
-    const double s = share_ * load_.ramp.value(time);
-    return {s * load_.force[0], s * load_.force[1], s * load_.force[2]};
-  }
+  Vec3<double> force(double time) const { return (share_ * load_.ramp.value(time)) * load_.force; }
   Vec3<double> moment(double time) const {
-    const double s = share_ * load_.ramp.value(time);
-    return {s * load_.moment[0], s * load_.moment[1], s * load_.moment[2]};
+    return (share_ * load_.ramp.value(time)) * load_.moment;
   }
   Vec3<double> turned_arm(const State<Space>& state, std::size_t body) const {
     if (linear_) return arm_ + cross(linear_rotation(state, body), arm_);

@@ -11,8 +11,6 @@
 namespace floe {
 namespace {
 
-Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
-
 std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face) {
   return {shapes.corners.data() + shapes.corner_of[face],
           shapes.corners.data() + shapes.corner_of[face + 1]};
@@ -21,7 +19,7 @@ std::span<const std::int32_t> corners_of(const Shapes& shapes, std::size_t face)
 /// Returns the plane of a face; nothing for a face without area, which bounds nothing.
 std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   const auto corners = corners_of(shapes, face);
-  const auto at = [&](std::size_t k) { return vector(item(shapes.vertices, corners[k])); };
+  const auto at = [&](std::size_t k) { return item(shapes.vertices, corners[k]); };
   Vec3<double> normal{};
   for (std::size_t k = 1; k + 1 < corners.size(); ++k)
     normal = normal + cross(at(k) - at(0), at(k + 1) - at(0));
@@ -51,7 +49,7 @@ double concavity(const Shapes& shapes, std::int32_t body) {
     const auto plane = plane_of(shapes, f);
     if (!plane) continue;
     const auto beyond = [&](std::int32_t v) {
-      return dot(plane->normal, vector(item(shapes.vertices, v))) - plane->offset;
+      return dot(plane->normal, item(shapes.vertices, v)) - plane->offset;
     };
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v)
       most = std::max(most, beyond(v));
@@ -94,7 +92,9 @@ void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec
   for (const Vec3<double>& p : placed) now_.points.push(p);
   for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
     const auto face = static_cast<std::size_t>(f);
-    now_.faces.push({shapes.corner_of[face] - first, shapes.corner_of[face + 1] - first, false});
+    now_.faces.push({.begin = shapes.corner_of[face] - first,
+                     .end = shapes.corner_of[face + 1] - first,
+                     .on_b = false});
   }
   for (auto c = static_cast<std::size_t>(first); c < static_cast<std::size_t>(last); ++c)
     now_.corners.push(shapes.corners[c] - base);
@@ -143,7 +143,7 @@ std::int32_t Clipper::crossing(std::int32_t inside, std::int32_t outside) {
   const auto i = static_cast<std::size_t>(inside), o = static_cast<std::size_t>(outside);
   const double t = distance_[i] / (distance_[i] - distance_[o]);  // in [0, 1)
   next_.points.push(now_.points[i] + t * (now_.points[o] - now_.points[i]));
-  crossings_.push({inside, outside, -1, false});
+  crossings_.push({.inside = inside, .outside = outside, .next = -1, .done = false});
   return static_cast<std::int32_t>(crossings_.size()) - 1;
 }
 
@@ -197,7 +197,7 @@ void Clipper::close_caps(std::int32_t kept) {
     // A cap of two corners has no area. Without it the two faces beside it share that edge, so that
     // no edge ever has more than two faces.
     if (end - begin > 2) {
-      next_.faces.push({begin, end, true});
+      next_.faces.push({.begin = begin, .end = end, .on_b = true});
     } else {
       next_.corners.cut_back(static_cast<std::size_t>(begin));
     }

@@ -36,13 +36,6 @@ PlanProperties plan_properties(std::span<const Point2> polygon) {
 
 namespace {
 
-Point3 minus(const Point3& a, const Point3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-
-double triple(const Point3& a, const Point3& b, const Point3& c) {
-  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-         a[2] * (b[0] * c[1] - b[1] * c[0]);
-}
-
 /// Sums of cones with one apex over triangles: six times the volume, and 24 times the first moment
 /// about the apex.
 struct Cones {
@@ -51,10 +44,10 @@ struct Cones {
   Point3 moment24{};
 
   void add(const Point3& p, const Point3& q, const Point3& r) {
-    const Point3 a = minus(p, apex), b = minus(q, apex), c = minus(r, apex);
-    const double v = triple(a, b, c);
+    const Point3 a = p - apex, b = q - apex, c = r - apex;
+    const double v = dot(a, cross(b, c));
     volume6 += v;
-    for (int i = 0; i < 3; ++i) moment24[i] += v * (a[i] + b[i] + c[i]);
+    moment24 = moment24 + v * (a + b + c);
   }
 };
 
@@ -68,18 +61,18 @@ VolumeProperties volume_properties(const Shapes& shapes, std::int32_t body) {
   std::array<double, 6> second{};  // 120 int r r^T dV: xx yy zz xy xz yz
   for (auto f = shapes.face_of[body]; f < shapes.face_of[body + 1]; ++f) {
     const auto begin = shapes.corner_of[f], end = shapes.corner_of[f + 1];
-    const Point3 a = minus(vertex[shapes.corners[begin]], apex);
+    const Point3 a = vertex[shapes.corners[begin]] - apex;
     for (auto k = begin + 1; k + 1 < end; ++k) {
-      const Point3 b = minus(vertex[shapes.corners[k]], apex);
-      const Point3 c = minus(vertex[shapes.corners[k + 1]], apex);
-      const double v = triple(a, b, c);
-      const Point3 s{a[0] + b[0] + c[0], a[1] + b[1] + c[1], a[2] + b[2] + c[2]};
+      const Point3 b = vertex[shapes.corners[k]] - apex;
+      const Point3 c = vertex[shapes.corners[k + 1]] - apex;
+      const double v = dot(a, cross(b, c));
+      const Point3 s = a + b + c;
       // A tetrahedron with one vertex at the origin: 20 int r r^T dV = V (sum v v^T + s s^T).
       const auto moment = [&](int i, int j) {
         return v * (a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + s[i] * s[j]);
       };
       volume6 += v;
-      for (int i = 0; i < 3; ++i) first[i] += v * s[i];
+      first = first + v * s;
       second[0] += moment(0, 0);
       second[1] += moment(1, 1);
       second[2] += moment(2, 2);
@@ -92,7 +85,7 @@ VolumeProperties volume_properties(const Shapes& shapes, std::int32_t body) {
   if (volume6 == 0) return p;
   p.volume = volume6 / 6;
   const Point3 c{first[0] / (4 * volume6), first[1] / (4 * volume6), first[2] / (4 * volume6)};
-  for (int i = 0; i < 3; ++i) p.centroid[i] = apex[i] + c[i];
+  p.centroid = apex + c;
   const double xx = second[0] / 120 - p.volume * c[0] * c[0];
   const double yy = second[1] / 120 - p.volume * c[1] * c[1];
   const double zz = second[2] / 120 - p.volume * c[2] * c[2];

@@ -72,7 +72,7 @@ ImplicitRotations<Spatial>::ImplicitRotations(const Model<Spatial>& model)
     const auto [w, x, y, z] = part.bodies.orientation[b];
     const Matrix axes = matrix_of({w, x, y, z});
     const Point3& principal = part.bodies.inertia[b];
-    at_rest_.emplace_back(axes * Vector(principal[0], principal[1], principal[2]).asDiagonal() *
+    at_rest_.emplace_back(axes * Vector(principal.x, principal.y, principal.z).asDiagonal() *
                           axes.transpose());
   }
 }

@@ -70,7 +70,9 @@ void SecondOrderSystem<Space>::begin(Vec x, Vec v) {
       double* to = &(*rates)[b * unknowns];
       // At rest all frames are those of the world.
       for (std::size_t k = 0; k < unknowns; ++k) to[k] = 0;
-      if (!all.velocity.empty()) std::copy_n(all.velocity[b].data(), moves, to);
+      if (!all.velocity.empty()) {
+        for (std::size_t k = 0; k < moves; ++k) to[k] = all.velocity[b][k];
+      }
       if (!all.angular_velocity.empty()) {
         for (std::size_t k = 0; k < Turn::size; ++k)
           to[moves + k] = length_ * all.angular_velocity[b][k + 3 - Turn::size];

@@ -22,6 +22,8 @@ inline constexpr Within finite{}, not_negative{0},
     positive{std::numeric_limits<double>::denorm_min()},
     not_negative_or_infinite{0, std::numeric_limits<double>::infinity()};
 
+enum class Transfer { save, load };
+
 /// Writes a state when saving and sets it when loading. One visit serves both directions, so that
 /// the two cannot disagree. The file is in global order and independent of the ranks, except for
 /// each rank's share of a sum. All functions are collective; rank 0 alone accesses the file. When
@@ -33,8 +35,8 @@ class Archive {
   /// \param part  must outlive the archive
   /// \param file  on rank 0; null on other ranks
   /// \param name  of the file, for messages
-  Archive(const Part& part, Hdf5File* file, bool loading, std::string name = {})
-      : part_(part), file_(file), loading_(loading), name_(std::move(name)) {}
+  Archive(const Part& part, Hdf5File* file, Transfer direction, std::string name = {})
+      : part_(part), file_(file), loading_(direction == Transfer::load), name_(std::move(name)) {}
 
   bool loading() const { return loading_; }
   /// Returns the outcome of writing, on rank 0. A failed write raises nothing until all ranks know

@@ -47,11 +47,13 @@ class Reader {
     return values;
   }
 
-  template <std::size_t columns>
-  std::vector<std::array<double, columns>> rows(const std::string& name, std::size_t count) const {
+  /// Reads rows of a type that holds nothing but numbers, which its operator[] returns.
+  template <class Row>
+  std::vector<Row> rows(const std::string& name, std::size_t count) const {
+    constexpr std::size_t columns = sizeof(Row) / sizeof(double);
     const std::vector<double> values = file_.read(name, columns);
     expect(name, values.size() / columns, count);
-    std::vector<std::array<double, columns>> out(count);
+    std::vector<Row> out(count);
     for (std::size_t k = 0; k < values.size(); ++k) {
       check_size(name, "row", k / columns, values[k]);
       out[k / columns][k % columns] = values[k];
@@ -98,8 +100,8 @@ Bodies read_bodies(const Reader& in) {
   Bodies b;
   const auto n = static_cast<std::size_t>(in.file().shape("/bodies/position").first);
   if (n == 0) in.refuse("/bodies/position", "there must be at least one body");
-  b.position = in.rows<3>("/bodies/position", n);
-  b.orientation = in.rows<4>("/bodies/orientation", n);
+  b.position = in.rows<Point3>("/bodies/position", n);
+  b.orientation = in.rows<std::array<double, 4>>("/bodies/orientation", n);
   for (std::size_t k = 0; k < n; ++k) {
     auto& [w, x, y, z] = b.orientation[k];
     const double norm = std::sqrt(w * w + x * x + y * y + z * z);
@@ -110,29 +112,29 @@ Bodies read_bodies(const Reader& in) {
     if (std::abs(norm - 1) > 1e-15) b.orientation[k] = {w / norm, x / norm, y / norm, z / norm};
   }
   b.mass = in.scalars("/bodies/mass", n);
-  b.inertia = in.rows<3>("/bodies/inertia", n);
+  b.inertia = in.rows<Point3>("/bodies/inertia", n);
   for (std::size_t k = 0; k < n; ++k) {
-    for (const double moment : b.inertia[k]) in.check_positive("/bodies/inertia", "row", k, moment);
+    const auto& [i1, i2, i3] = b.inertia[k];
+    for (const double moment : {i1, i2, i3}) in.check_positive("/bodies/inertia", "row", k, moment);
   }
-  if (in.file().has("/bodies/velocity")) b.velocity = in.rows<3>("/bodies/velocity", n);
+  if (in.file().has("/bodies/velocity")) b.velocity = in.rows<Point3>("/bodies/velocity", n);
   if (in.file().has("/bodies/angular_velocity"))
-    b.angular_velocity = in.rows<3>("/bodies/angular_velocity", n);
+    b.angular_velocity = in.rows<Point3>("/bodies/angular_velocity", n);
   return b;
 }
 
 void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
   const std::size_t m = beams.bodies.size();
   beams.length = in.scalars("/beams/length", m);
-  beams.axis_y = in.rows<3>("/beams/axis_y", m);
+  beams.axis_y = in.rows<Point3>("/beams/axis_y", m);
   for (std::size_t k = 0; k < m; ++k) {
-    const Point3& a = item(bodies.position, beams.bodies[k][0]);
-    const Point3& b = item(bodies.position, beams.bodies[k][1]);
-    const Vec3<double> e{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const auto [a, b] = beams.bodies[k];
+    const Vec3<double> e = item(bodies.position, b) - item(bodies.position, a);
     const double distance = std::sqrt(dot(e, e));
     if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
       in.refuse("/beams/length", "row " + std::to_string(k) + " is " + text_of(beams.length[k]) +
                                      ", but its bodies are " + text_of(distance) + " m apart");
-    const Vec3<double> y{beams.axis_y[k][0], beams.axis_y[k][1], beams.axis_y[k][2]};
+    const Vec3<double>& y = beams.axis_y[k];
     const Vec3<double> normal = cross(e, y);
     if (std::abs(std::sqrt(dot(y, y)) - 1) > 1e-6 ||
         std::sqrt(dot(normal, normal)) < 1e-6 * distance)
@@ -199,9 +201,12 @@ void check_offsets(const Reader& in, const std::string& name,
     in.refuse(name, "must grow from 0 to " + std::to_string(end));
 }
 
-/// Checks that the faces of each body close and are counter-clockwise seen from outside, and, with
-/// `centred_at_origin`, that the centroid is the origin.
-void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
+/// Where the centroid of a body has to be in the frame of its vertices.
+enum class Centroid { at_origin, anywhere };
+
+/// Checks that the faces of each body close and are counter-clockwise seen from outside, and that
+/// the centroid is where it has to be.
+void check_solids(const Reader& in, const Shapes& s, Centroid centroid) {
   for (std::int32_t b = 0; b < s.bodies(); ++b) {
     const auto body = static_cast<std::size_t>(b);
     const std::string name = "body " + std::to_string(b);
@@ -221,18 +226,18 @@ void check_solids(const Reader& in, const Shapes& s, bool centred_at_origin) {
     if (!(p.volume > 0))
       in.refuse("/shapes/corners",
                 name + ": faces must be counter-clockwise seen from outside, around a volume > 0");
-    if (!centred_at_origin) continue;
+    if (centroid == Centroid::anywhere) continue;
     constexpr double centred = 1e-6;  // relative to the body's size
-    if (std::hypot(p.centroid[0], p.centroid[1], p.centroid[2]) > centred * std::cbrt(p.volume))
+    if (std::hypot(p.centroid.x, p.centroid.y, p.centroid.z) > centred * std::cbrt(p.volume))
       in.refuse("/shapes/vertices", name + ": the centroid must be the origin");
   }
 }
 
-Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin = true) {
+Shapes read_shapes(const Reader& in, std::size_t bodies, Centroid centroid) {
   Shapes s;
   if (!in.file().has("/shapes")) return s;
-  s.vertices = in.rows<3>("/shapes/vertices",
-                          static_cast<std::size_t>(in.file().shape("/shapes/vertices").first));
+  s.vertices = in.rows<Point3>("/shapes/vertices",
+                               static_cast<std::size_t>(in.file().shape("/shapes/vertices").first));
   s.corners = in.indices("/shapes/corners", s.vertices.size());
   s.corner_of = in.indices("/shapes/corner_of", s.corners.size() + 1);
   s.face_of = in.indices("/shapes/face_of", s.corner_of.size());
@@ -250,17 +255,13 @@ Shapes read_shapes(const Reader& in, std::size_t bodies, bool centred_at_origin 
                   "entry " + std::to_string(c) + " is not a vertex of body " + std::to_string(b));
     }
   }
-  check_solids(in, s, centred_at_origin);
+  check_solids(in, s, centroid);
   return s;
 }
 
 std::string quoted(const std::string& name) {
   const std::string text = shown(name);
   return text.starts_with('\'') ? text : "'" + text + "'";
-}
-
-std::span<const double> flat(const std::vector<Point3>& v) {
-  return {v.empty() ? nullptr : v[0].data(), 3 * v.size()};
 }
 
 }  // namespace
@@ -292,7 +293,7 @@ Lattice read_lattice(const std::string& file) {
   lattice.bodies = read_bodies(in);
   const auto n = static_cast<std::size_t>(lattice.bodies.size());
   lattice.beams = read_beams(in, lattice.bodies);
-  lattice.shapes = read_shapes(in, n);
+  lattice.shapes = read_shapes(in, n, Centroid::at_origin);
   if (in.file().has("/sets")) {
     for (const std::string& name : in.file().members("/sets")) {
       auto& set = lattice.sets[name] = in.indices("/sets/" + name, n);
@@ -308,7 +309,7 @@ Lattice read_lattice(const std::string& file) {
 
 Shapes read_polyhedron(const std::string& file, const std::string& key) {
   const Reader in(file, key);
-  Shapes shapes = read_shapes(in, 1, false);
+  Shapes shapes = read_shapes(in, 1, Centroid::anywhere);
   if (shapes.empty()) in.refuse("/shapes", "is not there");
   const double size = std::cbrt(volume_properties(shapes, 0).volume);
   constexpr double rounding = 1e-6;
@@ -320,14 +321,13 @@ Shapes read_polyhedron(const std::string& file, const std::string& key) {
 void write_lattice(const Lattice& lattice, const std::string& path) {
   Hdf5File file = Hdf5File::create(path);
   const Bodies& b = lattice.bodies;
-  file.write("/bodies/position", flat(b.position), 3);
+  file.write("/bodies/position", b.position);
   file.write("/bodies/orientation",
              std::span<const double>(b.orientation[0].data(), 4 * b.orientation.size()), 4);
   file.write("/bodies/mass", b.mass);
-  file.write("/bodies/inertia", flat(b.inertia), 3);
-  if (!b.velocity.empty()) file.write("/bodies/velocity", flat(b.velocity), 3);
-  if (!b.angular_velocity.empty())
-    file.write("/bodies/angular_velocity", flat(b.angular_velocity), 3);
+  file.write("/bodies/inertia", b.inertia);
+  if (!b.velocity.empty()) file.write("/bodies/velocity", b.velocity);
+  if (!b.angular_velocity.empty()) file.write("/bodies/angular_velocity", b.angular_velocity);
 
   const Beams& m = lattice.beams;
   if (m.size() > 0) {
@@ -342,7 +342,7 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
     file.write("/beams/shear_modulus", m.shear_modulus);
     file.write("/beams/shear_factor", m.shear_factor);
     if (!m.shear_factor_y.empty()) file.write("/beams/shear_factor_y", m.shear_factor_y);
-    file.write("/beams/axis_y", flat(m.axis_y), 3);
+    file.write("/beams/axis_y", m.axis_y);
     if (!m.width.empty()) file.write("/beams/width", m.width);
     if (!m.height.empty()) file.write("/beams/height", m.height);
   }
@@ -351,7 +351,7 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
   }
   if (!lattice.shapes.empty()) {
     const Shapes& s = lattice.shapes;
-    file.write("/shapes/vertices", flat(s.vertices), 3);
+    file.write("/shapes/vertices", s.vertices);
     file.write("/shapes/corners", s.corners);
     file.write("/shapes/corner_of", s.corner_of);
     file.write("/shapes/face_of", s.face_of);

@@ -67,7 +67,7 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
     j = item(renumbered, j);
     if (i > j) {
       std::swap(i, j);
-      for (double& component : lattice.beams.axis_y[m]) component = -component;
+      lattice.beams.axis_y[m] = -lattice.beams.axis_y[m];
     }
   }
   std::vector<std::int32_t> beams(lattice.beams.bodies.size());

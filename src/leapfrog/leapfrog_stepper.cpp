@@ -62,7 +62,7 @@ LeapfrogStepper::LeapfrogStepper(const Model<Spatial>& model) : model_(model), p
     const Point3& inertia = part_.bodies.inertia[b];
     const auto [w, x, y, z] = part_.bodies.orientation[b];
     const std::array<double, 8> all{
-        1 / model.inertial_mass()[b], 1 / inertia[0], 1 / inertia[1], 1 / inertia[2], w, x, y, z};
+        1 / model.inertial_mass()[b], 1 / inertia.x, 1 / inertia.y, 1 / inertia.z, w, x, y, z};
     for (std::size_t k = 0; k < all.size(); ++k)
       blocks_[slot / lanes].values[k][slot % lanes] = all[k];
     if (slot >= owned || model.prescribed()[b] == 0) continue;
@@ -80,8 +80,8 @@ void LeapfrogStepper::start(State<Spatial>& state, const std::vector<Point3>& ve
   for (std::int32_t body = 0; body < part_.owned; ++body) {
     const auto b = static_cast<std::size_t>(body);
     BodyMotion<double> m = read(state.record(b));
-    if (!velocity.empty()) m.v = {velocity[b][0], velocity[b][1], velocity[b][2]};
-    if (!spin.empty()) m.w = {spin[b][0], spin[b][1], spin[b][2]};
+    if (!velocity.empty()) m.v = velocity[b];
+    if (!spin.empty()) m.w = spin[b];
     const BodyConstants<double> c = constants(body);
     const Triad<double> axes = triad(product(m.q, c.axes));
     const Vec3<double> w = axes.to_local(m.w), inertia = inverse_of(c.inverse_inertia);
@@ -335,8 +335,7 @@ std::array<double, 6> LeapfrogStepper::momentum(const State<Spatial>& state,
     const double* f = wrenches.of(b);
     const Vec3<double> p =
         (1.0 / c.inverse_mass) * m.v + (0.5 * dt) * Vec3<double>{f[0], f[1], f[2]};
-    const Point3& x = part_.bodies.position[b];
-    const Vec3<double> at{x[0] + m.u.x, x[1] + m.u.y, x[2] + m.u.z};
+    const Vec3<double> at = part_.bodies.position[b] + m.u;
     const Vec3<double> l = m.momentum + (0.5 * dt) * Vec3<double>{f[3], f[4], f[5]} + cross(at, p);
     const std::array<double, 6> mine{p.x, p.y, p.z, l.x, l.y, l.z};
     for (std::size_t k = 0; k < 6; ++k) total[k] += mine[k];

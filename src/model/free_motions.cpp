@@ -58,7 +58,7 @@ class Piece {
  private:
   Eigen::Vector3d position(std::int32_t b) const {
     const Point3& x = item(lattice_.bodies.position, b);
-    return {x[0], x[1], x[2]};
+    return {x.x, x.y, x.z};
   }
   const Lattice& lattice_;
   std::vector<std::int32_t> bodies_;
@@ -175,10 +175,8 @@ void require_balance(const Model<Space>& model, const Lattice& lattice, const Fr
     const auto found = slot.find(item(free.piece, body));
     if (found == slot.end()) continue;
     const FreeMotion& motion = *first[found->second];
-    const Point3& x = item(lattice.bodies.position, body);
     const std::array<double, 6> w = components_of(wrenches, static_cast<std::size_t>(local));
-    const Vec3<double> arm{x[0] - motion.centre[0], x[1] - motion.centre[1],
-                           x[2] - motion.centre[2]};
+    const Vec3<double> arm = item(lattice.bodies.position, body) - motion.centre;
     const Vec3<double> moment = cross(arm, Vec3<double>{w[0], w[1], w[2]});
     const std::array<double, 6> share{w[0],
                                       w[1],

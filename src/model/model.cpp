@@ -24,8 +24,6 @@ std::uint8_t bits_of_unknowns(std::uint8_t components) {
   return static_cast<std::uint8_t>(bits);
 }
 
-constexpr std::array<const char*, 6> component_names{"x", "y", "z", "rx", "ry", "rz"};
-
 /// Bodies of the boundary's set. \throws InputError for an unknown set
 const std::vector<std::int32_t>& set_of(const Boundary& boundary, const Lattice& lattice) {
   return lattice.set(boundary.set, "boundary: " + boundary.name + ": set");
@@ -41,7 +39,8 @@ void require_same_motion(const Boundary& a, const Boundary& b, std::size_t compo
     const auto &one = set_of(a, lattice), &other = set_of(b, lattice);
     std::set_intersection(one.begin(), one.end(), other.begin(), other.end(),
                           std::back_inserter(common));
-    throw InputError("boundary: " + b.name + ": prescribes " + component_names[component] + " of " +
+    throw InputError("boundary: " + b.name + ": prescribes " +
+                     std::string(component_names[component]) + " of " +
                      std::to_string(common.size()) + " bodies that boundary: " + a.name +
                      " prescribes differently");
   }

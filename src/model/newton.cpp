@@ -70,11 +70,10 @@ void attach_rigid_modes(const Model<Space>& model, std::span<const std::uint8_t>
     check(VecGetArrayWrite(mode, &values));
     for (std::int32_t body = 0; body < part.owned; ++body) {
       const auto b = static_cast<std::size_t>(body);
-      const Point3& p = part.bodies.position[b];
       const Vec3<double> axis{m % 3 == 0 ? 1.0 : 0.0, m % 3 == 1 ? 1.0 : 0.0,
                               m % 3 == 2 ? 1.0 : 0.0};
       const Vec3<double> turn = m < 3 ? Vec3<double>{0, 0, 0} : axis;
-      const Vec3<double> u = m < 3 ? axis : cross(axis, Vec3<double>{p[0], p[1], p[2]});
+      const Vec3<double> u = m < 3 ? axis : cross(axis, part.bodies.position[b]);
       const double l = model.length_scale();
       const std::array<double, 6> entries{u.x, u.y, u.z, l * turn.x, l * turn.y, l * turn.z};
       for (std::size_t a = 0; a < n; ++a) {

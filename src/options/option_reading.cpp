@@ -22,7 +22,7 @@ std::string shortest(double value) {
 
 Options::Reading Options::read(std::string_view key, std::string_view name) {
   const OptionSpec& line = spec(key);
-  Reading reading{line, option_name(key, name), option_label(key, name), {}, {}, false};
+  Reading reading{.spec = line, .option = option_name(key, name), .label = option_label(key, name)};
   if (!read_.try_emplace(reading.option).second)
     throw std::logic_error("option read twice: " + reading.option);
   if (const auto found = given_.find(reading.option); found != given_.end()) {

@@ -149,7 +149,7 @@ std::vector<std::string_view> choices_of(std::string_view allowed) {
 
 Bounds bounds_of(std::string_view allowed) {
   constexpr double none = std::numeric_limits<double>::infinity();
-  Bounds bounds{-none, none, false, false};
+  Bounds bounds{.least = -none, .most = none};
   for (std::string_view rest = allowed; !rest.empty();) {
     const auto comma = rest.find(", ");
     const std::string_view term = rest.substr(0, comma);

@@ -37,7 +37,7 @@ std::vector<std::string_view> choices_of(std::string_view allowed);
 /// The bounds of OptionSpec::allowed for numbers; infinite if absent.
 struct Bounds {
   double least, most;
-  bool above_least, below_most;  ///< whether the bound itself is excluded
+  bool above_least = false, below_most = false;  ///< whether the bound itself is excluded
 };
 Bounds bounds_of(std::string_view allowed);
 /// Whether a number lies in the range `allowed` of an OptionSpec.

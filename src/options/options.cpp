@@ -20,8 +20,8 @@ GivenOptions UserOptions::merged() const {
   return all;
 }
 
-Options::Options(std::span<const OptionSpec> table, const UserOptions& user, bool collect_idle)
-    : table_(table), collect_idle_(collect_idle) {
+Options::Options(std::span<const OptionSpec> table, const UserOptions& user, Idle idle)
+    : table_(table), collect_idle_(idle == Idle::kept) {
   index_table();
   sort_given(user.merged());
   collect_idle_ = collect_idle_ || has_command_line();

@@ -203,9 +203,10 @@ class SceneParser {
         read_map(name + "_", depth + 1);
       } else {
         Value value = read_value(event, name);
-        options_[name] = {std::move(value.text), source_,
-                          path_.empty() ? "" : path_ + ", line " + std::to_string(line),
-                          value.is_list};
+        options_[name] = {.value = std::move(value.text),
+                          .source = source_,
+                          .place = path_.empty() ? "" : path_ + ", line " + std::to_string(line),
+                          .is_list = value.is_list};
       }
     }
   }
@@ -231,7 +232,7 @@ class SceneParser {
       const bool null = event.is_plain() && (value.text == "~" || lower(value.text) == "null");
       if (null) value.text.clear();
     } else {
-      value = {read_list(key), true};
+      value = {.text = read_list(key), .is_list = true};
     }
     if (const std::string anchor = event.anchor(); !anchor.empty()) anchors_[anchor] = value;
     return value;

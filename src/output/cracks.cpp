@@ -98,18 +98,18 @@ void CrackLog::write(const std::vector<Break>& breaks) const {
   column("/energy", [](const Break& b) { return b.energy; });
   column("/nominal_energy", [](const Break& b) { return b.nominal; });
   std::vector<std::int32_t> beam, bodies, brittle;
-  std::vector<double> place;
+  std::vector<Point3> place;
   for (const Break& b : breaks) {
     const auto [i, j] = item(lattice_.beams.bodies, b.beam);
     beam.push_back(b.beam);
     bodies.insert(bodies.end(), {i, j});
     brittle.push_back(b.brittle ? 1 : 0);
-    place.insert(place.end(), b.place.begin(), b.place.end());
+    place.push_back(b.place);
   }
   file.write("/beam", beam);
   file.write("/bodies", bodies, 2);
   file.write("/brittle", brittle);
-  file.write("/place", place, 3);
+  file.write("/place", place);
   file.write("/fragments/of_body", fragment_of_);
   file.write("/fragments/bodies", bodies_);
   file.write("/fragments/mass", mass_);

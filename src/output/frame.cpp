@@ -12,10 +12,6 @@ namespace {
 
 constexpr int xdmf_polygon = 3;
 
-std::span<const double> numbers(const std::vector<Point3>& rows) {
-  return {rows.empty() ? nullptr : rows[0].data(), 3 * rows.size()};
-}
-
 }  // namespace
 
 FrameWriter::FrameWriter(const Lattice& lattice) : lattice_(lattice) {
@@ -103,15 +99,14 @@ void FrameWriter::write_bodies(Hdf5File& file, const std::string& group, const F
                                     ++body;
                                   axes = axes_of(body, frame);
                                 }
-                                const Point3& r = s.vertices[v];
-                                const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
+                                const Vec3<double> p = axes.to_world(s.vertices[v]);
                                 values[k] = centre(body, 0) + p.x;
                                 values[k + 1] = centre(body, 1) + p.y;
                                 values[k + 2] = centre(body, 2) + p.z;
                               }
                             });
-  file.write(group + "/bodies_displacement", numbers(frame.displacement), 3);
-  file.write(group + "/bodies_rotation", numbers(frame.rotation_vector), 3);
+  file.write(group + "/bodies_displacement", frame.displacement);
+  file.write(group + "/bodies_rotation", frame.rotation_vector);
   write_on_faces(file, group + "/face_displacement", frame.displacement);
   write_on_faces(file, group + "/face_rotation", frame.rotation_vector);
 }
@@ -130,7 +125,8 @@ void FrameWriter::write_on_faces(Hdf5File& file, const std::string& name,
                              for (std::size_t k = 0; k < values.size(); k += 3) {
                                body = body_of_face(first++, body);
                                const Point3& row = item(of_bodies, body);
-                               std::copy(row.begin(), row.end(), &values[k]);
+                               for (std::size_t n = 0; n < 3; ++n)
+                                 values[k + n] = static_cast<float>(row[n]);
                              }
                            });
 }
@@ -184,23 +180,19 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
   for (std::size_t m = 0; m < frame.damage.size(); ++m) {
     if (frame.damage[m] < 1) continue;
     const auto [i, j] = beams.bodies[m];
-    const auto at = [&](std::int32_t b) {
-      const Point3& x = item(lattice_.bodies.position, b);
-      return Vec3<double>{x[0], x[1], x[2]};
-    };
+    const auto at = [&](std::int32_t b) { return item(lattice_.bodies.position, b); };
     const Vec3<double> chord = at(j) - at(i);
     const Vec3<double> e1 = (1 / std::sqrt(dot(chord, chord))) * chord;
-    Vec3<double> e2{beams.axis_y[m][0], beams.axis_y[m][1], beams.axis_y[m][2]};
+    Vec3<double> e2 = beams.axis_y[m];
     e2 = e2 - dot(e2, e1) * e1;
     e2 = (1 / std::sqrt(dot(e2, e2))) * e2;
     const Vec3<double> y = (0.5 * beams.width[m]) * e2, z = (0.5 * beams.height[m]) * cross(e1, e2);
     for (const std::int32_t b : {i, j}) {
-      const Point3& u = item(frame.displacement, b);
       const auto& q = item(frame.rotation, b);
       const Vec3<double> middle = 0.5 * (at(i) + at(j)) - at(b);
       for (const Vec3<double>& corner :
            {middle - y - z, middle + y - z, middle + y + z, middle - y + z}) {
-        const Vec3<double> p = at(b) + Vec3<double>{u[0], u[1], u[2]} +
+        const Vec3<double> p = at(b) + item(frame.displacement, b) +
                                rotate(normalised(Quat<double>{q[0], q[1], q[2], q[3]}), corner);
         corners.push_back(static_cast<std::int32_t>(points.size() / 3));
         points.insert(points.end(), {p.x, p.y, p.z});

@@ -86,10 +86,8 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
   const Timed timed(Event::output);
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
-    impl_->loads.push_back({placed.load.name,
-                            impl_->part.localise(placed.bodies),
-                            placed.bodies.size(),
-                            {placed.arm[0], placed.arm[1], placed.arm[2]}});
+    impl_->loads.push_back(
+        {placed.load.name, impl_->part.localise(placed.bodies), placed.bodies.size(), placed.arm});
   for (const PlacedBoundary& placed : model.boundaries()) {
     const auto& set = lattice.set(placed.boundary.set, "boundary");
     Point3 mean{};
@@ -168,16 +166,11 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
       if (placed.boundary.fixed[4]) moment.y = -w[4];
       if (placed.boundary.fixed[5]) moment.z = -w[5];
       const Vec3<double> u = displacement(accepted.state, b);
-      const Point3& x = part.bodies.position[b];
-      moment = moment +
-               cross(Vec3<double>{x[0] + u.x - mean[0], x[1] + u.y - mean[1], x[2] + u.z - mean[2]},
-                     force);
-      mine.force = {mine.force[0] + force.x, mine.force[1] + force.y, mine.force[2] + force.z};
-      mine.moment = {mine.moment[0] + moment.x, mine.moment[1] + moment.y,
-                     mine.moment[2] + moment.z};
+      moment = moment + cross(part.bodies.position[b] + u - mean, force);
+      mine.force = mine.force + force;
+      mine.moment = mine.moment + moment;
       const double share = 1.0 / static_cast<double>(count);
-      mine.displacement = {mine.displacement[0] + share * u.x, mine.displacement[1] + share * u.y,
-                           mine.displacement[2] + share * u.z};
+      mine.displacement = mine.displacement + share * u;
     }
     s.boundaries[placed.boundary.name] = {sum_over_ranks(mine.force, part.comm),
                                           sum_over_ranks(mine.moment, part.comm),
@@ -193,7 +186,7 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
       const Vec3<double> turn = linear ? cross(linear_rotation(accepted.state, b), load.arm)
                                        : rotate(rotation(accepted.state, b), load.arm) - load.arm;
       const Vec3<double> u = displacement(accepted.state, b) + turn;
-      mine = {mine[0] + share * u.x, mine[1] + share * u.y, mine[2] + share * u.z};
+      mine = mine + share * u;
     }
     s.loads[load.name] = sum_over_ranks(mine, part.comm);
   }
@@ -204,10 +197,10 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
 }
 
 std::vector<std::pair<std::string, double>> columns_of(const Sample& sample) {
-  constexpr std::array axes{"_x", "_y", "_z"};
   std::vector<std::pair<std::string, double>> columns;
   const auto add = [&](const std::string& name, const Point3& p) {
-    for (std::size_t k = 0; k < axes.size(); ++k) columns.emplace_back(name + axes[k], p[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      columns.emplace_back(name + "_" + std::string(component_names[k]), p[k]);
   };
   for (const auto& [name, b] : sample.boundaries) {
     add(name + "_force", b.force);
@@ -276,13 +269,11 @@ void Output<Space>::Impl::write_frame(const State<Space>& state) {
   std::vector<std::array<double, 4>> q;
   u.reserve(owned), vector.reserve(owned), q.reserve(owned);
   for (std::size_t b = 0; b < owned; ++b) {
-    const Vec3<double> place = displacement(state, b);
     const Quat<double> now = rotation(state, b);
-    const Vec3<double> t =
-        model.kinematics() == Kinematics::linear ? linear_rotation(state, b) : log_rotation(now);
-    u.push_back({place.x, place.y, place.z});
+    u.push_back(displacement(state, b));
     q.push_back({now.w, now.x, now.y, now.z});
-    vector.push_back({t.x, t.y, t.z});
+    vector.push_back(model.kinematics() == Kinematics::linear ? linear_rotation(state, b)
+                                                              : log_rotation(now));
   }
   Frame frame{state.time, bodies(std::move(u)), bodies(std::move(q)), bodies(std::move(vector)), {},
               {}};

@@ -9,7 +9,7 @@ namespace {
 void flatten(const Sample& sample, std::string& names, std::vector<double>& values) {
   names.clear();
   values = {sample.time};
-  const auto add = [&](const Point3& p) { values.insert(values.end(), p.begin(), p.end()); };
+  const auto add = [&](const Point3& p) { values.insert(values.end(), {p.x, p.y, p.z}); };
   for (const auto& [name, b] : sample.boundaries) {
     names += "boundary " + name + "\n";
     add(b.force), add(b.moment), add(b.displacement);
@@ -28,11 +28,7 @@ Sample assemble(const std::string& names, const std::vector<double>& values) {
   Sample sample;
   std::size_t at = 0;
   const auto next = [&] { return at < values.size() ? values[at++] : 0.0; };
-  const auto point = [&] {
-    Point3 p{};
-    for (double& x : p) x = next();
-    return p;
-  };
+  const auto point = [&] { return Point3{next(), next(), next()}; };  // braces: in this order
   sample.time = next();
   std::istringstream words(names);
   for (std::string kind, name; words >> kind >> name;) {

@@ -226,7 +226,7 @@ void Checkpoints::save(const std::function<void(Archive&)>& persist,
   options_.prepare(columns);
   std::optional<Hdf5File> file;
   on_root(part_.comm, [&] { file.emplace(Hdf5File::create(options_.file, seal_size)); });
-  Archive memory(part_, file ? &*file : nullptr, false);
+  Archive memory(part_, file ? &*file : nullptr, Transfer::save);
   head(memory);
   persist(memory);
   options_.others(memory);
@@ -247,7 +247,7 @@ void Checkpoints::load(const std::function<void(Archive&)>& persist) {
   std::optional<Hdf5File> file;
   try {
     on_root(part_.comm, [&] { file.emplace(open_whole(options_.restart)); });
-    Archive memory(part_, file ? &*file : nullptr, true, options_.restart);
+    Archive memory(part_, file ? &*file : nullptr, Transfer::load, options_.restart);
     head(memory);
     persist(memory);
     options_.others(memory);

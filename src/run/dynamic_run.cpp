@@ -416,7 +416,12 @@ bool DynamicRun<Space>::sample(bool last) {
            text(options_.energy_limit) + ")";
     return false;
   }
-  observer_({state_, wrenches_, done_, ledger_.columns(), last, reported});
+  observer_({.state = state_,
+             .wrenches = wrenches_,
+             .step = done_,
+             .columns = ledger_.columns(),
+             .last = last,
+             .forces = reported});
   sampled_ = done_;
   next_sample_ = std::numeric_limits<double>::infinity();
   for (const double every : sample_every_) {

@@ -117,10 +117,16 @@ void check_inputs(const FolderWish& wish) {
 
 constexpr std::string_view unknown = "unknown";
 
+/// Returns the JSON of a file; a value of no type if the file holds none.
+Json json_in(std::istream& file) {
+  constexpr bool throwing = false;
+  return Json::parse(file, nullptr, throwing);
+}
+
 std::string status_in(const fs::path& dir) {
   std::ifstream file(dir / "summary.json");
   if (!file) return {};
-  const Json summary = Json::parse(file, nullptr, false);
+  const Json summary = json_in(file);
   if (!summary.is_object() || !summary.contains("status") || !summary["status"].is_string())
     return std::string(unknown);
   return summary["status"].get<std::string>();
@@ -214,7 +220,7 @@ RunFolder::~RunFolder() = default;
 std::string RunFolder::status(const std::string& dir) { return status_in(dir); }
 double RunFolder::time(const std::string& dir) {
   std::ifstream file(dir + "/summary.json");
-  const Json summary = Json::parse(file, nullptr, false);
+  const Json summary = json_in(file);
   if (!summary.is_object() || !summary.contains("time") || !summary["time"].is_number()) return 0;
   return summary["time"].get<double>();
 }

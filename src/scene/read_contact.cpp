@@ -8,14 +8,12 @@
 namespace floe {
 namespace {
 
-Vec3<double> vector(const Point3& p) { return {p[0], p[1], p[2]}; }
-
 using Inputs = std::vector<std::pair<std::string, std::string>>;
 
 Obstacle read_shape(Options& options, const std::string& name, Inputs& inputs) {
   enum class Shape { halfspace, box, cone, cylinder, file };
   const auto of = [&](const char* key) {
-    return vector(options.numbers<3>("obstacle: NAME: " + std::string(key), name));
+    return options.vector("obstacle: NAME: " + std::string(key), name);
   };
   const auto shape = options.choice<Shape>("obstacle: NAME: shape", name);
   if (shape == Shape::halfspace) {
@@ -49,18 +47,18 @@ ObstacleMotion read_motion(Options& options, const std::string& name, bool half_
     return options.given("obstacle: NAME: " + std::string(key), name);
   };
   ObstacleMotion motion;
-  motion.velocity = vector(options.numbers<3>("obstacle: NAME: velocity", name));
+  motion.velocity = options.vector("obstacle: NAME: velocity", name);
   if (half_space)
     options.refuse_one("obstacle: NAME: angular_velocity", name,
                        "a halfspace cannot turn; box, cone, cylinder and file can");
   if (!half_space)
-    motion.angular_velocity = vector(options.numbers<3>("obstacle: NAME: angular_velocity", name));
+    motion.angular_velocity = options.vector("obstacle: NAME: angular_velocity", name);
   if (given("amplitude") != given("frequency"))
     throw InputError("obstacle: " + name +
                      (given("amplitude") ? ": amplitude [m] needs frequency [Hz]"
                                          : ": frequency [Hz] needs amplitude [m]"));
   if (given("amplitude")) {
-    motion.amplitude = vector(options.numbers<3>("obstacle: NAME: amplitude", name));
+    motion.amplitude = options.vector("obstacle: NAME: amplitude", name);
     motion.frequency = options.number("obstacle: NAME: frequency", name);
   }
   // Without a motion the key is not read, and so it is refused.

@@ -99,7 +99,7 @@ void read_water(Options& options, Scene& scene) {
   if (scene.forces.drag) {
     scene.drag.linear = options.number("water: drag_linear");
     scene.drag.coefficient = options.number("water: drag_coefficient");
-    scene.drag.current = options.numbers<3>("water: current");
+    scene.drag.current = options.vector("water: current");
     if (scene.drag.linear == 0 && scene.drag.coefficient == 0)
       throw InputError("forces: drag needs 'water: drag_linear' or 'water: drag_coefficient' > 0");
   }

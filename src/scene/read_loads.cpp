@@ -9,8 +9,6 @@
 namespace floe {
 namespace {
 
-constexpr std::array<std::string_view, 6> components{"x", "y", "z", "rx", "ry", "rz"};
-
 /// Refuses values of components that are not fixed, which would be ignored in silence.
 void check_fixed(Options& options, const Boundary& boundary, const std::string& key, Point3& values,
                  std::size_t first) {
@@ -18,7 +16,7 @@ void check_fixed(Options& options, const Boundary& boundary, const std::string& 
     if (values[k] == 0 || boundary.fixed[first + k]) continue;
     options.refuse_part(
         "boundary: NAME: " + key, boundary.name, "boundary: " + boundary.name + ": " + key,
-        text_of(values[k]) + " has no effect: '" + std::string(components[first + k]) +
+        text_of(values[k]) + " has no effect: '" + std::string(component_names[first + k]) +
             "' is not in 'boundary: " + boundary.name + ": fix'");
     values[k] = 0;
   }
@@ -29,7 +27,8 @@ Boundary read_boundary(Options& options, const std::string& name) {
   boundary.name = name;
   boundary.set = options.text("boundary: NAME: set", name);
   for (const std::string& word : options.words("boundary: NAME: fix", name)) {
-    const auto at = std::find(components.begin(), components.end(), word) - components.begin();
+    const auto at =
+        std::find(component_names.begin(), component_names.end(), word) - component_names.begin();
     item(boundary.fixed, at) = true;
   }
   if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))
@@ -40,13 +39,13 @@ Boundary read_boundary(Options& options, const std::string& name) {
       options.one_of(displacement, velocity, name,
                      "boundary: " + name + ": give either velocity or displacement, not both");
   if (given == displacement) {
-    boundary.displacement = options.numbers<3>(displacement, name);
+    boundary.displacement = options.vector(displacement, name);
     check_fixed(options, boundary, "displacement", *boundary.displacement, 0);
   } else {
-    boundary.velocity = given == velocity ? options.numbers<3>(velocity, name) : Point3{};
+    boundary.velocity = given == velocity ? options.vector(velocity, name) : Point3{};
     check_fixed(options, boundary, "velocity", *boundary.velocity, 0);
   }
-  boundary.angular_velocity = options.numbers<3>("boundary: NAME: angular_velocity", name);
+  boundary.angular_velocity = options.vector("boundary: NAME: angular_velocity", name);
   check_fixed(options, boundary, "angular_velocity", boundary.angular_velocity, 3);
   boundary.ramp.seconds = options.number("boundary: NAME: ramp", name);
   return boundary;
@@ -70,8 +69,8 @@ Load read_load(Options& options, const std::string& name) {
   if (given.empty()) throw InputError(either + "neither is there");
   if (given == set) load.set = options.text(set, name);
   if (given == point) load.point = options.numbers<2>(point, name);
-  load.force = options.numbers<3>("load: NAME: force", name);
-  load.moment = options.numbers<3>("load: NAME: moment", name);
+  load.force = options.vector("load: NAME: force", name);
+  load.moment = options.vector("load: NAME: moment", name);
   load.ramp.seconds = options.number("load: NAME: ramp", name);
   constexpr Point3 nothing{};
   if (load.force == nothing && load.moment == nothing)

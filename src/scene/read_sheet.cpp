@@ -103,8 +103,9 @@ void read_regions_and_cuts(Options& options, Scene& scene) {
   const bool sheet_changed =
       options.section_on_command_line("sheet") || options.on_command_line("lattice_file");
   for (const std::string& name : options.names("cut")) {
-    Cut cut{name, options.numbers<2>("cut: NAME: from", name),
-            options.numbers<2>("cut: NAME: to", name), false};
+    Cut cut{.name = name,
+            .from = options.numbers<2>("cut: NAME: from", name),
+            .to = options.numbers<2>("cut: NAME: to", name)};
     cut.may_miss = sheet_changed && !options.on_command_line("cut: NAME: from", name) &&
                    !options.on_command_line("cut: NAME: to", name);
     if (cut.from == cut.to) throw InputError("cut: " + name + ": from and to are the same point");

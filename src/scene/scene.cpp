@@ -75,8 +75,8 @@ void read_dynamics(Options& options, Scene& scene) {
   }
   for (const std::string& name : options.names("initial")) {
     const Initial initial{name, options.text("initial: NAME: set", name),
-                          options.numbers<3>("initial: NAME: velocity", name),
-                          options.numbers<3>("initial: NAME: angular_velocity", name)};
+                          options.vector("initial: NAME: velocity", name),
+                          options.vector("initial: NAME: angular_velocity", name)};
     scene.initials.push_back(initial);
   }
 }
@@ -182,7 +182,8 @@ Scene read_all(Options& options, const std::string& path) {
 std::set<std::string> idle_without_command_line(const std::string& path, const UserOptions& user) {
   std::set<std::string> labels;
   try {
-    Options options(scene_keys(), {{}, user.scene, {}}, true);
+    Options options(scene_keys(), {.environment = {}, .scene = user.scene, .command_line = {}},
+                    Options::Idle::kept);
     try {
       (void)read_all(options, path);
     } catch (const InputError&) {  // the command line may correct it

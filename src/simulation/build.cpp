@@ -72,8 +72,8 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
     const Triad<double> axes = triad(Quat<double>{w, x, y, z});
     bool above = false, below = false;
     for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
-      const Point3& r = item(shapes.vertices, v);
-      const double height = lattice.bodies.position[b][2] + axes.to_world({r[0], r[1], r[2]}).z;
+      const double height =
+          lattice.bodies.position[b].z + axes.to_world(item(shapes.vertices, v)).z;
       above = above || height > 0;
       below = below || height < 0;
     }
@@ -140,7 +140,10 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
                               ObserverOf<Space> observer) {
   if (scene.integrator == Integrator::quasistatic)
     return make_quasistatic_run(model,
-                                {scene.time.end, scene.time.dt, scene.limit.steps, hooks.on_plan},
+                                {.end = scene.time.end,
+                                 .dt = scene.time.dt,
+                                 .most_steps = scene.limit.steps,
+                                 .on_plan = hooks.on_plan},
                                 std::move(observer), out_of_plane);
   ExplicitOptions options;
   options.end = scene.time.end;
@@ -151,18 +154,18 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
   options.fields = scene.output.fields;
   options.most_steps = scene.limit.steps;
   options.on_plan = hooks.on_plan;
-  options.checkpoint = {scene.check_only ? "" : checkpoint_file(scene),
-                        scene.checkpoint.every,
-                        scene.checkpoint.at_end,
-                        scene.output.dir + "/STOP",
-                        scene.checkpoint.restart,
-                        hooks.lattice_id,
-                        fingerprint(scene.obstacles),
-                        scene.options_yaml,
-                        scene.path,
-                        scene.checkpoint.wall_time,
-                        hooks.prepare,
-                        hooks.others};
+  options.checkpoint = {.file = scene.check_only ? "" : checkpoint_file(scene),
+                        .every = scene.checkpoint.every,
+                        .at_end = scene.checkpoint.at_end,
+                        .stop_file = scene.output.dir + "/STOP",
+                        .restart = scene.checkpoint.restart,
+                        .lattice = hooks.lattice_id,
+                        .obstacles = fingerprint(scene.obstacles),
+                        .options = scene.options_yaml,
+                        .scene = scene.path,
+                        .wall_time = scene.checkpoint.wall_time,
+                        .prepare = hooks.prepare,
+                        .others = hooks.others};
   if constexpr (std::is_same_v<Space, Spatial>) {
     if (scene.integrator == Integrator::implicit)
       return make_implicit_run(model, options, std::move(observer));
@@ -180,11 +183,11 @@ namespace {
 void check_point(const PlacedLoad& placed, const Lattice& lattice) {
   const auto body = static_cast<std::size_t>(placed.bodies.front());
   const Bodies& bodies = lattice.bodies;
-  const auto& inertia = bodies.inertia[body];
+  const Point3& inertia = bodies.inertia[body];
   // Largest distance over radius of gyration: a rod has 1.7, a cone 2.5.
   constexpr double widest = 4;
   double reach =
-      widest * std::sqrt(*std::max_element(inertia.begin(), inertia.end()) / bodies.mass[body]);
+      widest * std::sqrt(std::max({inertia.x, inertia.y, inertia.z}) / bodies.mass[body]);
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
     const auto& [a, b] = lattice.beams.bodies[m];
     if (a == placed.bodies.front() || b == placed.bodies.front())

@@ -43,7 +43,7 @@ bool turns_in_plane(const Bodies& bodies, std::int32_t body) {
   const Triad<double> axes = triad(Quat<double>{w, x, y, z});
   const Vec3<double> a = axes.to_local({0, 0, 1});
   const Point3& inertia = bodies.inertia[b];
-  const Vec3<double> l = axes.to_world({inertia[0] * a.x, inertia[1] * a.y, inertia[2] * a.z});
+  const Vec3<double> l = axes.to_world({inertia.x * a.x, inertia.y * a.y, inertia.z * a.z});
   return std::hypot(l.x, l.y) <= rounding * l.z;
 }
 

@@ -184,12 +184,17 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
   setting_.mesh.keep();
   setting_.mesh.keep = [] {};
   if (rank() == 0) packed_.unpack(setting_.lattice);  // other ranks need positions only
-  output_ = std::make_unique<Output<Space>>(
-      OutputOptions{scene_.output.dir, scene_.output.history, scene_.output.fields},
-      std::move(setting_.lattice), *model_, loads_, scene_.options_yaml,
-      restart_ ? &*restart_ : nullptr);
+  output_ = std::make_unique<Output<Space>>(OutputOptions{.dir = scene_.output.dir,
+                                                          .history = scene_.output.history,
+                                                          .fields = scene_.output.fields},
+                                            std::move(setting_.lattice), *model_, loads_,
+                                            scene_.options_yaml, restart_ ? &*restart_ : nullptr);
   if (first_) {
-    output_->accept({first_->state, first_->wrenches, 0, first_->columns, false, first_->forces});
+    output_->accept({.state = first_->state,
+                     .wrenches = first_->wrenches,
+                     .step = 0,
+                     .columns = first_->columns,
+                     .forces = first_->forces});
     show(0);
   }
   first_.reset();
@@ -257,8 +262,7 @@ std::vector<BodyMotion> RunningIn<Space>::bodies() const {
   if (state_ == nullptr) return all;
   const Part& part = model_->part();
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
-    const Point3& x = part.bodies.position[b];
-    all.push_back({part.global[b], Vec3<double>{x[0], x[1], x[2]} + displacement(*state_, b),
+    all.push_back({part.global[b], part.bodies.position[b] + displacement(*state_, b),
                    rotation(*state_, b), velocity(*state_, b), angular_velocity(*state_, b)});
   }
   return all;

@@ -106,7 +106,7 @@ class Drag final : public Force<Space>,
   Drag(const Part& part, const DragOptions& options)
       : part_(part),
         bodies_(part),
-        current_{options.current[0], options.current[1], options.current[2]},
+        current_(options.current),
         linear_(options.linear),
         coefficient_(0.5 * options.density * options.coefficient),
         quadratic_(options.coefficient > 0),
@@ -128,11 +128,10 @@ class Drag final : public Force<Space>,
       if (tangent.symmetric()) return false;
       for (std::size_t b = 0; b < forces_.size(); ++b) {
         const Vec3<double> per_area = factor(state, b) * speed(state, b);
-        const std::array<double, 3> f{per_area.x, per_area.y, per_area.z},
-            slope = bodies_.slope(state, b);
+        const std::array<double, 3> slope = bodies_.slope(state, b);
         Tangent<Spatial>::Block k{};
         for (std::size_t r = 0; r < 3; ++r) {
-          for (std::size_t c = 0; c < 3; ++c) k[r * 6 + 2 + c] = f[r] * slope[c];
+          for (std::size_t c = 0; c < 3; ++c) k[r * 6 + 2 + c] = per_area[r] * slope[c];
         }
         tangent.add_body(static_cast<std::int32_t>(b), k);
       }
@@ -145,14 +144,12 @@ class Drag final : public Force<Space>,
     constexpr std::size_t n = Space::unknowns;
     for (std::size_t b = 0; b < forces_.size(); ++b) {
       const Vec3<double> v = speed(state, b);
-      const std::array<double, 3> along{v.x, v.y, v.z};
       const double size = std::sqrt(dot(v, v)), area = bodies_.area(state, b);
       const double rise = size > 0 ? coefficient_ / size * area : 0;
       typename Tangent<Space>::Block c{};
       for (std::size_t r = 0; r < Space::translations; ++r) {
         c[r * n + r] = area * factor(state, b);
-        for (std::size_t k = 0; k < Space::translations; ++k)
-          c[r * n + k] += rise * along[r] * along[k];
+        for (std::size_t k = 0; k < Space::translations; ++k) c[r * n + k] += rise * v[r] * v[k];
       }
       tangent.add_body(static_cast<std::int32_t>(b), c);
     }

@@ -17,7 +17,7 @@ Immersion::Immersion(const Part& part) : part_(part) {
     double extent = 0;
     for (std::int32_t v = part.shapes.vertex_of[b]; v < part.shapes.vertex_of[b + 1]; ++v) {
       const Point3& r = item(part.shapes.vertices, v);
-      extent = std::max(extent, std::hypot(r[0], r[1], r[2]));
+      extent = std::max(extent, std::hypot(r.x, r.y, r.z));
     }
     extent_.push_back(extent);
   }
@@ -90,7 +90,7 @@ Submerged Immersion::of(const State<Spatial>& state, std::int32_t body) const {
 
   Submerged s;
   s.volume = p.volume;
-  s.moment = {p.moment.x, p.moment.y, p.moment.z};
+  s.moment = p.moment;
   // The point of the waterplane at (x, y) of the plan has the world coordinates p0 + p1 x + p2 y,
   // q0 + q1 x + q2 y from the centroid.
   const double p0 = e3.x * p.c0, p1 = e1.x - e3.x * p.sx, p2 = e2.x - e3.x * p.sy;
@@ -112,9 +112,9 @@ void Immersion::replace(const State<Spatial>& state, std::size_t block, std::siz
                         Lane& below) const {
   const Submerged s = of(state, static_cast<std::int32_t>(body_of(block, lane)));
   below.volume[lane] = s.volume;
-  below.moment.x[lane] = s.moment[0];
-  below.moment.y[lane] = s.moment[1];
-  below.moment.z[lane] = s.moment[2];
+  below.moment.x[lane] = s.moment.x;
+  below.moment.y[lane] = s.moment.y;
+  below.moment.z[lane] = s.moment.z;
 }
 
 double Immersion::plan_area(std::int32_t body) const {
@@ -130,8 +130,7 @@ double Immersion::plan_area(std::int32_t body) const {
     face.clear();
     for (auto c = static_cast<std::size_t>(shapes.corner_of[f]);
          c < static_cast<std::size_t>(shapes.corner_of[f + 1]); ++c) {
-      const Point3& r = item(shapes.vertices, shapes.corners[c]);
-      const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
+      const Vec3<double> p = axes.to_world(item(shapes.vertices, shapes.corners[c]));
       face.push_back({p.x, p.y});
     }
     twice += std::abs(plan_properties(face).area);
@@ -149,11 +148,9 @@ Submerged Immersion::clipped(std::int32_t body, const Triad<double>& axes, doubl
   const auto b = static_cast<std::size_t>(body);
   if (z >= extent_[b]) return {};
   if (z <= -extent_[b]) {
-    const auto& [x, y, c] = whole_[b].centroid;
-    const Vec3<double> moment = whole_[b].volume * axes.to_world({x, y, c});
     Submerged s;
     s.volume = whole_[b].volume;
-    s.moment = {moment.x, moment.y, moment.z};
+    s.moment = whole_[b].volume * axes.to_world(whole_[b].centroid);
     return s;
   }
   return clipped_polyhedron(body, axes, z);
@@ -164,11 +161,8 @@ Submerged Immersion::clipped_polyhedron(std::int32_t body, const Triad<double>& 
   const auto b = static_cast<std::size_t>(body);
   const Shapes& shapes = part_.shapes;
   placed_.clear();
-  for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v) {
-    const Point3& r = item(shapes.vertices, v);
-    const Vec3<double> p = axes.to_world({r[0], r[1], r[2]});
-    placed_.push_back({p.x, p.y, p.z});
-  }
+  for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v)
+    placed_.push_back(axes.to_world(item(shapes.vertices, v)));
   return submerged(shapes, body, placed_, -z);
 }
 

@@ -94,7 +94,7 @@ TEST(ContactOnRanks, RestartGoesOnToTheLastBit) {
   {
     std::optional<Hdf5File> out;
     if (rank(PETSC_COMM_WORLD) == 0) out.emplace(Hdf5File::create(file));
-    Archive memory(part, out ? &*out : nullptr, false);
+    Archive memory(part, out ? &*out : nullptr, Transfer::save);
     through.persist(memory);
     memory.enter("contact");
     contact(through).persist(memory);
@@ -104,7 +104,7 @@ TEST(ContactOnRanks, RestartGoesOnToTheLastBit) {
   {
     std::optional<Hdf5File> in;
     if (rank(PETSC_COMM_WORLD) == 0) in.emplace(Hdf5File::open(file));
-    Archive memory(part, in ? &*in : nullptr, true);
+    Archive memory(part, in ? &*in : nullptr, Transfer::load);
     resumed.persist(memory);
     memory.enter("contact");
     contact(resumed).persist(memory);

@@ -15,12 +15,12 @@ inline void append_block_body(Lattice& lattice, const Vec3<double>& at, const Qu
                               double mass, const Point3& inertia, const Vec3<double>& velocity,
                               const Vec3<double>& spin) {
   Bodies& b = lattice.bodies;
-  b.position.push_back({at.x, at.y, at.z});
+  b.position.push_back(at);
   b.orientation.push_back({q.w, q.x, q.y, q.z});
   b.mass.push_back(mass);
   b.inertia.push_back(inertia);
-  b.velocity.push_back({velocity.x, velocity.y, velocity.z});
-  b.angular_velocity.push_back({spin.x, spin.y, spin.z});
+  b.velocity.push_back(velocity);
+  b.angular_velocity.push_back(spin);
   lattice.sets["all"].push_back(b.size() - 1);
 }
 
@@ -53,7 +53,7 @@ inline void append_stone(Lattice& lattice, Random& random, const Vec3<double>& a
   for (auto v = static_cast<std::size_t>(shapes.vertex_of[static_cast<std::size_t>(body)]);
        v < shapes.vertices.size(); ++v) {
     Point3& r = shapes.vertices[v];
-    const Eigen::Vector3d turned = axes.transpose() * Eigen::Vector3d(r[0], r[1], r[2]);
+    const Eigen::Vector3d turned = axes.transpose() * Eigen::Vector3d(r.x, r.y, r.z);
     r = {turned[0], turned[1], turned[2]};
   }
   const Eigen::Vector3d moments = density * solver.eigenvalues();

@@ -16,8 +16,8 @@ inline Lattice flying_bar(int elements, double bending_velocity) {
   give_mass(lattice, section, 1.0);
   const Vec3<double> spin{0.4, -1.0, 2.5}, flight{0.7, -0.3, 0.5};
   for (const Point3& x : lattice.bodies.position) {
-    const double s = 2 * x[0] / length - 1;  // -1 to 1
-    const Vec3<double> arm{x[0] - 0.5 * length, x[1], x[2]};
+    const double s = 2 * x.x / length - 1;  // -1 to 1
+    const Vec3<double> arm{x.x - 0.5 * length, x.y, x.z};
     const Vec3<double> v = flight + cross(spin, arm);
     // As the first bending mode of a free bar, roughly: s^2 - 1/3 has no momentum.
     const double bend = bending_velocity * (s * s - 1.0 / 3), slope = bending_velocity * 4 * s;

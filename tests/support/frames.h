@@ -55,7 +55,7 @@ inline Lattice straight_frame(double length, int elements, const FrameSection& s
   std::vector<Point3> points;
   for (int b = 0; b <= elements; ++b) {
     const double s = length * b / elements;
-    points.push_back({s * direction[0], s * direction[1], s * direction[2]});
+    points.push_back(s * direction);
   }
   return frame(points, section, std::vector<Point3>(static_cast<std::size_t>(elements), axis_y));
 }

@@ -26,8 +26,8 @@ inline Lattice frame(const std::vector<Point3>& places,
   }
   Beams& b = f.beams;
   for (const auto& [i, j] : pairs) {
-    const Point3 &a = places[static_cast<std::size_t>(i)], &c = places[static_cast<std::size_t>(j)];
-    const Vec3<double> e{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+    const Vec3<double> e =
+        places[static_cast<std::size_t>(j)] - places[static_cast<std::size_t>(i)];
     const double flat = std::hypot(e.x, e.y);
     b.bodies.push_back({i, j});
     b.area.push_back(0.5), b.inertia_y.push_back(0.04), b.inertia_z.push_back(0.01);

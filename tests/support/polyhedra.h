@@ -96,7 +96,7 @@ inline void centre_last(Shapes& shapes) {
   const Point3 c = volume_properties(shapes, b).centroid;
   for (auto v = static_cast<std::size_t>(shapes.vertex_of[static_cast<std::size_t>(b)]);
        v < shapes.vertices.size(); ++v)
-    for (std::size_t k = 0; k < 3; ++k) shapes.vertices[v][k] -= c[k];
+    shapes.vertices[v] = shapes.vertices[v] - c;
 }
 
 /// Vertices of a body, turned, then moved.
@@ -104,10 +104,8 @@ inline std::vector<Vec3<double>> placed(const Shapes& shapes, std::int32_t body,
                                         const Quat<double>& q, const Vec3<double>& x) {
   std::vector<Vec3<double>> p;
   for (std::int32_t v = shapes.vertex_of[static_cast<std::size_t>(body)];
-       v < shapes.vertex_of[static_cast<std::size_t>(body) + 1]; ++v) {
-    const Point3& r = shapes.vertices[static_cast<std::size_t>(v)];
-    p.push_back(x + rotate(q, {r[0], r[1], r[2]}));
-  }
+       v < shapes.vertex_of[static_cast<std::size_t>(body) + 1]; ++v)
+    p.push_back(x + rotate(q, shapes.vertices[static_cast<std::size_t>(v)]));
   return p;
 }
 

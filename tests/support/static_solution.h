@@ -84,8 +84,7 @@ inline Vec3<double> displacement_of_load(const StaticSolution& s, const State<Sp
                                          std::size_t k = 0) {
   const PlacedLoad& load = s.loads[k];
   const auto b = static_cast<std::size_t>(load.bodies[0]);
-  const Vec3<double> arm{load.arm[0], load.arm[1], load.arm[2]};
-  return displacement(state, b) + (rotate(rotation(state, b), arm) - arm);
+  return displacement(state, b) + (rotate(rotation(state, b), load.arm) - load.arm);
 }
 
 inline std::string name_of(Shear shear) {

@@ -60,9 +60,10 @@ TEST_P(Dashpots, FlatSheetAndTheSameStandingAskewHaveTheSameForces) {
   const Lattice flat = test::sheet(6, 5, 1);
   Lattice askew = flat;
   const Quat<double> turn = exp_rotation({0.7, -0.3, 1.2});
-  const auto turned = [&](Point3& x) {
-    const Vec3<double> t = rotate(turn, {x[0], x[1], x[2]});
-    x = {t.x, t.y, t.z};
+  const auto turned = [&](Point3& x) { x = rotate(turn, x); };
+  const auto turn_numbers = [&](double* of) {
+    const Point3 x = rotate(turn, {of[0], of[1], of[2]});
+    of[0] = x.x, of[1] = x.y, of[2] = x.z;
   };
   std::for_each(askew.bodies.position.begin(), askew.bodies.position.end(), turned);
   std::for_each(askew.beams.axis_y.begin(), askew.beams.axis_y.end(), turned);
@@ -78,11 +79,8 @@ TEST_P(Dashpots, FlatSheetAndTheSameStandingAskewHaveTheSameForces) {
     for (std::size_t b = 0; turn_state && b < static_cast<std::size_t>(part.local); ++b) {
       double* r = state.record(b);
       for (double* v :
-           {r, r + Spatial::rotation + 1, r + Spatial::velocity, r + Spatial::angular_velocity}) {
-        Point3 x{v[0], v[1], v[2]};
-        turned(x);
-        std::copy(x.begin(), x.end(), v);
-      }
+           {r, r + Spatial::rotation + 1, r + Spatial::velocity, r + Spatial::angular_velocity})
+        turn_numbers(v);
     }
     Wrenches<Spatial> w(static_cast<std::size_t>(part.local));
     make_beam_force<Spatial>(part, options())->add(state, w);
@@ -91,12 +89,7 @@ TEST_P(Dashpots, FlatSheetAndTheSameStandingAskewHaveTheSameForces) {
   Wrenches<Spatial> expected = wrenches(flat, false), seen = wrenches(askew, true);
   double size = 0, difference = 0;
   for (std::size_t k = 0; k < expected.values.size(); k += Spatial::wrench) {
-    for (const std::size_t first : {k, k + 3}) {
-      double* w = expected.values.data() + first;
-      Point3 x{w[0], w[1], w[2]};
-      turned(x);
-      std::copy(x.begin(), x.end(), w);
-    }
+    for (const std::size_t first : {k, k + 3}) turn_numbers(expected.values.data() + first);
     for (std::size_t a = k; a < k + 6; ++a) {
       size = std::max(size, std::abs(expected.values[a]));
       difference = std::max(difference, std::abs(seen.values[a] - expected.values[a]));
@@ -122,9 +115,8 @@ TEST_P(Dashpots, TakePowerAndBalanceForcesAndMoments) {
       const double* v = state.record(b) + Spatial::velocity;
       for (std::size_t k = 0; k < 6; ++k) power += f[k] * v[k];
       const Vec3<double> mine{f[0], f[1], f[2]};
-      const Point3& x = part.bodies.position[b];
       const Vec3<double> u = linear ? Vec3<double>{0, 0, 0} : displacement(state, b);
-      const Vec3<double> at{x[0] + u.x, x[1] + u.y, x[2] + u.z};
+      const Vec3<double> at = part.bodies.position[b] + u;
       force = force + mine;
       moment = moment + Vec3<double>{f[3], f[4], f[5]} + cross(at, mine);
       size += std::sqrt(dot(mine, mine));
@@ -175,8 +167,7 @@ TEST_P(Dashpots, DoNotSeeRigidMotion) {
   const Vec3<double> v = random.vector(1), w = random.vector(1), t = random.vector(3);
   State<Spatial> state(static_cast<std::size_t>(part.local));
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
-    const Point3& p = part.bodies.position[b];
-    const Vec3<double> x{p[0], p[1], p[2]}, at = rotate(q, x) + t, u = at - x;
+    const Vec3<double> x = part.bodies.position[b], at = rotate(q, x) + t, u = at - x;
     const Vec3<double> speed = v + cross(w, at);
     double* r = state.record(b);
     r[0] = u.x, r[1] = u.y, r[2] = u.z;

@@ -140,7 +140,7 @@ TEST(LatticeRatios, RegularAndRandomCells) {
   EXPECT_GT(ratios.irregularity, 0.1);                                        // 20 iterations
   EXPECT_LT(ratios.irregularity, 0.25);
   // Lengths and moduli have units, ratios have none.
-  for (Point3& x : s.bodies.position) x = {1000 * x[0], 1000 * x[1], 1000 * x[2]};
+  for (Point3& x : s.bodies.position) x = 1000 * x;
   for (double& l : s.beams.length) l *= 1000;
   for (double& a : s.beams.area) a *= 1e6;
   for (auto* second : {&s.beams.inertia_y, &s.beams.inertia_z, &s.beams.torsion})

@@ -35,9 +35,8 @@ Contacts at_start(const Lattice& lattice, const ContactOptions& options,
   Contacts contacts(lattice.shapes, lattice.bodies.mass, {}, options, std::move(obstacles));
   std::vector<Pose> poses;
   for (std::size_t b = 0; b < lattice.bodies.position.size(); ++b) {
-    const Point3& x = lattice.bodies.position[b];
     const auto& q = lattice.bodies.orientation[b];
-    poses.push_back({{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}});
+    poses.push_back({lattice.bodies.position[b], {q[0], q[1], q[2], q[3]}});
   }
   contacts.build(poses, std::vector<std::uint8_t>(poses.size(), 1), 0);
   std::vector<MovingPose> moving;

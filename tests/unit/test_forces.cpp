@@ -112,7 +112,7 @@ TEST(Load, PointIsCarriedByTheNearestBodyStaticallyEquivalent) {
   const Vec3<double> moment = Vec3<double>{w[15], w[16], w[17]} + cross(Vec3<double>{2, 0, 0}, f);
   const Vec3<double> expected =
       Vec3<double>{1, 2, 4} + cross(Vec3<double>{2.2, 0.4, 0}, {3, -5, 7});
-  EXPECT_EQ((std::array{f.x, f.y, f.z}), (std::array{3.0, -5.0, 7.0}));
+  EXPECT_EQ(f, (Vec3<double>{3, -5, 7}));
   EXPECT_NEAR(moment.x, expected.x, 1e-14);
   EXPECT_NEAR(moment.y, expected.y, 1e-14);
   EXPECT_NEAR(moment.z, expected.z, 1e-14);

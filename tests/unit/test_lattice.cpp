@@ -32,11 +32,9 @@ std::int32_t bandwidth(const Lattice& lattice) {
 
 Vec3<double> axis_3(const Lattice& lattice, std::size_t m) {
   const auto [i, j] = lattice.beams.bodies[m];
-  const Point3 &a = lattice.bodies.position[static_cast<std::size_t>(i)],
-               &b = lattice.bodies.position[static_cast<std::size_t>(j)],
-               &y = lattice.beams.axis_y[m];
-  const Vec3<double> e{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  return (1 / lattice.beams.length[m]) * cross(e, Vec3<double>{y[0], y[1], y[2]});
+  const Vec3<double> e = lattice.bodies.position[static_cast<std::size_t>(j)] -
+                         lattice.bodies.position[static_cast<std::size_t>(i)];
+  return (1 / lattice.beams.length[m]) * cross(e, lattice.beams.axis_y[m]);
 }
 
 TEST(Reorder, NarrowsTheBandAndSortsTheBeams) {
@@ -363,12 +361,11 @@ TEST(LatticeFile, WrongShapesAndTypesAreRefused) {
 using Held = std::vector<std::uint8_t>;
 
 Boundary fix(const std::string& set, const std::string& components) {
-  constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
   Boundary b;
   b.name = b.set = set;
   for (std::size_t k = 0; k < 6; ++k)
-    b.fixed[k] =
-        (" " + components + " ").find(" " + std::string(names[k]) + " ") != std::string::npos;
+    b.fixed[k] = (" " + components + " ").find(" " + std::string(component_names[k]) + " ") !=
+                 std::string::npos;
   return b;
 }
 
@@ -493,7 +490,7 @@ TEST(FreeMotions, RowOfBodiesTurnsAboutItsAxisUnlessOneBodyMayNot) {
 
 TEST(FreeMotions, FarFromTheOriginAndVeryLong) {
   Lattice far = test::sheet(8, 8, 1);
-  for (Point3& x : far.bodies.position) x = {x[0] + 1e6, x[1] - 2e6, x[2] + 5e5};
+  for (Point3& x : far.bodies.position) x = x + Point3{1e6, -2e6, 5e5};
   expect_free(6, far, {});
   expect_free(4, far, {fix("left", "x"), fix("right", "x")});
   const Lattice longest = row(3000);

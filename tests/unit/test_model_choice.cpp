@@ -90,7 +90,7 @@ TEST(ModelChoice, ALatticeThatIsNotFlatNeedsSpace) {
   rolled.beams.axis_y[2] = {0, 0, 1};
   EXPECT_EQ(why(scene, rolled), "axis 3 of the section of beam 2 is not along z");
   Lattice upside_down = flat;
-  for (double& component : upside_down.beams.axis_y[4]) component *= -1;
+  upside_down.beams.axis_y[4] = -upside_down.beams.axis_y[4];
   EXPECT_EQ(why(scene, upside_down), "axis 3 of the section of beam 4 is not along z");
 
   // Inertia and velocities matter to what moves only.

@@ -104,7 +104,7 @@ TEST(Shape, HasPlaneFaces) {
   Shapes s;
   test::append_box(s, 1, 1, 1);
   EXPECT_LT(concavity(s, 0), 1e-15);
-  for (double& x : s.vertices[7]) x = 0.1;  // a dent: no vertex is beyond another face
+  s.vertices[7] = {0.1, 0.1, 0.1};  // a dent: no vertex is beyond another face
   EXPECT_GT(concavity(s, 0), 0.1);
 }
 

@@ -104,11 +104,11 @@ TEST(OptionSources, OfTwoKeysThatExcludeEachOtherTheStrongerSourcesCounts) {
         GivenOptions& options = source == Source::checkpoint ? user.checkpoint
                                 : source == Source::scene    ? user.scene
                                                              : user.command_line;
-        options[name] = {"1", source, {}, false};
+        options[name] = {.value = "1", .source = source, .place = {}};
       };
       give("a", of_a);
       give("b", of_b);
-      Options options(table, user, true);
+      Options options(table, user, Options::Idle::kept);
       if (of_a == of_b) {
         EXPECT_EQ(error_of([&] { options.one_of("a", "b", {}, "both"); }), "both");
       } else {

@@ -93,16 +93,14 @@ TEST(Cantilever, TipFlexibilityOfEveryLoadInEveryDirection) {
         for (const Placing& placing : placings) {
           const Lattice lattice =
               straight_frame(length, elements, section, placing.along, placing.axis_y);
-          const Vec3<double> e1{placing.along[0], placing.along[1], placing.along[2]};
-          const Vec3<double> e2{placing.axis_y[0], placing.axis_y[1], placing.axis_y[2]};
-          const Triad<double> axes{e1, e2, cross(e1, e2)};
+          const Triad<double> axes{placing.along, placing.axis_y,
+                                   cross(placing.along, placing.axis_y)};
           for (std::size_t load = 0; load < 6; ++load) {
             // Small enough that products of rotations do not show, large enough that rounding does
             // not.
             const double size = 1e-8 / exact[load][load];
             const std::array<Vec3<double>, 3> e{axes.e1, axes.e2, axes.e3};
-            const Vec3<double> unit = size * e[load % 3];
-            const Point3 vector{unit.x, unit.y, unit.z};
+            const Vec3<double> vector = size * e[load % 3];
             Scene scene = load < 3 ? cantilever(shear, vector, {}) : cantilever(shear, {}, vector);
             scene.beam.kinematics = kinematics;
             const StaticSolution solution = solve_static(scene, lattice);
@@ -248,14 +246,12 @@ TEST(Bend45, ConvergesToTheRodInSecondOrder) {
     const std::array<int, 4> elements{8, 16, 32, 64};
     for (std::size_t k = 0; k < 4; ++k) tips[k] = bend_tip(elements[k], bend);
     const Vec3<double>& finest = tips[3];
-    const std::array<double, 3> got{finest.x, finest.y, finest.z};
-    const std::array<double, 3> reference{bend.tip.x, bend.tip.y, bend.tip.z};
     for (std::size_t k = 0; k < 3; ++k) {
       verify({.section = "Beams",
               .quantity = name + ": tip " + "xyz"[k],
-              .value = got[k],
-              .reference = reference[k],
-              .tolerance = 5e-4 * std::abs(reference[k]),
+              .value = finest[k],
+              .reference = bend.tip[k],
+              .tolerance = 5e-4 * std::abs(bend.tip[k]),
               .unit = "m",
               .note = "64 beams, exact"});
     }

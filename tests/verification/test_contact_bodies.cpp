@@ -97,7 +97,7 @@ TEST(ContactFree, SpinningBodyKeepsMomentumAndEnergy) {
   test::Random random(5);
   const Vec3<double> spin{0.35, 0.9, 0.25};
   for (int k = 0; k < 3; ++k) test::append_stone(lattice, random, {}, random.rotation(1), {}, {});
-  lattice.bodies.angular_velocity[0] = {spin.x, spin.y, spin.z};
+  lattice.bodies.angular_velocity[0] = spin;
   // As near as spheres around them allow.
   const auto radius = [&](std::int32_t body) {
     double most = 0;

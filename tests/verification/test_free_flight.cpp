@@ -71,7 +71,7 @@ TEST(FreeTop, EnergyStaysOverAMillionSteps) {
   top.bodies.inertia = {{1, 2, 2.9}};
   top.bodies.velocity = {{0, 0, 0}};
   const Vec3<double> w{0.35, 0.9, 0.25};  // tumbles: near no principal axis
-  top.bodies.angular_velocity = {{w.x, w.y, w.z}};
+  top.bodies.angular_velocity = {w};
   Dynamics run(Scene{}, top);
   run.set_step(0.006 / std::sqrt(dot(w, w)));
   const double energy = run.kinetic();

@@ -87,7 +87,7 @@ TEST(Implicit, EqualsAlpha2AtRadiusOneOnALinearLattice) {
   Scene scene = beams_only(0.5, 0.2);
   scene.beam.kinematics = Kinematics::linear;
   Lattice lattice = flying_bar(6, 2);
-  for (Point3& w : lattice.bodies.angular_velocity) w = {0.1 * w[0], 0.1 * w[1], 0.1 * w[2]};
+  for (Point3& w : lattice.bodies.angular_velocity) w = 0.1 * w;
   const int steps = 100;
   const ImplicitRun ours = run_implicitly(scene, lattice, scene.time.end / steps);
   ASSERT_TRUE(ours.result.done) << ours.result.message;

@@ -83,8 +83,7 @@ bool grows(const char* type, Scene scene, Lattice lattice, double dt) {
   const PetscOption rk("-ts_type", "rk"), kind("-ts_rk_type", type);
   Random random(7);
   for (std::size_t b = 0; b < lattice.bodies.mass.size(); ++b) {
-    const Vec3<double> v = random.vector(1e-9);
-    lattice.bodies.velocity.push_back({v.x, v.y, v.z});
+    lattice.bodies.velocity.push_back(random.vector(1e-9));
     lattice.bodies.angular_velocity.push_back({0, 0, 0});
   }
   scene.time.allow_unstable = true;

@@ -175,10 +175,9 @@ TEST(RungeKutta, KeepsMomentaInFreeFlight) {
       const double* r = s.record(b);
       const double* v = r + Spatial::velocity;
       const double* l = r + Spatial::angular_momentum;
-      const Point3& x = lattice.bodies.position[b];
       const double m = lattice.bodies.mass[b];
       const Vec3<double> p{m * v[0], m * v[1], m * v[2]};
-      const Vec3<double> turn = cross(Vec3<double>{x[0] + r[0], x[1] + r[1], x[2] + r[2]}, p);
+      const Vec3<double> turn = cross(lattice.bodies.position[b] + displacement(s, b), p);
       const std::array<double, 6> mine{p.x, p.y, p.z, l[0] + turn.x, l[1] + turn.y, l[2] + turn.z};
       for (std::size_t k = 0; k < 6; ++k) sum[k] += mine[k];
     }

@@ -7,15 +7,35 @@
 /// exp(t) q.
 #pragma once
 
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <type_traits>
 
 namespace floe {
 
+/// A vector by its three components, in storage too: no more than x, y and z, in this order.
 template <class T>
 struct Vec3 {
   T x, y, z;
+
+  /// Returns component `index`: 0 is x, 1 is y, 2 is z. Builds with assertions check the index.
+  constexpr T& operator[](std::size_t index) {
+    assert(index < 3);
+    return index == 0 ? x : index == 1 ? y : z;
+  }
+  constexpr const T& operator[](std::size_t index) const {
+    assert(index < 3);
+    return index == 0 ? x : index == 1 ? y : z;
+  }
 };
+static_assert(sizeof(Vec3<double>) == 3 * sizeof(double));
+static_assert(std::is_aggregate_v<Vec3<double>> && std::is_trivially_copyable_v<Vec3<double>>);
+
+template <class T>
+constexpr bool operator==(const Vec3<T>& a, const Vec3<T>& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z;
+}
 
 template <class T>
 Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
@@ -24,6 +44,10 @@ Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
 template <class T>
 Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) {
   return {T(a.x - b.x), T(a.y - b.y), T(a.z - b.z)};
+}
+template <class T>
+Vec3<T> operator-(const Vec3<T>& a) {
+  return {T(-a.x), T(-a.y), T(-a.z)};
 }
 template <class S, class T>
 Vec3<T> operator*(const S& s, const Vec3<T>& a) {

@@ -5,13 +5,17 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "floe/base/ramp.h"
 #include "floe/geometry/polyhedron.h"
 
 namespace floe {
 
-/// Prescribed components of the motion of a set of bodies: x y z rx ry rz.
+/// Names of the components of a motion: displacements along the axes, rotations about them.
+inline constexpr std::array<std::string_view, 6> component_names{"x", "y", "z", "rx", "ry", "rz"};
+
+/// Prescribed components of the motion of a set of bodies, in the order of component_names.
 /// Displacements are `displacement` times the ramp, or `velocity` times the integral of the ramp.
 /// Rotations are `angular_velocity` times the integral of the ramp.
 struct Boundary {

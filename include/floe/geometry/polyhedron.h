@@ -8,10 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "floe/base/rotation.h"
+
 namespace floe {
 
 using Point2 = std::array<double, 2>;
-using Point3 = std::array<double, 3>;
+using Point3 = Vec3<double>;
 
 /// Area [m^2], centroid [m] and second moments about the centroid [m^4] of a simple polygon,
 /// counter-clockwise: xx = int x^2 dA, yy = int y^2 dA, xy = int xy dA (Green's theorem).

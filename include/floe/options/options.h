@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
+#include "floe/base/rotation.h"
 #include "floe/options/given.h"
 
 namespace floe {
@@ -66,14 +67,16 @@ struct IdleKey {
 /// line is kept in idle() instead.
 class Options {
  public:
+  /// What becomes of idle keys of the scene's file where there is no command line.
+  enum class Idle { refused, kept };
+
   /// Sorts and checks the names of all given options.
   /// \param table  must outlive this object
   /// \param user  the given options
-  /// \param collect_idle  keep every idle key of the scene's file, with or without a command line
   /// \throws InputError if an option is neither in the table nor of one of PETSc's families, with
   /// the nearest known name; or if a section NAME is not listed in `names`, or listed without a
   /// section.
-  Options(std::span<const OptionSpec> table, const UserOptions& user, bool collect_idle = false);
+  Options(std::span<const OptionSpec> table, const UserOptions& user, Idle idle = Idle::refused);
 
   /// Whether an option is given. `name` replaces NAME in the key.
   bool given(std::string_view key, std::string_view name = {}) const;
@@ -115,6 +118,11 @@ class Options {
     read_numbers(key, name, values);
     return values;
   }
+  /// Returns an option of three numbers as a vector.
+  Vec3<double> vector(std::string_view key, std::string_view name = {}) {
+    const auto [x, y, z] = numbers<3>(key, name);
+    return {x, y, z};
+  }
   /// Returns the enumerator whose number is the position of the chosen word in OptionSpec::allowed.
   template <class Enum>
   Enum choice(std::string_view key, std::string_view name = {}) {
@@ -151,10 +159,10 @@ class Options {
  private:
   struct Reading {
     const OptionSpec& spec;
-    std::string option;                ///< name on the command line
-    std::string label;                 ///< key with NAME filled in
-    std::optional<std::string> value;  ///< as given, else the table's default, else nothing
-    std::string place;                 ///< " (story.yaml, line 3)", or empty
+    std::string option;                     ///< name on the command line
+    std::string label;                      ///< key with NAME filled in
+    std::optional<std::string> value = {};  ///< as given, else the table's default, else nothing
+    std::string place = {};                 ///< " (story.yaml, line 3)", or empty
     bool is_list = false;
   };
   /// A line of the table, and the part of an option that stands for NAME.
