@@ -28,7 +28,7 @@ inline Lattice extreme_sheet() {
   lattice.beams.inertia_z[m] *= 1e-6, lattice.beams.torsion[m] *= 1e-6;
   const auto b = lattice.bodies.mass.size() / 3;
   lattice.bodies.mass[b] *= 1e-4;
-  for (double& moment : lattice.bodies.inertia[b]) moment *= 1e-4;
+  lattice.bodies.inertia[b] = 1e-4 * lattice.bodies.inertia[b];
   return lattice;
 }
 
