@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     simulation.on_sample([&](const floe::Record&) { ++samples; });
     for (int tenth = 1; simulation.step_to(0.1 * tenth * end); ++tenth) {
       double top = 0;
-      for (const floe::BodyMotion& body : simulation.bodies())
+      for (const floe::BodyState& body : simulation.bodies())
         if (body.position.z > top) top = body.position.z;
       std::printf("%.6g s: %d samples, highest body at %.4g m\n", simulation.time(), samples, top);
     }

@@ -25,7 +25,7 @@ struct Record {
 };
 
 /// Place and motion of a body.
-struct BodyMotion {
+struct BodyState {
   std::int32_t body = 0;    ///< index in the lattice
   Vec3<double> position{};  ///< of the centroid [m]
   Quat<double> rotation{};  ///< from rest, w x y z; linearised with `kinematics: linear`
@@ -80,7 +80,7 @@ class Simulation {
   const Scene& scene() const;
   /// Places and motions of this rank's bodies at the last accepted state, in the order of the
   /// lattice. Leapfrog's velocities lag half a step behind.
-  std::vector<BodyMotion> bodies() const;
+  std::vector<BodyState> bodies() const;
 
  private:
   struct Impl;

@@ -90,7 +90,7 @@ class Running {
   virtual bool advance(double until) = 0;
   virtual Results finish() = 0;
   virtual double time() const = 0;
-  virtual std::vector<BodyMotion> bodies() const = 0;
+  virtual std::vector<BodyState> bodies() const = 0;
   virtual const Part& part() const = 0;
 };
 
@@ -103,7 +103,7 @@ class RunningIn final : public Running {
   bool advance(double until) override { return run_->advance(until); }
   Results finish() override;
   double time() const override { return run_->time(); }
-  std::vector<BodyMotion> bodies() const override;
+  std::vector<BodyState> bodies() const override;
   const Part& part() const override { return model_->part(); }
 
  private:
@@ -257,8 +257,8 @@ Results RunningIn<Space>::finish() {
 }
 
 template <class Space>
-std::vector<BodyMotion> RunningIn<Space>::bodies() const {
-  std::vector<BodyMotion> all;
+std::vector<BodyState> RunningIn<Space>::bodies() const {
+  std::vector<BodyState> all;
   if (state_ == nullptr) return all;
   const Part& part = model_->part();
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
@@ -396,6 +396,6 @@ const Results& Simulation::run() {
 const Results& Simulation::results() { return impl_->end(); }
 double Simulation::time() const { return impl_->running->time(); }
 const Scene& Simulation::scene() const { return impl_->scene; }
-std::vector<BodyMotion> Simulation::bodies() const { return impl_->running->bodies(); }
+std::vector<BodyState> Simulation::bodies() const { return impl_->running->bodies(); }
 
 }  // namespace floe
