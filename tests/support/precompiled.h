@@ -18,7 +18,19 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <ostream>
 #include <random>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "floe/base/rotation.h"
+
+namespace floe {
+
+/// What a failed comparison of vectors shows.
+inline void PrintTo(const Vec3<double>& v, std::ostream* out) {
+  *out << "(" << v.x << ", " << v.y << ", " << v.z << ")";
+}
+
+}  // namespace floe
