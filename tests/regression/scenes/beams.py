@@ -15,6 +15,10 @@ def check_bend45(test, run):
     for time, expected in ((0.5, (-11.9318, -7.0447, 40.1925)), (1, (-23.5606, -13.6047, 53.4755))):
         error = np.linalg.norm(tip(output, time) - expected) / np.linalg.norm(expected)
         test.assertLess(error, 5e-4, f"time {time}: {tip(output, time)}")
+    # The work of the load in every row, the first too: its mean over each step times its way.
+    load, way = 600 * output.history("time"), output.history("tip_load_displacement_z")
+    work = np.cumsum([0, *(0.5 * (load[1:] + load[:-1]) * np.diff(way))])
+    np.testing.assert_allclose(output.history("energy_external"), work, rtol=1e-9)
 
 
 def check_bend45_softer(test, run):
