@@ -41,7 +41,8 @@ STEPPED = {
                "boundary: {names: [a, b], a: {set: left, fix: x y z rx ry rz},\n"
                "           b: {set: right, fix: x, displacement: [0.01, 0, 0], ramp: 0.02}}\n",
     "explicit": "integrator: explicit\nforces: [beam, gravity, buoyancy]\n" + SHEET
-                + "time: {end: 0.02}\ninitial: {names: [i], i: {set: right, velocity: [0, 0, 1]}}\n",
+                + "time: {end: 0.02}\n"
+                + "initial: {names: [i], i: {set: right, velocity: [0, 0, 1]}}\n",
     "implicit": "integrator: implicit\nforces: [beam, gravity, buoyancy]\n" + SHEET
                 + "time: {end: 0.02, dt: 0.001}\n"}
 

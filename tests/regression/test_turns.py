@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Ranks that wait for each other take short turns (src/session/launcher.h); a process alone does not
-ask for them."""
+"""Ranks that wait for each other take short turns (src/session/launcher.h); a process alone does
+not ask for them."""
 import ctypes
 import os
 import platform
