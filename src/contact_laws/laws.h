@@ -31,7 +31,7 @@ concept IsContactLaw = std::constructible_from<Law, const ContactOptions&> &&
     requires(const Law& law, const ContactState& state, const PairHistory& memory) {
   { Law::word } -> std::convertible_to<ContactLaw>;
   { law.respond(state, memory) } -> std::same_as<ContactResponse>;
-  { Law::steepness(0.0, 0.0) } -> std::same_as<double>;
+  { law.steepness(0.0, 0.0) } -> std::same_as<double>;
 };
 
 /// Returns the law that the options name, with its constants.

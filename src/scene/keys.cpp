@@ -7,8 +7,8 @@ namespace {
 
 using enum Kind;
 
-// A new key needs one line here and one where scene.cpp reads it. Words of a choice are in the
-// order of their enum. Columns: key, kind, default, unit, allowed, doc, count.
+// A new key needs one line here and one where scene.cpp or read_*.cpp reads it. Words of a choice
+// are in the order of their enum. Columns: key, kind, default, unit, allowed, doc, count.
 constexpr std::array table{
     OptionSpec{
         "integrator", choice, "quasistatic", "", "quasistatic | explicit | implicit",
