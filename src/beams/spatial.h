@@ -101,7 +101,10 @@ struct SpatialBeam {
   /// nine directions: the relative displacement and the two spins.
   /// \param dashpots   if not null, includes the derivative of their force to the displacements
   /// \param symmetric  H = K + skew(m)/2 instead of K
-  static void tangent(const Constants& c, const BeamDashpots* dashpots, const double* i,
+  ///
+  /// The attribute flatten inlines Eigen's loops over nine derivatives: without it the assembly of
+  /// input/bending.yaml at 320 m takes 2.5 times as long.
+  [[gnu::flatten]] static void tangent(const Constants& c, const BeamDashpots* dashpots, const double* i,
                       const double* j, bool symmetric, std::array<double, 4 * n * n>& k) {
     using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
     const Vec3<double> d0 = relative(i, j);
