@@ -56,6 +56,7 @@ void ContactLoadBalance::plan(Contacts& contacts) {
   const auto shares = shared_pairs(
       all_gathered(std::vector{static_cast<std::int64_t>(contacts.history().size())}, comm_));
   std::vector<std::int64_t> given;  // number of pairs that each rank offloads
+  given.reserve(shares.size());
   for (const auto& row : shares)
     given.push_back(std::accumulate(row.begin(), row.end(), std::int64_t{0}));
   shared_ = std::any_of(given.begin(), given.end(), [](std::int64_t count) { return count > 0; });

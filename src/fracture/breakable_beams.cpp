@@ -1,7 +1,4 @@
-/// \file
-/// The force of beams that crack: the beams of spatial_lanes.h with strengths and damage.
-#pragma once
-
+// The force of beams that crack: the beams of spatial_lanes.h with strengths and damage.
 #include <cmath>
 
 #include "base/collectives.h"
@@ -10,16 +7,46 @@
 #include "floe/base/petsc.h"
 #include "fracture/fracture.h"
 #include "fracture/lanes.h"
+#include "fracture/strengths.h"
 
 namespace floe {
+namespace {
 
-/// Strengths of the local beams of a part, with Weibull's scatter. Collective.
-/// \throws InputError if the lattice does not give the sides of the sections
-std::vector<Strength<double>> strengths(const Part& part, const FractureOptions& options);
+constexpr std::size_t crack_size = 11;  // numbers of a Crack in a checkpoint
+
+std::vector<double> packed(const std::vector<Crack>& cracks) {
+  std::vector<double> values;
+  values.reserve(cracks.size() * crack_size);
+  for (const Crack& c : cracks) {
+    values.insert(values.end(),
+                  {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate, c.mode_mix,
+                   c.nominal, c.dissipated, c.time, c.place[0], c.place[1], c.place[2]});
+  }
+  return values;
+}
 
 /// Saves the cracks of all ranks to the archive, or loads them all on every rank. Collective.
 /// \param cracks  those that this rank counts, with global beams; loading: those of all ranks
-void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks);
+void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks) {
+  constexpr std::size_t width = crack_size;
+  std::vector<double> all;
+  if (!archive.loading()) all = all_gathered(packed(cracks), part.comm);
+  archive.common("cracks", all);
+  if (!archive.loading()) return;
+  cracks.clear();
+  for (std::size_t k = 0; k + width <= all.size(); k += width) {
+    const double* v = &all[k];
+    cracks.push_back({static_cast<std::int32_t>(v[0]),
+                      v[1],
+                      v[2],
+                      v[3],
+                      v[4],
+                      v[5],
+                      v[6],
+                      v[7],
+                      {v[8], v[9], v[10]}});
+  }
+}
 
 /// Breakable beams of a part: a force, and the cracks of its beams.
 template <Kinematics kinematics, bool damped, template <class> class Frame>
@@ -492,5 +519,33 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   double dissipated_ = 0, kept_energy_ = 0;  ///< by counted beams; the same at the last commit [J]
   double dt_ = 0;                            ///< length of the last step [s]
 };
+
+template <Kinematics kinematics, bool damped, template <class> class Frame>
+BreakableForce make_with(const Part& part, const BeamOptions& beams,
+                         const FractureOptions& fracture) {
+  auto force = std::make_unique<BreakableBeams<kinematics, damped, Frame>>(part, beams, fracture);
+  Fracture* cracks = force.get();
+  return {std::move(force), cracks};
+}
+
+template <Kinematics kinematics>
+BreakableForce make_kinematic(const Part& part, const BeamOptions& beams,
+                              const FractureOptions& fracture) {
+  const bool damped = beams.damping_ratio > 0;
+  if (all_flat(part))
+    return damped ? make_with<kinematics, true, FlatFrame>(part, beams, fracture)
+                  : make_with<kinematics, false, FlatFrame>(part, beams, fracture);
+  return damped ? make_with<kinematics, true, AnyFrame>(part, beams, fracture)
+                : make_with<kinematics, false, AnyFrame>(part, beams, fracture);
+}
+
+}  // namespace
+
+BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
+                                    const FractureOptions& fracture) {
+  return beams.kinematics == Kinematics::linear
+             ? make_kinematic<Kinematics::linear>(part, beams, fracture)
+             : make_kinematic<Kinematics::corotational>(part, beams, fracture);
+}
 
 }  // namespace floe

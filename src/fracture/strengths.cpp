@@ -1,9 +1,9 @@
-#include "fracture/fracture.h"
+#include "fracture/strengths.h"
 
 #include <cmath>
 
 #include "base/collectives.h"
-#include "fracture/breakable_beams.h"
+#include "floe/base/petsc.h"
 
 namespace floe {
 namespace {
@@ -34,19 +34,6 @@ double mean_section(const Part& part) {
   }
   sum = sum_over_ranks(sum, part.comm);
   return largest * (static_cast<double>(sum) / fine) / static_cast<double>(part.global_beams);
-}
-
-constexpr std::size_t crack_size = 11;  // numbers of a Crack in a checkpoint
-
-std::vector<double> packed(const std::vector<Crack>& cracks) {
-  std::vector<double> values;
-  values.reserve(cracks.size() * crack_size);
-  for (const Crack& c : cracks) {
-    values.insert(values.end(),
-                  {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate, c.mode_mix,
-                   c.nominal, c.dissipated, c.time, c.place[0], c.place[1], c.place[2]});
-  }
-  return values;
 }
 
 }  // namespace
@@ -92,57 +79,6 @@ double overload(const Part& part, const std::vector<BeamSection>& sections,
     most = std::max(most, criterion(all[m], BeamStress<double>{n, qy, qz, {t, my, mz}}));
   }
   return std::sqrt(largest_over_ranks(most, part.comm));
-}
-
-void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks) {
-  constexpr std::size_t width = crack_size;
-  std::vector<double> all;
-  if (!archive.loading()) all = all_gathered(packed(cracks), part.comm);
-  archive.common("cracks", all);
-  if (!archive.loading()) return;
-  cracks.clear();
-  for (std::size_t k = 0; k + width <= all.size(); k += width) {
-    const double* v = &all[k];
-    cracks.push_back({static_cast<std::int32_t>(v[0]),
-                      v[1],
-                      v[2],
-                      v[3],
-                      v[4],
-                      v[5],
-                      v[6],
-                      v[7],
-                      {v[8], v[9], v[10]}});
-  }
-}
-
-namespace {
-
-template <Kinematics kinematics, bool damped, template <class> class Frame>
-BreakableForce make_with(const Part& part, const BeamOptions& beams,
-                         const FractureOptions& fracture) {
-  auto force = std::make_unique<BreakableBeams<kinematics, damped, Frame>>(part, beams, fracture);
-  Fracture* cracks = force.get();
-  return {std::move(force), cracks};
-}
-
-template <Kinematics kinematics>
-BreakableForce make_kinematic(const Part& part, const BeamOptions& beams,
-                              const FractureOptions& fracture) {
-  const bool damped = beams.damping_ratio > 0;
-  if (all_flat(part))
-    return damped ? make_with<kinematics, true, FlatFrame>(part, beams, fracture)
-                  : make_with<kinematics, false, FlatFrame>(part, beams, fracture);
-  return damped ? make_with<kinematics, true, AnyFrame>(part, beams, fracture)
-                : make_with<kinematics, false, AnyFrame>(part, beams, fracture);
-}
-
-}  // namespace
-
-BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
-                                    const FractureOptions& fracture) {
-  return beams.kinematics == Kinematics::linear
-             ? make_kinematic<Kinematics::linear>(part, beams, fracture)
-             : make_kinematic<Kinematics::corotational>(part, beams, fracture);
 }
 
 }  // namespace floe
