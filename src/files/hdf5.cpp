@@ -30,12 +30,17 @@ hid_t native<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
 
+/// Notes that HDF5 could not write a file. HDF5 would try again, and crash, when MPI ends.
+void give_up_on_hdf5() {
+  hdf5_has_failed = true;
+  give_up_on_mpi();
+}
+
 /// Throws FileError if HDF5 failed; errno holds the error of the system.
 void require(bool good, const std::string& path) {
   if (good) return;
   const int why = errno;
-  hdf5_has_failed = true;
-  give_up_on_mpi();  // HDF5 closes all files when MPI ends
+  give_up_on_hdf5();
   throw_file_error("write", path, why);
 }
 
@@ -107,7 +112,7 @@ Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
 }
 
 Hdf5File::~Hdf5File() {
-  if (id_ >= 0 && !hdf5_has_failed) H5Fclose(id_);
+  if (id_ >= 0 && !hdf5_has_failed && H5Fclose(id_) < 0) give_up_on_hdf5();
   if (!path_.empty() && path_ != final_path_) ::unlink(path_.c_str());
 }
 
