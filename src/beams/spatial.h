@@ -104,8 +104,9 @@ struct SpatialBeam {
   ///
   /// The attribute flatten inlines Eigen's loops over nine derivatives: without it the assembly of
   /// input/bending.yaml at 320 m takes 2.5 times as long.
-  [[gnu::flatten]] static void tangent(const Constants& c, const BeamDashpots* dashpots, const double* i,
-                      const double* j, bool symmetric, std::array<double, 4 * n * n>& k) {
+  [[gnu::flatten]] static void tangent(const Constants& c, const BeamDashpots* dashpots,
+                                       const double* i, const double* j, bool symmetric,
+                                       std::array<double, 4 * n * n>& k) {
     using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 9, 1>>;
     const Vec3<double> d0 = relative(i, j);
     const Vec3<Dual> d{Dual(d0.x, 9, 0), Dual(d0.y, 9, 1), Dual(d0.z, 9, 2)};
