@@ -49,7 +49,7 @@ std::string reason_against(const std::string& type) {
 }
 
 std::string chosen_type() {
-  const std::string type = ts_option("-ts_type").value_or(ts_leapfrog);
+  std::string type = ts_option("-ts_type").value_or(ts_leapfrog);
   if (type != ts_leapfrog && type != TSRK)
     throw InputError("ts_type: '" + type + "' cannot step this scene: " + reason_against(type) +
                      " (integrator: explicit steps with " + ts_leapfrog + " or rk)");
