@@ -62,7 +62,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     return stable;
   }
   void evaluate() override { step_.evaluate(); }
-  std::span<const double> works() const override { return step_.works(); }
+  std::vector<double> works() const override { return step_.works(); }
   /// Keeps velocities half of the next step behind.
   void step_changed(double before) override { step_.stagger(this->dt() - before); }
   typename Base::Energies energies() const override {

@@ -84,7 +84,7 @@ class ExplicitStep {
     return stepper_.momentum(state_, wrenches_, dt);
   }
   /// Works of the forces at t_n, of which evaluate() has found the forces [J].
-  std::span<const double> works() const { return work_.works(); }
+  std::vector<double> works() const { return work_.works(); }
   double boundary_work() const { return stepper_.boundary_work(); }
   /// Saves or loads what the next step needs beside the state and the works. Collective.
   void persist(Archive& archive) {

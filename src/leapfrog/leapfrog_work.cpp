@@ -1,17 +1,11 @@
 #include "leapfrog/leapfrog_work.h"
 
-#include <algorithm>
-
 namespace floe {
 
 template <class Space>
 LeapfrogWork<Space>::LeapfrogWork(std::span<const std::unique_ptr<Force<Space>>> forces,
                                   std::span<double> works)
-    : works_(works),
-      powers_(works.size()),
-      kept_(works.size()),
-      now_(works.size()),
-      later_(works.size()) {
+    : works_(works), powers_(works.size()), kept_(works.size()), later_(works.size()) {
   std::size_t first = 0;
   for (const auto& force : forces) {
     const DoesWork<Space>* role = force->roles().work;
@@ -22,12 +16,14 @@ LeapfrogWork<Space>::LeapfrogWork(std::span<const std::unique_ptr<Force<Space>>>
 }
 
 template <class Space>
-void LeapfrogWork<Space>::take_powers() const {
-  for (const Worker& worker : workers_) {
-    worker.force->powers(worker.in(powers_));
-    if (worker.force->later_powers() == LaterPowers::in_next_evaluation)
-      worker.force->kept_powers(worker.in(kept_));
-  }
+void LeapfrogWork<Space>::Worker::ask(std::span<double> powers, std::span<double> kept) const {
+  force->powers(in(powers));
+  if (force->later_powers() == LaterPowers::in_next_evaluation) force->kept_powers(in(kept));
+}
+
+template <class Space>
+void LeapfrogWork<Space>::take_powers() {
+  for (const Worker& worker : workers_) worker.ask(powers_, kept_);
 }
 
 template <class Space>
@@ -55,12 +51,13 @@ void LeapfrogWork<Space>::take_step(const State<Space>& state, double dt) {
 }
 
 template <class Space>
-std::span<const double> LeapfrogWork<Space>::works() const {
-  take_powers();
-  std::copy(works_.begin(), works_.end(), now_.begin());
+std::vector<double> LeapfrogWork<Space>::works() const {
+  std::vector<double> until_now(works_.begin(), works_.end()), all_powers(works_.size()),
+      all_kept(works_.size());
   for (const Worker& worker : workers_) {
-    const std::span<double> now = worker.in(now_), powers = worker.in(powers_),
-                            kept = worker.in(kept_);
+    worker.ask(all_powers, all_kept);
+    const std::span<double> now = worker.in(until_now), powers = worker.in(all_powers),
+                            kept = worker.in(all_kept);
     switch (worker.force->later_powers()) {
       case LaterPowers::at_once:
         for (std::size_t w = 0; w < now.size(); ++w) now[w] += 0.5 * (last_dt_ * powers[w]);
@@ -74,7 +71,7 @@ std::span<const double> LeapfrogWork<Space>::works() const {
         break;
     }
   }
-  return now_;
+  return until_now;
 }
 
 template class LeapfrogWork<Spatial>;

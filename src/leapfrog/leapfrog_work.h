@@ -32,14 +32,14 @@ class LeapfrogWork {
   LeapfrogWork(std::span<const std::unique_ptr<Force<Space>>> forces, std::span<double> works);
 
   /// Takes the powers of the last evaluation. To be called before the forces commit its step.
-  void take_powers() const;
+  void take_powers();
   /// Adds the works of a step. To be called after take_powers(), and after the forces have
   /// committed the step.
   /// \param state  after the step
   /// \param dt     length of the step [s]
   void take_step(const State<Space>& state, double dt);
   /// Returns the works up to the time of the last evaluation, whose step was not committed [J].
-  std::span<const double> works() const;
+  std::vector<double> works() const;
   /// Length of the last step [s]; 0 before the first one.
   double last_dt() const { return last_dt_; }
   /// Saves or loads the length of the last step. The works are the owner's to keep.
@@ -51,14 +51,15 @@ class LeapfrogWork {
     const DoesWork<Space>* force;
     std::size_t first, count;
     std::span<double> in(std::span<double> all) const { return all.subspan(first, count); }
+    /// Asks for the powers of the last evaluation, and for the kept ones where they are needed.
+    void ask(std::span<double> powers, std::span<double> kept) const;
   };
 
   std::vector<Worker> workers_;
   std::span<double> works_;
   // Per work, of the last evaluation, asked before its step is committed [W]:
-  mutable std::vector<double> powers_, kept_;
-  mutable std::vector<double> now_;  ///< returned by works() [J]
-  std::vector<double> later_;        ///< work space
+  std::vector<double> powers_, kept_;
+  std::vector<double> later_;  ///< work space of take_step()
   double last_dt_ = 0;
 };
 

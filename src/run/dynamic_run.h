@@ -103,7 +103,7 @@ class DynamicRun : public Run {
   /// Energies at the state, whose wrenches are known.
   virtual Energies energies() const = 0;
   /// Works of the forces at the state, whose wrenches are known [J]. Default: as in the ledger.
-  virtual std::span<const double> works() const { return works_.all(); }
+  virtual std::vector<double> works() const { return {works_.all().begin(), works_.all().end()}; }
   /// Further columns of the integrator, for this rank's bodies at the state.
   virtual Columns own_columns() const { return {}; }
   /// Saves or loads the integrator's own history, apart from records, time and dt.

@@ -65,7 +65,7 @@ class DynamicsIn {
   double kinetic() const { return step_.energies(dt_).kinetic; }
   std::array<double, 6> momentum() const { return step_.momentum(dt_); }
   /// Works of the forces at the time of the state [J].
-  std::span<const double> works() const { return step_.works(); }
+  std::vector<double> works() const { return step_.works(); }
   /// Saves or loads what a step needs beside the state and the histories of forces.
   void persist(Archive& archive) {
     works_.persist(archive);

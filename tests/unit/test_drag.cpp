@@ -92,7 +92,7 @@ TEST(Drag, LosesForceTimesWay) {
     for (std::size_t k = 0; k < 3; ++k)
       expected -= 0.5 * 0.2 * w[6 * b + k] * m.state.record(b)[7 + k];
   EXPECT_GT(expected, 0);
-  const std::vector<double> now(steps.works().begin(), steps.works().end());
+  const std::vector<double> now = steps.works();
   EXPECT_NEAR(test::potential_of(*drag, m.state, now), expected, 1e-12 * expected);
 }
 

@@ -197,9 +197,7 @@ TEST(PlanarForces, Drag) {
     spatial_steps.take_powers();
     spatial_steps.take_step(full, 0.1);
     EXPECT_NE(works[0], 0);
-    expect_same_report(*planar, state, *spatial, full, 1e-12,
-                       {steps.works().begin(), steps.works().end()},
-                       {spatial_steps.works().begin(), spatial_steps.works().end()});
+    expect_same_report(*planar, state, *spatial, full, 1e-12, steps.works(), spatial_steps.works());
   }
 }
 
