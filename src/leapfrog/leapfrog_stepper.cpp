@@ -93,7 +93,7 @@ LeapfrogStepper::LeapfrogStepper(const Model<Spatial>& model) : model_(model), p
         mass = mass + model.added_inertia()[b].mass;
         inertia = inertia + model.added_inertia()[b].moment;
       }
-      if (slot == 0) masses_.resize(blocks_.size());
+      if (slot == 0) masses_.resize(blocks_.size()), kicked_.resize(3 * lanes * blocks_.size());
       for (std::size_t k = 0; k < 3; ++k) masses_[slot / lanes].values[k][slot % lanes] = mass[k];
     }
     const auto [w, x, y, z] = part_.bodies.orientation[b];
@@ -150,7 +150,7 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
 template <bool added>
 [[FLOE_ONE_COPY, gnu::flatten]] LeapfrogStepper::Extremes LeapfrogStepper::step_blocks(
     std::span<const Block> blocks, [[maybe_unused]] const MassBlock* masses, double* records,
-    const double* wrenches, double dt) {
+    const double* wrenches, [[maybe_unused]] double* kicked, double dt) {
   Extremes largest;
   for (const Block& block : blocks) {
     const auto four = [](const double* first, std::size_t width) {
@@ -165,8 +165,10 @@ template <bool added>
                         {c[2], c[3], d[0]},
                         {d[1], d[2], d[3]}};
     if constexpr (added) {
-      leap_with_added_mass<Lanes>(block.get(), (masses++)->get(), m, {f[0], f[1], f[2]},
-                                  {f[3], g[0], g[1]}, dt);
+      const Vec3<Lanes> v = leap_with_added_mass<Lanes>(block.get(), (masses++)->get(), m,
+                                                        {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
+      for (std::size_t lane = 0; lane < lanes; ++lane, kicked += 3)
+        kicked[0] = v.x[lane], kicked[1] = v.y[lane], kicked[2] = v.z[lane];
     } else {
       leap<Lanes>(block.get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
     }
@@ -202,8 +204,9 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
   const std::span<const Block> blocks(blocks_);
   const auto step = [&](std::span<const Block> some, std::size_t first, double* records,
                         const double* forces) {
-    return masses_.empty() ? step_blocks<false>(some, nullptr, records, forces, dt)
-                           : step_blocks<true>(some, masses_.data() + first, records, forces, dt);
+    return masses_.empty() ? step_blocks<false>(some, nullptr, records, forces, nullptr, dt)
+                           : step_blocks<true>(some, masses_.data() + first, records, forces,
+                                               kicked_.data() + 3 * first * lanes, dt);
   };
   Extremes largest = step(blocks.first(whole), 0, state.records.data(), wrenches.values.data());
   if (left > 0) {
@@ -224,6 +227,14 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
   return {std::isfinite(reduce(largest.sum)) ? hmax(largest.speed2)
                                              : std::numeric_limits<double>::quiet_NaN(),
           hmax(largest.spin2)};
+}
+
+void LeapfrogStepper::swap_kicked(State<Spatial>& state) const {
+  if (masses_.empty()) return;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
+    if (model_.prescribed()[b] == 0)
+      std::swap_ranges(&kicked_[3 * b], &kicked_[3 * b] + 3, state.record(b) + Spatial::velocity);
+  }
 }
 
 double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {

@@ -144,11 +144,13 @@ void leap(const BodyConstants<T>& body, BodyMotion<T>& m, const Vec3<T>& force,
 ///
 /// The drift is the symmetric product of the flow of p.M^-1 p/2 at fixed R over dt/2, the free
 /// rotation over dt, and the former over dt/2: symplectic and time-reversible. Velocities are
-/// stored with the axes at the end of the drift, as the angular velocity is. \param mass  along the
-/// principal axes
+/// stored with the axes at the end of the drift, as the angular velocity is.
+///
+/// \param mass  along the principal axes
+/// \returns the velocity after the kick, with the axes before the drift: forces work with it
 template <class T>
-void leap_with_added_mass(const BodyConstants<T>& body, const Vec3<T>& mass, BodyMotion<T>& m,
-                          const Vec3<T>& force, const Vec3<T>& moment, double dt) {
+Vec3<T> leap_with_added_mass(const BodyConstants<T>& body, const Vec3<T>& mass, BodyMotion<T>& m,
+                             const Vec3<T>& force, const Vec3<T>& moment, double dt) {
   const Vec3<T> inverse{T(1.0 / mass.x), T(1.0 / mass.y), T(1.0 / mass.z)};
   const auto along = [](const Triad<T>& axes, const Vec3<T>& factors, const Vec3<T>& v) {
     const Vec3<T> l = axes.to_local(v);
@@ -166,6 +168,7 @@ void leap_with_added_mass(const BodyConstants<T>& body, const Vec3<T>& mass, Bod
   m.u = m.u + half * m.v;
   m.momentum = m.momentum - half * cross(m.v, p);
   m.w = along(after, body.inverse_inertia, m.momentum);
+  return first;
 }
 
 }  // namespace floe

@@ -45,8 +45,9 @@ def check_floe_in_waves(test, run):
     # Each body is lifted as its place in the wave is, but for the stiffness of the floe.
     amplitude = (z.max(axis=0) - z.min(axis=0)) / 2
     test.assertAlmostEqual(amplitude.mean() / 0.1, 1, delta=0.15)
-    test.assertLess(abs(last_row(output)["energy_balance_error"]),
-                    1e-6 * abs(last_row(output)["energy_external"]))
+    # Added mass by direction: without the velocities after the kick the error is 6e-5.
+    for row in (last_row(output), last_row(run("-water_added_mass", "plate"))):
+        test.assertLess(abs(row["energy_balance_error"]), 1e-6 * abs(row["energy_external"]))
 
 
 def check_rk_drag(test, run):
