@@ -1,4 +1,5 @@
-// ns per body of the water's forces on a slightly tilted floating sheet: buoyancy and drag.
+// ns per body of the water's forces on a slightly tilted floating sheet: buoyancy and drag, in
+// still water and in waves.
 #include <benchmark/benchmark.h>
 
 #include "sheet.h"
@@ -38,6 +39,29 @@ void drag_quadratic(benchmark::State& run) {
   bench::Sheet<Spatial> c(run.range(0));
   evaluate(run, *make_drag<Spatial>(c.part, {.coefficient = 1}), c);
 }
+/// Bodies of a sheet that moves; beams shelter its inner sides.
+void drag_faces(benchmark::State& run) {
+  bench::Sheet<Spatial> c(run.range(0));
+  for (std::size_t b = 0; b < static_cast<std::size_t>(c.part.local); ++b)
+    c.state.record(b)[Spatial::velocity] = 0.3;
+  evaluate(run, *make_face_drag(c.part, {.faces = true, .form = 1.1, .skin = 0.003}, 9.81, {}), c);
+}
+void buoyancy_one_wave(benchmark::State& run) {
+  bench::Sheet<Spatial> c(run.range(0));
+  evaluate(run, *make_buoyancy_in_waves(c.part, 1010 * 9.81, 9.81, {.height = 0.1, .period = 30}),
+           c);
+}
+void buoyancy_sea(benchmark::State& run) {
+  bench::Sheet<Spatial> c(run.range(0));
+  evaluate(run,
+           *make_buoyancy_in_waves(
+               c.part, 1010 * 9.81, 9.81,
+               {.spectrum = WaveOptions::Spectrum::jonswap, .height = 0.1, .period = 60}),
+           c);
+}
+BENCHMARK(drag_faces)->Arg(1460);
+BENCHMARK(buoyancy_one_wave)->Arg(1460);
+BENCHMARK(buoyancy_sea)->Arg(1460);
 BENCHMARK(buoyancy_clipped)->Arg(1460)->Arg(29561);
 BENCHMARK(buoyancy)->Arg(1460)->Arg(29561);
 BENCHMARK(drag_linear)->Arg(1460)->Arg(29561);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@
 #include "floe/mesh/tessellation.h"
 #include "floe/options/given.h"
 #include "floe/water/drag_options.h"
+#include "floe/water/wave_options.h"
 
 namespace floe {
 
@@ -75,7 +77,11 @@ struct Scene {
   double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   DragOptions drag;
+  WaveOptions waves;
   double added_mass = 0;  ///< relative to the mass of water that a body displaces at rest
+  /// The same along the principal axes of a body, and for the moments about them.
+  std::optional<std::array<double, 6>> added_mass_axes;
+  bool added_mass_plate = false;  ///< each body's added mass is that of a floating disc
   ContactOptions contact;
   std::vector<Obstacle> obstacles;
   std::vector<Boundary> boundaries;

@@ -62,7 +62,13 @@ class ExplicitStep {
     for (const auto& force : model_.forces()) {
       if (auto* role = force->roles().commits) role->commit(state_, dt);
     }
-    work_.take_step(state_, dt);
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      stepper_.swap_kicked(state_);
+      work_.take_step(state_, dt);
+      stepper_.swap_kicked(state_);
+    } else {
+      work_.take_step(state_, dt);
+    }
   }
   /// Makes pairs whose beam broke in this step eligible for contact from the next evaluation on.
   /// Collective.

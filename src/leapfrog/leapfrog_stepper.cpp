@@ -54,12 +54,48 @@ BodyConstants<double> LeapfrogStepper::constants(std::int32_t body) const {
   return {at(0), {at(1), at(2), at(3)}, {at(4), at(5), at(6), at(7)}};
 }
 
+Vec3<Lanes> LeapfrogStepper::MassBlock::get() const {
+  return {load(values[0].data()), load(values[1].data()), load(values[2].data())};
+}
+
+/// Masses along the principal axes.
+Vec3<double> LeapfrogStepper::masses(std::int32_t body) const {
+  const auto b = static_cast<std::size_t>(body);
+  const auto at = [&](std::size_t k) { return masses_[b / lanes].values[k][b % lanes]; };
+  return {at(0), at(1), at(2)};
+}
+
+/// Linear momentum by the velocity, and the other way round.
+Vec3<double> LeapfrogStepper::momentum_of(std::int32_t body, const Triad<double>& axes,
+                                          const Vec3<double>& velocity) const {
+  if (masses_.empty()) return (1.0 / constants(body).inverse_mass) * velocity;
+  const Vec3<double> mass = masses(body), v = axes.to_local(velocity);
+  return axes.to_world({mass.x * v.x, mass.y * v.y, mass.z * v.z});
+}
+Vec3<double> LeapfrogStepper::velocity_of(std::int32_t body, const Triad<double>& axes,
+                                          const Vec3<double>& momentum) const {
+  if (masses_.empty()) return constants(body).inverse_mass * momentum;
+  const Vec3<double> mass = masses(body), p = axes.to_local(momentum);
+  return axes.to_world({p.x / mass.x, p.y / mass.y, p.z / mass.z});
+}
+
 LeapfrogStepper::LeapfrogStepper(const Model<Spatial>& model) : model_(model), part_(model.part()) {
   const auto owned = static_cast<std::size_t>(part_.owned);
   blocks_.resize((owned + lanes - 1) / lanes, Block{});
   for (std::size_t slot = 0; slot < blocks_.size() * lanes; ++slot) {
     const std::size_t b = std::min(slot, owned - 1);  // lanes without a body compute the last one
-    const Point3& inertia = part_.bodies.inertia[b];
+    Point3 inertia = part_.bodies.inertia[b];
+    // Bodies with prescribed components move without added inertia.
+    if (!model.added_inertia().empty()) {
+      const double own = model.inertial_mass()[b];
+      Vec3<double> mass{own, own, own};
+      if (model.prescribed()[b] == 0) {
+        mass = mass + model.added_inertia()[b].mass;
+        inertia = inertia + model.added_inertia()[b].moment;
+      }
+      if (slot == 0) masses_.resize(blocks_.size()), kicked_.resize(3 * lanes * blocks_.size());
+      for (std::size_t k = 0; k < 3; ++k) masses_[slot / lanes].values[k][slot % lanes] = mass[k];
+    }
     const auto [w, x, y, z] = part_.bodies.orientation[b];
     const std::array<double, 8> all{
         1 / model.inertial_mass()[b], 1 / inertia.x, 1 / inertia.y, 1 / inertia.z, w, x, y, z};
@@ -97,9 +133,10 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
     BodyMotion<double> m = read(state.record(b));
     const BodyConstants<double> c = constants(body);
     const auto [force, moment] = on_free(wrenches.of(b), model_.prescribed()[b]);
-    m.v = m.v - (0.5 * dt * c.inverse_mass) * force;
-    m.momentum = m.momentum - (0.5 * dt) * moment;
     const Triad<double> axes = triad(product(m.q, c.axes));
+    m.v = masses_.empty() ? m.v - (0.5 * dt * c.inverse_mass) * force
+                          : m.v - (0.5 * dt) * velocity_of(body, axes, force);
+    m.momentum = m.momentum - (0.5 * dt) * moment;
     const Vec3<double> l = axes.to_local(m.momentum);
     m.w = axes.to_world(
         {c.inverse_inertia.x * l.x, c.inverse_inertia.y * l.y, c.inverse_inertia.z * l.z});
@@ -110,8 +147,10 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
 /// Whole blocks one after the other. In one copy, for all ranks: contraction to fused operations
 /// may differ between two copies of a loop, and a body must not depend on whether its block is
 /// whole. \param records, wrenches  of the first block's bodies
+template <bool added>
 [[FLOE_ONE_COPY, gnu::flatten]] LeapfrogStepper::Extremes LeapfrogStepper::step_blocks(
-    std::span<const Block> blocks, double* records, const double* wrenches, double dt) {
+    std::span<const Block> blocks, [[maybe_unused]] const MassBlock* masses, double* records,
+    const double* wrenches, [[maybe_unused]] double* kicked, double dt) {
   Extremes largest;
   for (const Block& block : blocks) {
     const auto four = [](const double* first, std::size_t width) {
@@ -125,7 +164,14 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
                         {b[3], c[0], c[1]},
                         {c[2], c[3], d[0]},
                         {d[1], d[2], d[3]}};
-    leap<Lanes>(block.get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
+    if constexpr (added) {
+      const Vec3<Lanes> v = leap_with_added_mass<Lanes>(block.get(), (masses++)->get(), m,
+                                                        {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
+      for (std::size_t lane = 0; lane < lanes; ++lane, kicked += 3)
+        kicked[0] = v.x[lane], kicked[1] = v.y[lane], kicked[2] = v.z[lane];
+    } else {
+      leap<Lanes>(block.get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
+    }
 
     std::array<Row, lanes> rows;
     const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
@@ -156,8 +202,13 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
   const auto owned = static_cast<std::size_t>(part_.owned);
   const std::size_t whole = owned / lanes, left = owned % lanes;
   const std::span<const Block> blocks(blocks_);
-  Extremes largest =
-      step_blocks(blocks.first(whole), state.records.data(), wrenches.values.data(), dt);
+  const auto step = [&](std::span<const Block> some, std::size_t first, double* records,
+                        const double* forces) {
+    return masses_.empty() ? step_blocks<false>(some, nullptr, records, forces, nullptr, dt)
+                           : step_blocks<true>(some, masses_.data() + first, records, forces,
+                                               kicked_.data() + 3 * first * lanes, dt);
+  };
+  Extremes largest = step(blocks.first(whole), 0, state.records.data(), wrenches.values.data());
   if (left > 0) {
     alignas(64) std::array<double, lanes * n> records;
     alignas(64) std::array<double, lanes * w> forces;
@@ -166,7 +217,7 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
       std::copy_n(state.record(body), n, &records[lane * n]);
       std::copy_n(wrenches.of(body), w, &forces[lane * w]);
     }
-    const Extremes last = step_blocks(blocks.last(1), records.data(), forces.data(), dt);
+    const Extremes last = step(blocks.last(1), whole, records.data(), forces.data());
     std::copy_n(records.data(), left * n, state.record(whole * lanes));
     largest.speed2 = max(largest.speed2, last.speed2);
     largest.spin2 = max(largest.spin2, last.spin2);
@@ -176,6 +227,14 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
   return {std::isfinite(reduce(largest.sum)) ? hmax(largest.speed2)
                                              : std::numeric_limits<double>::quiet_NaN(),
           hmax(largest.spin2)};
+}
+
+void LeapfrogStepper::swap_kicked(State<Spatial>& state) const {
+  if (masses_.empty()) return;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
+    if (model_.prescribed()[b] == 0)
+      std::swap_ranges(&kicked_[3 * b], &kicked_[3 * b] + 3, state.record(b) + Spatial::velocity);
+  }
 }
 
 double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt) {
@@ -278,7 +337,9 @@ std::pair<Vec3<double>, Vec3<double>> LeapfrogStepper::half_step_on(
   const BodyConstants<double> c = constants(body);
   const BodyMotion<double> m = read(state.record(b));
   const auto [force, moment] = on_free(wrenches.of(b), bits);
-  const Vec3<double> v = m.v + (dt * c.inverse_mass) * force;
+  const Vec3<double> v = masses_.empty()
+                             ? m.v + (dt * c.inverse_mass) * force
+                             : m.v + dt * velocity_of(body, triad(product(m.q, c.axes)), force);
   const Vec3<double> momentum = m.momentum + dt * moment;
   if (bits == 0) return {v, momentum};
   const auto given = [&](std::size_t k) {
@@ -310,8 +371,10 @@ LeapfrogStepper::Energies LeapfrogStepper::energies(const State<Spatial>& state,
     const auto [v, momentum] = half_step_on(body, state, wrenches, dt);
     const Triad<double> axes = triad(product(m.q, c.axes));
     const Vec3<double> before = axes.to_local(m.momentum), after = axes.to_local(momentum);
+    const double moving =
+        masses_.empty() ? dot(m.v, v) / c.inverse_mass : dot(m.v, momentum_of(body, axes, v));
     sum.kinetic +=
-        0.5 * (dot(m.v, v) / c.inverse_mass + c.inverse_inertia.x * before.x * after.x +
+        0.5 * (moving + c.inverse_inertia.x * before.x * after.x +
                c.inverse_inertia.y * before.y * after.y + c.inverse_inertia.z * before.z * after.z);
     if (model_.prescribed()[b] == 0) continue;
     // Half the impulse that the boundary gives at t_n belongs to the step before.
@@ -333,8 +396,8 @@ std::array<double, 6> LeapfrogStepper::momentum(const State<Spatial>& state,
     const BodyConstants<double> c = constants(body);
     const BodyMotion<double> m = read(state.record(b));
     const double* f = wrenches.of(b);
-    const Vec3<double> p =
-        (1.0 / c.inverse_mass) * m.v + (0.5 * dt) * Vec3<double>{f[0], f[1], f[2]};
+    const Vec3<double> p = momentum_of(body, triad(product(m.q, c.axes)), m.v) +
+                           (0.5 * dt) * Vec3<double>{f[0], f[1], f[2]};
     const Vec3<double> at = part_.bodies.position[b] + m.u;
     const Vec3<double> l = m.momentum + (0.5 * dt) * Vec3<double>{f[3], f[4], f[5]} + cross(at, p);
     const std::array<double, 6> mine{p.x, p.y, p.z, l.x, l.y, l.z};

@@ -31,6 +31,10 @@ class LeapfrogStepper {
   /// largest angular velocity in the state.
   double step(State<Spatial>& state, const Wrenches<Spatial>& wrenches, double dt);
 
+  /// Exchanges the velocities after a step with those after its kick, with which forces do their
+  /// work. They differ only for bodies with added mass by direction, whose axes turn in the drift.
+  void swap_kicked(State<Spatial>& state) const;
+
   /// Kinetic energy of this rank's bodies, and the boundaries' work on them since the start, at t_n
   /// [J].
   struct Energies {
@@ -61,8 +65,14 @@ class LeapfrogStepper {
   struct Extremes {
     Lanes speed2{0.0}, spin2{0.0}, sum{0.0};  ///< largest squares; sum of those of speeds
   };
-  static Extremes step_blocks(std::span<const Block> blocks, double* records,
-                              const double* wrenches, double dt);
+  /// Masses along the principal axes, of bodies with added inertia.
+  struct alignas(64) MassBlock {
+    std::array<std::array<double, lanes>, 3> values;
+    Vec3<Lanes> get() const;
+  };
+  template <bool added>
+  static Extremes step_blocks(std::span<const Block> blocks, const MassBlock* masses,
+                              double* records, const double* wrenches, double* kicked, double dt);
   std::array<double, 2> step_all(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
                                  double dt) const;
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
@@ -71,10 +81,18 @@ class LeapfrogStepper {
   void turn_held(std::int32_t body, const double* before, double* after, const double* wrench,
                  std::span<const double> now, std::span<const double> next, double dt);
   BodyConstants<double> constants(std::int32_t body) const;
+  Vec3<double> masses(std::int32_t body) const;
+  Vec3<double> momentum_of(std::int32_t body, const Triad<double>& axes,
+                           const Vec3<double>& velocity) const;
+  Vec3<double> velocity_of(std::int32_t body, const Triad<double>& axes,
+                           const Vec3<double>& momentum) const;
 
   const Model<Spatial>& model_;
   const Part& part_;
   std::vector<Block> blocks_;
+  std::vector<MassBlock> masses_;  ///< empty: masses are alike in all directions
+  /// Velocities after the last kick, of bodies with added inertia [m/s].
+  mutable std::vector<double> kicked_;
   std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
   std::vector<std::int32_t> rows_;          ///< per local body: its index in held_, or -1
   std::vector<double> saved_;               ///< records of held_ before a step

@@ -136,4 +136,39 @@ void leap(const BodyConstants<T>& body, BodyMotion<T>& m, const Vec3<T>& force,
   drift_rotation(body, m, dt);
 }
 
+/// Kick and drift of a free body whose mass differs between its principal axes, as that of a body
+/// with added mass does (Kirchhoff's equations; Lamb 1932, chapter VI): with R its principal
+/// axes and M its masses along them, p = R M R^T v,
+///
+///   dp/dt = F,  dL/dt = tau - v x p  (the moment of Munk 1924).
+///
+/// The drift is the symmetric product of the flow of p.M^-1 p/2 at fixed R over dt/2, the free
+/// rotation over dt, and the former over dt/2: symplectic and time-reversible. Velocities are
+/// stored with the axes at the end of the drift, as the angular velocity is.
+///
+/// \param mass  along the principal axes
+/// \returns the velocity after the kick, with the axes before the drift: forces work with it
+template <class T>
+Vec3<T> leap_with_added_mass(const BodyConstants<T>& body, const Vec3<T>& mass, BodyMotion<T>& m,
+                             const Vec3<T>& force, const Vec3<T>& moment, double dt) {
+  const Vec3<T> inverse{T(1.0 / mass.x), T(1.0 / mass.y), T(1.0 / mass.z)};
+  const auto along = [](const Triad<T>& axes, const Vec3<T>& factors, const Vec3<T>& v) {
+    const Vec3<T> l = axes.to_local(v);
+    return axes.to_world({T(factors.x * l.x), T(factors.y * l.y), T(factors.z * l.z)});
+  };
+  const double half = 0.5 * dt;
+  const Triad<T> before = triad(product(m.q, body.axes));
+  const Vec3<T> p = along(before, mass, m.v) + dt * force;
+  const Vec3<T> first = along(before, inverse, p);
+  m.u = m.u + half * first;
+  m.momentum = m.momentum + dt * moment - half * cross(first, p);
+  drift_rotation(body, m, dt);
+  const Triad<T> after = triad(product(m.q, body.axes));
+  m.v = along(after, inverse, p);
+  m.u = m.u + half * m.v;
+  m.momentum = m.momentum - half * cross(m.v, p);
+  m.w = along(after, body.inverse_inertia, m.momentum);
+  return first;
+}
+
 }  // namespace floe

@@ -97,6 +97,17 @@ class Model {
   /// Adds the added mass of owned bodies [kg]; their weight does not change.
   void add_mass(std::span<const double> added);
 
+  /// Added mass of an owned body along its principal axes [kg], and added moments of inertia about
+  /// them [kg m^2].
+  struct AddedInertia {
+    Vec3<double> mass, moment;
+  };
+  /// Sets the added inertia of all owned bodies, which leapfrog in space takes along. The stable
+  /// step leaves it out, and so is on the safe side.
+  void set_added_inertia(std::vector<AddedInertia> added) { added_inertia_ = std::move(added); }
+  /// Per owned body; empty: none.
+  const std::vector<AddedInertia>& added_inertia() const { return added_inertia_; }
+
   /// Computes the wrenches of all forces at a state whose ghosts are up to date [N, N m].
   void evaluate(const State<Space>& state, Wrenches<Space>& wrenches) const;
 
@@ -146,6 +157,7 @@ class Model {
   Part part_;
   double length_scale_ = 1;
   std::vector<double> inertial_mass_;
+  std::vector<AddedInertia> added_inertia_;
   std::vector<PlacedBoundary> boundaries_;
   std::vector<std::unique_ptr<Force<Space>>> forces_;
   BeamForce<Space>* beams_ = nullptr;

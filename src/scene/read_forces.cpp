@@ -1,6 +1,9 @@
 // Reading of forces, fracture and water.
 #include <algorithm>
+#include <numbers>
+#include <optional>
 
+#include "options/option_values.h"
 #include "reading.h"
 
 namespace floe {
@@ -61,8 +64,11 @@ void read_forces(Options& options, Scene& scene) {
   for (const auto* section : {"contact", "obstacle"})
     if (!scene.forces.contact) options.refuse(section, without("contact"));
   if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("water", without("buoyancy"));
+  if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("waves", without("buoyancy"));
   if (!scene.forces.drag) {
-    for (const auto* key : {"water: drag_linear", "water: drag_coefficient", "water: current"})
+    for (const auto* key :
+         {"water: drag_linear", "water: drag_coefficient", "water: current", "water: drag",
+          "water: drag_form", "water: drag_skin", "water: shelter"})
       options.refuse(key, without("drag"));
   }
 }
@@ -89,26 +95,123 @@ void read_fracture(Options& options, Scene& scene) {
   }
 }
 
+namespace {
+
+/// Whether the scene is stepped by leapfrog.
+bool leaps(const Options& options, const Scene& scene) {
+  return scene.integrator == Integrator::explicit_ && options.petsc("ts_type") != "rk";
+}
+
+void read_drag(Options& options, Scene& scene) {
+  DragOptions& drag = scene.drag;
+  enum class Law { plan, faces };
+  drag.faces = options.choice<Law>("water: drag") == Law::faces;
+  drag.linear = options.number("water: drag_linear");
+  drag.current = options.vector("water: current");
+  if (!drag.faces) {
+    drag.coefficient = options.number("water: drag_coefficient");
+    for (const auto* key : {"water: drag_form", "water: drag_skin", "water: shelter"})
+      options.refuse(key, "would have no effect without 'water: drag: faces'");
+    return;
+  }
+  options.refuse("water: drag_coefficient",
+                 "would have no effect: 'water: drag' is faces, with drag_form and drag_skin");
+  drag.form = options.number("water: drag_form");
+  drag.skin = options.number("water: drag_skin");
+  if (drag.form == 0 && drag.skin == 0)
+    throw InputError("water: drag: faces needs 'water: drag_form' or 'water: drag_skin' > 0");
+  std::optional<double> otherwise;
+  if (!leaps(options, scene)) otherwise = 0;
+  if (leaps(options, scene) && scene.has_sheet) otherwise = scene.thickness;
+  if (leaps(options, scene) && !scene.has_sheet && !options.given("water: shelter"))
+    throw InputError("water: shelter: is required with lattice_file [m]; 0: beams only");
+  drag.shelter = options.number("water: shelter", {}, otherwise);
+  if (!leaps(options, scene) && drag.shelter > 0)
+    throw InputError("water: shelter: " + text_of(drag.shelter) +
+                     " must be 0 with this integrator: what shelters is found anew between steps, "
+                     "by leapfrog (integrator: explicit without -ts_type)");
+}
+
+void read_added_mass(Options& options, Scene& scene) {
+  const std::string_view which =
+      options.one_of("water: added_mass", "water: added_mass_axes", {},
+                     "water: added_mass and added_mass_axes: give one of them");
+  std::string by;
+  if (which == "water: added_mass_axes") {
+    scene.added_mass_axes = options.numbers<6>(which);
+    by = which;
+  } else {
+    const std::string text = options.text("water: added_mass");
+    scene.added_mass_plate = text == "plate";
+    const std::optional<double> number = to_number(text);
+    if (scene.added_mass_plate) {
+      by = "water: added_mass: plate";
+    } else if (number && *number >= 0 && *number <= 1e3) {
+      scene.added_mass = *number;
+    } else {
+      throw InputError("water: added_mass: '" + text +
+                       "' is not allowed: a number >= 0, <= 1e3, or plate");
+    }
+  }
+  if (!by.empty() && !leaps(options, scene))
+    throw InputError(by + ": " +
+                     "mass that differs between directions is stepped by leapfrog only "
+                     "(integrator: explicit without -ts_type); give added_mass a number");
+}
+
+void read_waves(Options& options, Scene& scene) {
+  if (!options.given_section("waves")) return;
+  if (!scene.forces.buoyancy && !scene.forces.drag) return;  // refused
+  if (scene.integrator == Integrator::quasistatic) {
+    options.refuse("waves", "would have no effect: 'integrator' is quasistatic, nothing moves");
+    return;
+  }
+  if (scene.integrator == Integrator::implicit)
+    throw InputError("waves: integrator: implicit cannot step them; take integrator: explicit");
+  WaveOptions& waves = scene.waves;
+  constexpr double degree = std::numbers::pi / 180;
+  waves.spectrum = options.choice<WaveOptions::Spectrum>("waves: spectrum");
+  waves.height = options.number("waves: height");
+  waves.period = options.number("waves: period");
+  waves.direction = degree * options.number("waves: direction");
+  if (options.given("waves: depth")) waves.depth = options.number("waves: depth");
+  waves.ramp = options.number("waves: ramp");
+  if (waves.spectrum == WaveOptions::Spectrum::jonswap) {
+    waves.gamma = options.number("waves: gamma");
+    waves.components = static_cast<int>(options.integer("waves: components"));
+    waves.seed = static_cast<std::uint64_t>(options.integer("waves: seed"));
+    options.refuse("waves: phase",
+                   "would have no effect: phases of 'spectrum: jonswap' are random");
+  } else {
+    waves.phase = degree * options.number("waves: phase");
+    for (const auto* key : {"waves: gamma", "waves: components", "waves: seed"})
+      options.refuse(key, "would have no effect without 'waves: spectrum: jonswap'");
+  }
+}
+
+}  // namespace
+
 void read_water(Options& options, Scene& scene) {
   const bool moves = scene.integrator != Integrator::quasistatic;
   if (moves) {
-    scene.added_mass = options.number("water: added_mass");
+    read_added_mass(options, scene);
   } else {
-    options.refuse("water: added_mass", "would have no effect: 'integrator' is quasistatic");
+    for (const auto* key : {"water: added_mass", "water: added_mass_axes"})
+      options.refuse(key, "would have no effect: 'integrator' is quasistatic");
   }
   if (scene.forces.drag) {
-    scene.drag.linear = options.number("water: drag_linear");
-    scene.drag.coefficient = options.number("water: drag_coefficient");
-    scene.drag.current = options.vector("water: current");
-    if (scene.drag.linear == 0 && scene.drag.coefficient == 0)
+    read_drag(options, scene);
+    if (scene.drag.linear == 0 && scene.drag.coefficient == 0 && !scene.drag.faces)
       throw InputError("forces: drag needs 'water: drag_linear' or 'water: drag_coefficient' > 0");
   }
-  if (scene.forces.buoyancy || scene.drag.coefficient > 0 || scene.added_mass > 0) {
+  if (scene.forces.buoyancy || scene.drag.coefficient > 0 || scene.drag.faces ||
+      scene.added_mass > 0 || scene.added_mass_plate || scene.added_mass_axes) {
     scene.water_density = options.number("water: density");
   } else {
     options.refuse("water: density", "would have no effect on linear drag");
   }
   scene.drag.density = scene.water_density;
+  read_waves(options, scene);
 }
 
 }  // namespace floe

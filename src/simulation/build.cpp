@@ -17,6 +17,7 @@
 #include "simulation/lattice_command.h"
 #include "simulation/mesh_file.h"
 #include "simulation/plan.h"
+#include "water/added_mass.h"
 #include "water/buoyancy.h"
 #include "water/drag.h"
 
@@ -229,12 +230,27 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
     model.set_beams(make_beam_force<Space>(part, scene.beam), scene.beam.kinematics);
   if constexpr (std::is_same_v<Space, Spatial>) {
     if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
-    if (scene.forces.buoyancy)
-      model.add_force(make_buoyancy<Spatial>(part, scene.water_density * scene.gravity));
+    const double weight = scene.water_density * scene.gravity;
+    if (scene.forces.buoyancy && scene.waves.any()) {
+      model.add_force(make_buoyancy_in_waves(part, weight, scene.gravity, scene.waves));
+    } else if (scene.forces.buoyancy) {
+      model.add_force(make_buoyancy<Spatial>(part, weight));
+    }
+    if (scene.forces.drag && (scene.drag.faces || scene.waves.any()))
+      model.add_force(make_face_drag(part, scene.drag, scene.gravity, scene.waves));
   }
-  if (scene.forces.drag) model.add_force(make_drag<Space>(part, scene.drag));
+  if (scene.forces.drag && !scene.drag.faces && !scene.waves.any())
+    model.add_force(make_drag<Space>(part, scene.drag));
   if (scene.added_mass > 0)
     model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));
+  if (scene.added_mass_plate || scene.added_mass_axes) {
+    std::vector<typename Model<Space>::AddedInertia> added;
+    for (const auto& [mass, moment] :
+         scene.added_mass_plate ? added_of_plates(part, scene.water_density)
+                                : added_by_parts(part, scene.water_density, *scene.added_mass_axes))
+      added.push_back({mass, moment});
+    model.set_added_inertia(std::move(added));
+  }
   for (const PlacedLoad& load : loads)
     model.add_force(make_load<Space>(part, load, scene.beam.kinematics));
 }

@@ -20,6 +20,10 @@ std::string scene_needs_space(const Scene& scene) {
   if (scene.forces.contact) return "forces: contact acts in space";
   if (scene.forces.fracture) return "forces: fracture breaks beams in space";
   if (scene.integrator == Integrator::implicit) return "integrator: implicit moves bodies in space";
+  if (scene.waves.any()) return "waves move bodies along z";
+  if (scene.added_mass_plate || scene.added_mass_axes)
+    return "water: added mass by direction moves bodies in space";
+  if (scene.drag.faces) return "water: drag: faces acts in space";
   if (scene.drag.current[2] != 0) return "water: current has a z component";
   for (const Load& load : scene.loads) {
     if (any_out_of_plane(load.force, load.moment))

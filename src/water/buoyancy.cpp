@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "water/immersion.h"
+#include "water/waves.h"
 
 namespace floe {
 namespace {
@@ -123,7 +126,83 @@ class Buoyancy final : public Force<Spatial>,
   double weight_;
 };
 
+/// Buoyancy below a surface that moves. In axes in which the local plane is level the pressure is
+/// that of still water with the weight rho g |(-slope, 1)|; the wrench is turned back.
+template <class Surface>
+class MovingBuoyancy final : public Force<Spatial>,
+                             public DoesWork<Spatial>,
+                             public LimitsStep<Spatial>,
+                             public DependsOnTime {
+ public:
+  MovingBuoyancy(const Part& part, double weight_density, Surface surface)
+      : part_(part),
+        still_(part, weight_density),
+        immersion_(part),
+        weight_(weight_density),
+        surface_(std::move(surface)),
+        forces_(static_cast<std::size_t>(part.owned)),
+        moments_(forces_) {}
+
+  std::string_view name() const override { return "buoyancy"; }
+  Roles<Spatial> roles() override { return {.work = this, .step = this, .time = this}; }
+
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      const auto b = static_cast<std::size_t>(body);
+      const SurfacePlane plane = surface_.plane(b, immersion_.centroid(state, body), state.time);
+      const Submerged s = immersion_.below(state, body, plane);
+      const Vec3<double> arm = rotate(conjugate(plane.to_level()), s.moment);
+      const Vec3<double> pressure{-weight_ * plane.slope_x, -weight_ * plane.slope_y, weight_};
+      forces_[b] = s.volume * pressure;
+      moments_[b] = cross(arm, pressure);
+      floe::add(wrenches, b, forces_[b], moments_[b]);
+    }
+    powers_with(state, std::span(&power_, 1));
+  }
+
+  void powers(std::span<double> out) const override { out.front() = power_; }
+  LaterPowers later_powers() const override { return LaterPowers::at_once; }
+  void powers_with(const State<Spatial>& state, std::span<double> out) const override {
+    double power = 0;
+    for (std::size_t b = 0; b < forces_.size(); ++b)
+      power += dot(forces_[b], velocity(state, b)) + dot(moments_[b], angular_velocity(state, b));
+    out.front() = power;
+  }
+
+  double stiffness_bound(std::int32_t body) const override {
+    return surface_.most_steepness() * still_.stiffness_bound(body);
+  }
+  /// As in still water, for every body: the surface may reach it at any time.
+  std::optional<double> rate_estimate(const State<Spatial>&) const override {
+    double fastest2 = 0;
+    for (std::int32_t body = 0; body < part_.owned; ++body)
+      fastest2 = std::max(fastest2, still_.stiffness_bound(body) / item(part_.bodies.mass, body));
+    return std::sqrt(surface_.most_steepness() * fastest2);
+  }
+  double time_dependent_until() const override { return std::numeric_limits<double>::infinity(); }
+
+  void report(const State<Spatial>&, std::span<const double> works,
+              Columns& columns) const override {
+    columns.add("energy_external", works.front());
+  }
+
+ private:
+  const Part& part_;
+  Buoyancy still_;
+  Immersion immersion_;
+  double weight_;
+  Surface surface_;
+  std::vector<Vec3<double>> forces_, moments_;  ///< of the last evaluation [N, N m]
+  double power_ = 0;                            ///< of the last evaluation [W]
+};
+
 }  // namespace
+
+std::unique_ptr<Force<Spatial>> make_buoyancy_in_waves(const Part& part, double weight_density,
+                                                       double gravity, const WaveOptions& waves) {
+  return std::make_unique<MovingBuoyancy<Waves>>(with_shapes(part), weight_density,
+                                                 Waves(part, gravity, waves, {}));
+}
 
 template <>
 std::unique_ptr<Force<Spatial>> make_buoyancy<Spatial>(const Part& part, double weight_density) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "floe/water/wave_options.h"
 #include "forces/force.h"
 
 namespace floe {
@@ -16,6 +17,14 @@ namespace floe {
 /// \throws InputError if the lattice has no shapes
 template <class Space>
 std::unique_ptr<Force<Space>> make_buoyancy(const Part& part, double weight_density);
+
+/// Makes the force of buoyancy below a moving surface: the same with the local plane of the waves,
+/// rho_w g V (-slope_x, -slope_y, 1) at the centroid of the part below that plane, which is the
+/// Froude-Krylov force. All of its work is reported as `energy_external`. For explicit dynamics.
+/// \param gravity  [m/s^2]
+/// \throws InputError as above, and if a wave is shorter than 8 bodies; collective
+std::unique_ptr<Force<Spatial>> make_buoyancy_in_waves(const Part& part, double weight_density,
+                                                       double gravity, const WaveOptions& waves);
 
 /// Mass of the water that each owned body displaces at rest [kg].
 /// \param density  of the water [kg/m^3]

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "floe/water/drag_options.h"
+#include "floe/water/wave_options.h"
 #include "forces/force.h"
 
 namespace floe {
@@ -17,5 +18,17 @@ namespace floe {
 /// \throws InputError if the lattice has no shapes
 template <class Space>
 std::unique_ptr<Force<Space>> make_drag(const Part& part, const DragOptions& options);
+
+/// Makes drag on the wetted faces of the owned bodies (DragOptions::faces), or in waves, or both
+/// (model.md, "Water"). With u the velocity of the water less that of the body at a point of a face
+/// with the outward normal n, u_t the part of u along the face: rho_w C_d/2 (u.n)^2 (-n) per area
+/// where u.n < 0, and rho_w C_s/2 |u_t| u_t; on faces that nothing shelters. The force at the
+/// centroid of make_drag() comes on top. In waves the velocity of the water is the current's and
+/// the waves', and faces are wet below the local plane of the surface.
+/// \param part     with shapes; must outlive the force
+/// \param gravity  of the waves [m/s^2]
+/// \throws InputError if the lattice has no shapes, or a wave is shorter than 8 bodies; collective
+std::unique_ptr<Force<Spatial>> make_face_drag(const Part& part, const DragOptions& options,
+                                               double gravity, const WaveOptions& waves);
 
 }  // namespace floe

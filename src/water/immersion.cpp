@@ -81,10 +81,23 @@ Prism<double> Immersion::find_prism(std::size_t b) const {
 }
 
 Submerged Immersion::of(const State<Spatial>& state, std::int32_t body) const {
-  const auto index = static_cast<std::size_t>(body);
-  const Prism<double> b = prism(index);
-  const double z = b.z + state.record(index)[2];
-  const PrismBelow<double> p = prism_below(b, of_unit_length(rotation(state, index)), z);
+  const auto b = static_cast<std::size_t>(body);
+  return placed(body, of_unit_length(rotation(state, b)), height(state, body));
+}
+
+Submerged Immersion::below(const State<Spatial>& state, std::int32_t body,
+                           const SurfacePlane& plane) const {
+  const auto b = static_cast<std::size_t>(body);
+  return placed(body, product(plane.to_level(), of_unit_length(rotation(state, b))),
+                (height(state, body) - plane.level) / plane.steepness());
+}
+
+/// The part of a body below z = 0.
+/// \param rotation  from rest, of unit length
+/// \param z         height of its centroid [m]
+Submerged Immersion::placed(std::int32_t body, const Quat<double>& rotation, double z) const {
+  const Prism<double> b = prism(static_cast<std::size_t>(body));
+  const PrismBelow<double> p = prism_below(b, rotation, z);
   const auto& [e1, e2, e3] = p.axes;
   if (!sides_only(b, p.axes, z)) return clipped(body, p.axes, z);
 

@@ -18,6 +18,7 @@
 #include "floe/base/item.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
+#include "water/surface.h"
 
 namespace floe {
 
@@ -94,6 +95,9 @@ class Immersion {
 
   /// Submerged part of an owned body; moments are about its centroid, in world axes.
   Submerged of(const State<Spatial>& state, std::int32_t body) const;
+  /// The part below another plane than z = 0, exact as well, in the axes that
+  /// SurfacePlane::to_level() takes the world's axes to.
+  Submerged below(const State<Spatial>& state, std::int32_t body, const SurfacePlane& plane) const;
   /// The same by clipping the polyhedron, for any body.
   Submerged by_clipping(const State<Spatial>& state, std::int32_t body) const;
 
@@ -130,6 +134,11 @@ class Immersion {
     const auto b = static_cast<std::size_t>(body);
     return part_.bodies.position[b][2] + state.record(b)[2];
   }
+  /// Centroid of an owned body [m].
+  Vec3<double> centroid(const State<Spatial>& state, std::int32_t body) const {
+    const auto b = static_cast<std::size_t>(body);
+    return part_.bodies.position[b] + displacement(state, b);
+  }
   /// Volume of an owned body [m^3].
   double volume(std::int32_t body) const { return item(whole_, body).volume; }
   /// Area of an owned body at rest seen from above [m^2].
@@ -165,6 +174,7 @@ class Immersion {
     return Block::assemble<double>([&](std::size_t k) { return block.values[k][body % lanes]; });
   }
   Prism<double> find_prism(std::size_t body) const;
+  Submerged placed(std::int32_t body, const Quat<double>& rotation, double z) const;
   void replace(const State<Spatial>& state, std::size_t block, std::size_t lane, Lane& below) const;
   Submerged clipped(std::int32_t body, const Triad<double>& axes, double z) const;
   Submerged clipped_polyhedron(std::int32_t body, const Triad<double>& axes, double z) const;

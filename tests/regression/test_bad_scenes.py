@@ -6,6 +6,8 @@ from bad_input import (BREAKABLE, FILE, FLOATING, FLOOR, GOOD, HELD, MOVING, SHE
                        BadInput, held,
                        loaded, obstacle, scene_file)
 
+ADRIFT = "integrator: explicit\n" + FLOATING + "time: {end: 1}\n"
+
 SCENES = {
     "broken YAML": ("forces: [beam\nsheet: 3\n", "line 2"),
     "tab": ("forces: [beam]\n\tsheet: 3\n", "line 2"),
@@ -45,6 +47,19 @@ SCENES = {
     "strength that does not scatter": (BREAKABLE + "fracture: {seed: 3}\n", "weibull_modulus"),
     "no strength": (BREAKABLE + "fracture: {tensile_strength: 0}\n",
                     "fracture: tensile_strength: 0"),
+    "form drag without faces": (ADRIFT.replace("buoyancy", "buoyancy, drag")
+                                + "water: {drag_linear: 1, drag_form: 1}\n", "water: drag: faces"),
+    "plan drag on faces": (ADRIFT.replace("buoyancy", "buoyancy, drag")
+                           + "water: {drag: faces, drag_coefficient: 1}\n",
+                           "water: drag_coefficient"),
+    "added mass that is no number": (ADRIFT + "water: {added_mass: disc}\n", "or plate"),
+    "added mass twice": (ADRIFT + "water: {added_mass: 1, added_mass_axes: [1, 1, 1, 1, 1, 1]}\n",
+                         "give one of them"),
+    "waves without height": (ADRIFT + "waves: {period: 5}\n", "waves: height"),
+    "waves that do not move": (FLOATING + "waves: {height: 1, period: 5}\n", "quasistatic"),
+    "waves shorter than bodies": (ADRIFT + "waves: {height: 0.1, period: 1}\n", "8 bodies"),
+    "phase of a sea": (ADRIFT + "waves: {spectrum: jonswap, height: 1, period: 9, phase: 3}\n",
+                       "waves: phase"),
     "buoyancy without gravity": ("forces: [beam, buoyancy]\n" + SHEET, "gravity"),
     "section of a force that is not named": (GOOD + "water: {density: 1000}\n", "water: density"),
     "gravity that does not act": (GOOD + "gravity: 9.81\n", "gravity"),

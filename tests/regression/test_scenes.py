@@ -29,6 +29,7 @@ EXPECTED = {
     "verify/ice_slope.yaml": structures.check_ice_slope_strip,
     "punch_through.yaml": contact.check_punch_through,
     "floes_collide.yaml": contact.check_floes_collide,
+    "floe_in_waves.yaml": moving.check_floe_in_waves,
     "rubble_pile.yaml": contact.check_rubble_pile,
     "verify/stopping.yaml": contact.check_stopping,
     "break_strip.yaml": fracture.check_break_strip,
@@ -69,6 +70,7 @@ EXPECTED = {
     "verify/triangles_bulk.yaml": static.check_triangles_bulk,
     "verify/heave.yaml": moving.check_heave,
     "verify/drag_decay.yaml": moving.check_drag_decay,
+    "verify/yaw_decay.yaml": moving.check_yaw_decay,
 }
 
 

@@ -261,10 +261,15 @@ class Scenes:
         if "buoyancy" in forces or "drag" in forces:
             self.add(scene, "water", chance, share=0.2)
             if "drag" not in forces:
-                for word in ("drag_linear", "drag_coefficient", "current"):
+                for word in ("drag_linear", "drag_coefficient", "current", "drag", "drag_form",
+                             "drag_skin", "shelter"):
                     scene.pop(("water", word), None)
             elif ("water", "drag_linear") not in scene:
                 scene[("water", "drag_linear")] = "100"
+            if dynamic and chance.random() < 0.2:
+                self.add(scene, "waves", chance)
+                scene[("waves", "height")] = repr(10**chance.uniform(-4, 0))
+                scene[("waves", "period")] = repr(10**chance.uniform(0.3, 1.5))
         if "contact" in forces:
             self.named(scene, "obstacle", chance, chance.choice((0, 1, 1, 2)))
         self.named(scene, "boundary", chance, 1 if not dynamic else chance.choice((0, 1)))
@@ -322,6 +327,19 @@ class Scenes:
         if scene.get(("integrator",)) == "quasistatic":
             scene.pop(("limit", "velocity"), None)
             scene.pop(("water", "added_mass"), None)
+            scene.pop(("water", "added_mass_axes"), None)
+        if ("water", "added_mass") in scene:
+            scene.pop(("water", "added_mass_axes"), None)
+            scene[("water", "added_mass")] = chance.choice(("0.5", "2", "plate"))
+        if scene.get(("water", "drag")) == "faces":
+            scene.pop(("water", "drag_coefficient"), None)
+            scene.setdefault(("water", "shelter"), "0.1")
+        else:
+            for word in ("drag_form", "drag_skin", "shelter"):
+                scene.pop(("water", word), None)
+        jonswap = scene.get(("waves", "spectrum")) == "jonswap"
+        for word in ("phase",) if jonswap else ("gamma", "components", "seed"):
+            scene.pop(("waves", word), None)
         if ("lattice_file",) in scene:
             for path in [path for path in scene if path[0] in ("sheet", "ice", "cut")]:
                 del scene[path]

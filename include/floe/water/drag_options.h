@@ -12,6 +12,11 @@ struct DragOptions {
   double coefficient = 0;  ///< C_d of the quadratic law
   double density = 1010;   ///< rho_w [kg/m^3]
   Point3 current{};        ///< velocity of the water [m/s]
+
+  bool faces = false;  ///< drag on the wetted faces, by the three numbers below
+  double form = 0;     ///< C_d of faces that move against the water
+  double skin = 0;     ///< C_s of the flow along faces
+  double shelter = 0;  ///< a face with another body within this distance feels no drag [m]
 };
 
 }  // namespace floe

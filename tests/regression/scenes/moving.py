@@ -27,6 +27,29 @@ def check_drag_decay(test, run):
         test.assertAlmostEqual((row["energy_drag"] + row["energy_kinetic"]) / 7360, 1, delta=1e-5)
 
 
+def check_yaw_decay(test, run):
+    row = last_row(run())
+    inertia, slowing = 920 * 3.6 * 4 / 6, 1010 * 1.1 * 0.9 * 2**4 / 32
+    left = 0.5 * inertia / (1 + 10 * slowing / inertia)**2
+    test.assertAlmostEqual(row["energy_kinetic"] / left, 1, delta=2e-3)
+    test.assertAlmostEqual((row["energy_drag"] + row["energy_kinetic"]) / (0.5 * inertia), 1,
+                           delta=1e-5)
+
+
+def check_floe_in_waves(test, run):
+    output = run()
+    k = 2 * np.pi / 50
+    omega = np.sqrt(9.81 * k)
+    late = [time for time in output.times if time > output.times[-1] - 2 * np.pi / omega]
+    z = np.array([output.field("bodies_displacement", time)[:, 2] for time in late])
+    # Each body is lifted as its place in the wave is, but for the stiffness of the floe.
+    amplitude = (z.max(axis=0) - z.min(axis=0)) / 2
+    test.assertAlmostEqual(amplitude.mean() / 0.1, 1, delta=0.15)
+    # Added mass by direction: without the velocities after the kick the error is 6e-5.
+    for row in (last_row(output), last_row(run("-water_added_mass", "plate"))):
+        test.assertLess(abs(row["energy_balance_error"]), 1e-6 * abs(row["energy_external"]))
+
+
 def check_rk_drag(test, run):
     r, k = 500 / 920, 0.5 * 1010 * 1.2 / 920
     quadratic = ("-water_drag_linear", "0", "-water_drag_coefficient", "1.2")
