@@ -29,15 +29,19 @@ Overlap overlap_of(double volume, const Vec3<double>& area, const Vec3<double>& 
 
 struct Law {
   ContactOptions options{.law = ContactLaw::overlap, .young = 1, .friction = 0.5};
-  PairConstants pair{.stiffness = 1e6, .area = 4, .mass = 10, .friction = 0.5};
+  PairConstants pair{.stiffness = 1e6, .area = 4, .friction = 0.5};
+  Mobility mobility{.a = {.mass = 0.1}};  // 10 kg against an obstacle
   PairHistory memory;
   RelativeMotion motion;
+  LastStep last;
+  Vec3<double> mean_spin{};
   bool newly_eligible = false;
   StoredEnergy stored;
   ContactForce operator()(const Overlap& o) {
     const ContactResponse response = std::visit(
         [&](const auto& law) {
-          return contact_response(law, pair, o, 0, motion, memory, newly_eligible);
+          return contact_response(law, pair, o, 0, motion, &motion, mobility, last, mean_spin,
+                                  memory, newly_eligible);
         },
         law_of(options));
     stored = response.stored;
@@ -99,11 +103,14 @@ TEST(ContactLaw, FrictionOpposesSlipAndTurnsWithTheMeanSpin) {
   EXPECT_NEAR(c.memory.springs.stiffness, 0.6 * 1e6 * 2, tolerance * 1e6);
   const double dt = 1e-3;
   // What A moves along the normal does not count.
-  const FrictionSprings springs = c.memory.springs;
-  expect_vector(slid(springs, c.normal, {0.3, -0.4, 5}, {}, dt).force, {-360, 480, 0}, 1e3);
-  const FrictionSprings stuck{.stiffness = springs.stiffness, .force = {100, 0, 0}};
+  law.last.dt = dt;
+  law.motion.velocity = {0.3, -0.4, 5};
+  expect_vector(law(overlap_of(0.01, {0, 0, 2})).memory.springs.force, {-360, 480, 0}, 1e3);
+  law.motion = {};
+  law.memory.springs = {.stiffness = c.memory.springs.stiffness, .force = {100, 0, 0}};
+  law.mean_spin = {3, 4, 20};
   const double turn = 20 * dt;
-  expect_vector(slid(stuck, c.normal, {}, {3, 4, 20}, dt).force,
+  expect_vector(law(overlap_of(0.01, {0, 0, 2})).memory.springs.force,
                 {100 * std::cos(turn), 100 * std::sin(turn), 0}, 100);
 }
 
