@@ -111,7 +111,7 @@ class DistributedContact final : public Contact,
 
   /// Half a period of a touch by the largest face of a body is 11 steps, 14 for e < 0.4
   /// (zeta > 0.34): then e errs by at most 2 %.
-  double resolved_step() const {
+  double resolved_step() const override {
     if (!possible_) return std::numeric_limits<double>::infinity();
     const double steps = contacts_.options().damping_ratio > damping_ratio_of(0.4) ? 14 : 11;
     return std::numbers::pi / (steps * std::sqrt(rates_.touch));
