@@ -260,5 +260,58 @@ TEST(ContactArea, StackOfFiveComesToRest) {
   }
 }
 
+/// A wall of bricks that is set down comes to rest where it stands, with both laws.
+TEST(ContactArea, WallComesToRest) {
+  for (const ContactLaw law : {ContactLaw::overlap, ContactLaw::potential}) {
+    Scene scene = test::contact_scene(4e9, 0.4, 0.45);
+    scene.contact.law = law;
+    append_obstacle(scene, "floor", half_space({0, 0, 0}, {0, 0, 1}));
+    Lattice lattice;
+    for (int row = 0; row < 4; ++row) {
+      for (int k = 0; k < 4 - row % 2; ++k)
+        append_block(lattice, {1, 0.5, 0.4}, {1.001 * k + 0.5005 * (row % 2), 0, 0.2 + 0.4 * row});
+    }
+    test::Dynamics d(scene, lattice);
+    const double dt = start_resolved(d);
+    while (d.state().time < 10 && !(d.state().time > 0 && d.kinetic() < 1e-10))
+      d.steps(static_cast<long>(0.5 / dt));
+    EXPECT_LT(d.kinetic(), 1e-10);
+    for (std::size_t b = 0; b < lattice.bodies.mass.size(); ++b) {
+      const Vec3<double> u = displacement(d.state(), b);
+      EXPECT_LT(std::hypot(u.x, u.y), 1e-4) << b;
+    }
+  }
+}
+
+/// A column of 20 blocks of 1 m that sways on its contacts loses energy at 5.6e-3 1/s by the
+/// eigenvalues of its linear model (0.81 Hz; zeta = 0.3, E_c = 4 GPa).
+TEST(ContactArea, SwayOfTwentyDecaysAsItsEigenvalue) {
+  Scene scene = test::contact_scene(4e9, 0.5, 0.451);
+  append_obstacle(scene, "floor", half_space({0, 0, 0}, {0, 0, 1}));
+  Lattice lattice;
+  double sunk_so_far = 0;
+  for (int k = 0; k < 20; ++k) {
+    sunk_so_far += (20 - k) * 920 * g / (k == 0 ? 8e9 : 4e9);
+    const double share = (k + 0.5) / 20;
+    append_block(lattice, {1, 1, 1}, {0, 0, 0.5 + k - sunk_so_far}, {1, 0, 0, 0},
+                 {1e-3 * share * share, 0, 0});
+  }
+  test::Dynamics d(scene, lattice);
+  (void)start_resolved(d);
+  const auto largest_until = [&](double time) {
+    double most = 0;
+    while (d.state().time < time) {
+      d.steps(20);
+      most = std::max(most, d.kinetic());
+    }
+    return most;
+  };
+  (void)largest_until(1.25);
+  const double early = largest_until(2.5);
+  (void)largest_until(13.75);
+  const double late = largest_until(15);
+  EXPECT_NEAR(std::log(early / late) / 12.5, 5.6e-3, 0.56e-3);
+}
+
 }  // namespace
 }  // namespace floe
