@@ -36,15 +36,16 @@ ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
     const double steeper =
         std::visit([&](const auto& of) { return of.steepness(faces.widest, size * size); }, law);
     most = std::max(most, 2 * k * steeper * faces.area / solids.mass(b));
-    // An obstacle at 1/m, a body as small at 2/m.
-    const double between = 2 * options.young / size, on_obstacle = options.young / (0.5 * size);
-    const double stiffest = solids.obstacles().empty() ? between : std::max(between, on_obstacle);
-    touch = std::max(touch, stiffest * steeper * faces.widest / solids.mass(b));
+    // k_v/m_r is 2 E_c/size/m on an obstacle and between bodies of one size alike; of two sizes the
+    // smaller body's own bound holds.
+    touch = std::max(touch, 2 * options.young / size * steeper * faces.widest / solids.mass(b));
   }
   // Friction's dashpots are sqrt(0.6) of those along the normal: of six equal faces around a body
   // two damp a motion by their pressure and four by friction, 2 + 4 sqrt(0.6) = sqrt(6) 2.08.
   const double faces = solids.has_friction(options.friction) ? 4.2 : 4.0;
-  return {.stiffness = most, .damping = faces * options.damping_ratio * std::sqrt(most), .touch = touch};
+  return {.stiffness = most,
+          .damping = faces * options.damping_ratio * std::sqrt(most),
+          .touch = touch};
 }
 
 }  // namespace floe

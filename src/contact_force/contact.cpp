@@ -10,11 +10,11 @@
 #include "base/collectives.h"
 #include "contact/contacts.h"
 #include "contact_force/checks.h"
-#include "contact_laws/restitution.h"
 #include "contact_force/expiry.h"
 #include "contact_force/halo.h"
 #include "contact_force/load_balance.h"
 #include "contact_force/obstacle_forces.h"
+#include "contact_laws/restitution.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 
