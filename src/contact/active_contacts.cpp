@@ -9,14 +9,15 @@ namespace floe {
 void add_power(const ContactForce& contact, const RelativeMotion& motion, ContactPower& power) {
   const double parting = dot(contact.normal, motion.velocity);
   power.elastic += contact.elastic * parting + dot(contact.couple, motion.spin);
-  power.viscous += contact.viscous * parting;
-  power.friction += dot(contact.memory.springs.force, motion.velocity);
+  power.viscous += contact.viscous * parting + dot(contact.viscous_couple, motion.spin);
+  power.friction += dot(contact.friction.force, motion.velocity) +
+                    contact.friction.couple * dot(contact.normal, motion.spin);
 }
 
 double power_of_obstacle(const ActiveContact& active, const Placed& a, const Placed& obstacle) {
   const Vec3<double> arm = active.centre + (a.x - obstacle.x);
   return dot(active.contact.force(), obstacle.velocity + cross(obstacle.spin, arm)) +
-         dot(active.contact.couple, obstacle.spin);
+         dot(active.contact.whole_couple(), obstacle.spin);
 }
 
 void ActiveContacts::start() {
@@ -39,14 +40,14 @@ void ActiveContacts::add(const ActiveContact& active, const Pair& pair, const Pl
     add_power(contact, motion, power_);
     if (is_obstacle(pair.b)) power_.obstacles += power_of_obstacle(active, a, b);
   }
-  const Vec3<double> force = contact.force();
+  const Vec3<double> force = contact.force(), couple = contact.whole_couple();
   ContactWrench& on_a = item(wrenches, pair.slot_a);
   on_a.force = on_a.force + force;
-  on_a.moment = on_a.moment + cross(active.centre, force) + contact.couple;
+  on_a.moment = on_a.moment + cross(active.centre, force) + couple;
   ContactWrench& on_b =
       is_obstacle(pair.b) ? on_obstacle_[obstacle_number(pair.b)] : item(wrenches, pair.slot_b);
   on_b.force = on_b.force - force;
-  on_b.moment = on_b.moment - cross(active.centre + (a.x - b.x), force) - contact.couple;
+  on_b.moment = on_b.moment - cross(active.centre + (a.x - b.x), force) - couple;
 }
 
 void ActiveContacts::end_step() {

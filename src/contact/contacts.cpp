@@ -12,6 +12,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       law_(law_of(options)),
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free),
       places_(solids_.obstacles().size()),
+      narrow_(options.damping_ratio > 0 || solids_.has_friction(options.friction)),
       active_(solids_.obstacles().size()) {}
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
@@ -35,6 +36,7 @@ void Contacts::take_on(std::span<const BodyPair> pairs) {
 
 void Contacts::place(std::span<const MovingPose> bodies, double time, double velocity_time) {
   places_.place(solids_, list_.involved(), bodies, time, velocity_time);
+  last_dt_ = 2 * (time - velocity_time);
 }
 
 void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
@@ -46,7 +48,41 @@ void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
 
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
   active_.start();
+  touches_.clear();
   std::visit([&](const auto& law) { evaluate_pairs(law, wrenches, offloaded); }, law_);
+}
+
+void Contacts::damp(std::span<const Acceleration> accelerations,
+                    std::span<ContactWrench> wrenches) {
+  active_.start();
+  const auto later = [&](Placed solid, std::int32_t slot) {
+    const Acceleration& change = item(accelerations, slot);
+    solid.velocity = solid.velocity + (0.5 * last_dt_) * change.linear;
+    solid.spin = solid.spin + (0.5 * last_dt_) * change.angular;
+    return solid;
+  };
+  std::visit(
+      [&](const auto& law) {
+        for (const Touch& touch : touches_) {
+          const Pair& pair = list_.pair(touch.pair);
+          const Placed a = later(places_.of_a(pair), pair.slot_a);
+          const Placed b =
+              is_obstacle(pair.b) ? places_.of_b(pair) : later(places_.of_b(pair), pair.slot_b);
+          const RelativeMotion predicted = relative_motion(a, b, touch.met.overlap.centroid);
+          respond(law, touch, &predicted, wrenches);
+        }
+      },
+      law_);
+}
+
+Acceleration Contacts::acceleration(std::int32_t slot, const ContactWrench& wrench) const {
+  const InverseInertia inverse =
+      solids_.inverse_inertia(list_.involved()[static_cast<std::size_t>(slot)]);
+  const Triad<double>& axes = places_.of_slot(slot).axes;
+  const Vec3<double> m = axes.to_local(wrench.moment);
+  return {.linear = inverse.mass * wrench.force,
+          .angular = axes.to_world(
+              {inverse.moments.x * m.x, inverse.moments.y * m.y, inverse.moments.z * m.z})};
 }
 
 template <IsContactLaw Law>
@@ -74,34 +110,53 @@ void Contacts::evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
 template <IsContactLaw Law>
 void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
                      const PairHistory* memory, std::span<ContactWrench> wrenches) {
-  const Overlap& overlap = met.overlap;
-  if (!(overlap.volume > 0)) return;
-  const Pair& pair = list_.pair(index);
+  if (!(met.overlap.volume > 0)) return;
+  const Touch touch{.pair = index,
+                    .met = met,
+                    .memory = memory != nullptr ? *memory : PairHistory{},
+                    .known = memory != nullptr};
+  if (damps()) touches_.push_back(touch);
+  respond(law, touch, nullptr, wrenches);
+}
+
+/// Adds the response of a law to a touch.
+/// \param predicted  motion at t_n but for dashpots; null: dashpots are left out
+template <IsContactLaw Law>
+void Contacts::respond(const Law& law, const Touch& touch, const RelativeMotion* predicted,
+                       std::span<ContactWrench> wrenches) {
+  const Overlap& overlap = touch.met.overlap;
+  const Pair& pair = list_.pair(touch.pair);
   const Placed &a = places_.of_a(pair), &b = places_.of_b(pair);
   const RelativeMotion motion = relative_motion(a, b, overlap.centroid);
-  const ContactResponse response =
-      contact_response(law, pair_constants(solids_, options_, pair), overlap, met.depth, motion,
-                       memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible);
+  const Mobility mobility{.a = solids_.inverse_inertia(pair.a),
+                          .b = solids_.inverse_inertia(pair.b),
+                          .axes_a = a.axes,
+                          .axes_b = b.axes,
+                          .apart = a.x - b.x};
+  const LastStep last{.dt = last_dt_, .touched = touch.known || pair.newly_eligible};
+  const ContactResponse response = contact_response(
+      law, pair_constants(solids_, options_, pair), overlap, touch.met.depth, motion, predicted,
+      mobility, last, 0.5 * (a.spin + b.spin), touch.memory, pair.newly_eligible);
   const double plastic = response.contact.memory.plastic;
-  active_.add({.pair = index,
+  active_.add({.pair = touch.pair,
                .deep = is_deep(solids_, pair, overlap, plastic),
                .centre = overlap.centroid,
                .contact = response.contact},
               pair, a, b, motion, response.stored, wrenches);
 }
 
-void Contacts::commit(std::span<const MovingPose> bodies, double velocity_time, double dt) {
+void Contacts::commit(std::span<const MovingPose> bodies, double velocity_time) {
   history_.clear();
   places_.set_obstacle_velocities(solids_, velocity_time);
   later_power_ = {};
-  for (const ActiveContact& active : active_.contacts()) commit(active, bodies, dt);
+  for (const ActiveContact& active : active_.contacts()) commit(active, bodies);
   start_.take(active_.stored());
   list_.end_step();
   active_.end_step();
 }
 
 /// Commits one contact and adds its power with the velocities after the step.
-void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> bodies, double dt) {
+void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> bodies) {
   const Pair& pair = list_.pair(active.pair);
   const ContactForce& contact = active.contact;
   const Placed a = places_.moving(pair.slot_a, item(bodies, pair.slot_a));
@@ -113,12 +168,7 @@ void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> b
     events_.note(active, pair, places_.time());
   }
   if (is_obstacle(pair.b)) later_power_.obstacles += power_of_obstacle(active, a, b);
-  const FrictionSprings springs =
-      slid(contact.memory.springs, contact.normal, motion.velocity, 0.5 * (a.spin + b.spin), dt);
-  history_.add({.a = pair.a,
-                .b = pair.b,
-                .pair = active.pair,
-                .memory = {.plastic = contact.memory.plastic, .springs = springs}});
+  history_.add({.a = pair.a, .b = pair.b, .pair = active.pair, .memory = contact.memory});
 }
 
 std::vector<BodyPair> Contacts::enclosed() const {

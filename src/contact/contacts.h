@@ -30,6 +30,11 @@
 
 namespace floe {
 
+/// Acceleration of a body [m/s^2, rad/s^2].
+struct Acceleration {
+  Vec3<double> linear{}, angular{};
+};
+
 /// The contacts of the bodies of one rank. No function is collective: exchange between ranks is
 /// left to the caller.
 class Contacts {
@@ -71,15 +76,24 @@ class Contacts {
   /// Computes the overlaps of the pairs taken on.
   /// \param overlaps  filled, in the order of take_on()
   void overlaps_taken_on(std::span<PairOverlap> overlaps);
-  /// Adds the wrenches of the contacts at the places set by place(); changes no history.
+  /// Adds the wrenches of the contacts at the places set by place(), without dashpots; changes no
+  /// history.
   /// \param wrenches   on the involved bodies, by slot
   /// \param offloaded  called when the first overlap of an offloaded pair is needed
   void evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded = {});
+  /// Whether there are dashpots, which damp() adds.
+  bool damps() const { return options_.damping_ratio > 0; }
+  /// Returns the acceleration of an involved body by a wrench, at the places set by place().
+  Acceleration acceleration(std::int32_t slot, const ContactWrench& wrench) const;
+  /// Adds the wrenches of the last evaluate() anew, now with dashpots, which act on the velocities
+  /// at t_n (model.md, "Contact").
+  /// \param accelerations  of the involved bodies at t_n by all forces but dashpots, by slot
+  /// \param wrenches       on the involved bodies, by slot; without those of evaluate()
+  void damp(std::span<const Acceleration> accelerations, std::span<ContactWrench> wrenches);
   /// Makes the findings of the last evaluation history: friction, crushing.
   /// \param bodies         the involved ones after the step, by slot
   /// \param velocity_time  of their velocities [s]
-  /// \param dt             length of the step [s]
-  void commit(std::span<const MovingPose> bodies, double velocity_time, double dt);
+  void commit(std::span<const MovingPose> bodies, double velocity_time);
   /// Makes a pair whose beam broke eligible from the next build on; its overlap at that time counts
   /// as stress-free.
   void release(const BodyPair& pair) { list_.release(pair); }
@@ -118,13 +132,24 @@ class Contacts {
   StoredAtStart& stored_at_start() { return start_; }
 
  private:
+  /// A pair with an overlap in the last evaluation.
+  struct Touch {
+    std::int32_t pair = 0;  ///< index in the list
+    PairOverlap met;
+    PairHistory memory;
+    bool known = false;  ///< the pair has a history
+  };
+
   template <IsContactLaw Law>
   void evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
                       const OffloadedOverlaps& offloaded);
   template <IsContactLaw Law>
   void touch(const Law& law, std::int32_t index, const PairOverlap& met, const PairHistory* memory,
              std::span<ContactWrench> wrenches);
-  void commit(const ActiveContact& active, std::span<const MovingPose> bodies, double dt);
+  template <IsContactLaw Law>
+  void respond(const Law& law, const Touch& touch, const RelativeMotion* predicted,
+               std::span<ContactWrench> wrenches);
+  void commit(const ActiveContact& active, std::span<const MovingPose> bodies);
 
   Solids solids_;
   ContactOptions options_;
@@ -132,6 +157,8 @@ class Contacts {
   PairList list_;
   Places places_;
   NarrowPhase narrow_;
+  std::vector<Touch> touches_;  ///< of the last evaluation, if there are dashpots
+  double last_dt_ = 0;          ///< length of the last step [s]
   ActiveContacts active_;
   ContactHistory history_;
   ContactPower later_power_;

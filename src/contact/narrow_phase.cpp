@@ -21,6 +21,19 @@ void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, co
   for (const Vec3<double>& r : vertices) placed.push_back(x + axes.to_world(r));
 }
 
+/// Returns R J2 R^T, of which the columns of J2 R^T are images of the axes of the world.
+Patch in_world(const Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
+  const auto column = [&](const Vec3<double>& axis) {
+    return axes.to_world(p.second_moment(axes.to_local(axis)));
+  };
+  const Vec3<double> x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
+  return {.area = p.area,
+          .middle = axes.to_world(p.middle) + origin,
+          .squares = {x.x, y.y, z.z},
+          .products = {y.z, z.x, x.y},
+          .reach = p.reach};
+}
+
 }  // namespace
 
 Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b,
@@ -60,13 +73,14 @@ PairOverlap NarrowPhase::overlap(const Solids& solids, const Pair& pair, const P
                            b.axes.to_local(a.axes.e3)};
   place(solids.vertices(pair.a), turn, b.axes.to_local(a.x - b.x), vertices_a_);
   const std::span<const HalfSpace> planes = solids.planes(pair.b);
-  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes);
+  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_);
   const double radius = solids.radius(pair.a);
   if (o.volume <= rounding_volume * radius * radius * radius) return {};
   const double depth = planes[0].offset - dot(planes[0].normal, o.centroid);
   o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);
+  if (with_patch_) o.patch = in_world(o.patch, b.axes, b.x - a.x);
   return {.overlap = o, .depth = depth};
 }
 

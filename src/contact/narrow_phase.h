@@ -29,6 +29,9 @@ Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const P
 /// once the memory has grown.
 class NarrowPhase {
  public:
+  /// \param with_patch  whether overlaps have their Overlap::patch
+  explicit NarrowPhase(bool with_patch) : with_patch_(with_patch) {}
+
   /// Returns the gap of a pair along its axis, or along a better axis that replaces it [m]. Not
   /// positive: no gap was found, which does not prove an overlap.
   /// \param tries  largest number of further axes
@@ -46,6 +49,7 @@ class NarrowPhase {
  private:
   bool has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b);
 
+  bool with_patch_;
   Clipper clipper_;
   std::vector<Vec3<double>> vertices_a_, vertices_b_;  ///< work space: placed vertices
 };

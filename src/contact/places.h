@@ -65,6 +65,7 @@ class Places {
   /// Gives obstacles their velocities at a time; their places stay.
   void set_obstacle_velocities(const Solids& solids, double time);
 
+  const Placed& of_slot(std::int32_t slot) const { return item(bodies_, slot); }
   const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
   const Placed& of_b(const Pair& pair) const {
     return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);

@@ -71,10 +71,19 @@ void Solids::add(std::int32_t body, double mass) {
   append_half_spaces(shapes_, body, planes_);
   added.vertices = static_cast<std::int32_t>(vertices_.size()) - added.first_vertex;
   added.planes = static_cast<std::int32_t>(planes_.size()) - added.first_plane;
-  added.size = std::cbrt(volume_properties(shapes_, body).volume);
+  const VolumeProperties properties = volume_properties(shapes_, body);
+  added.size = std::cbrt(properties.volume);
   added.mass = mass;
+  const double per_density = properties.volume / mass;
+  const auto inverse = [&](std::size_t k) { return per_density / properties.inertia[4 * k]; };
+  added.inverse = {.mass = 1 / mass, .moments = {inverse(0), inverse(1), inverse(2)}};
   bodies_.push_back(added);
   bodies_.back().width = least_width(vertices(body), planes(body));
+}
+
+bool Solids::has_friction(double between_bodies) const {
+  return between_bodies > 0 || std::any_of(obstacles_.begin(), obstacles_.end(),
+                                           [](const Obstacle& o) { return o.friction > 0; });
 }
 
 double Solids::mean_radius() const {

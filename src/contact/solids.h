@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/pair.h"
+#include "contact_laws/mobility.h"
 #include "floe/base/item.h"
 #include "floe/contact/obstacle.h"
 #include "floe/geometry/half_space.h"
@@ -49,6 +50,13 @@ class Solids {
   double size(std::int32_t body) const { return item(bodies_, body).size; }
   /// Returns the mass of a body [kg].
   double mass(std::int32_t body) const { return item(bodies_, body).mass; }
+  /// Returns the inverse mass and moments of inertia of a body with the density of its shape; zeros
+  /// for an obstacle.
+  InverseInertia inverse_inertia(std::int32_t index) const {
+    return is_obstacle(index) ? InverseInertia{} : item(bodies_, index).inverse;
+  }
+  /// Whether any pair rubs: bodies at the coefficient `between_bodies`, or on an obstacle.
+  bool has_friction(double between_bodies) const;
   /// Returns the distance of the farthest vertex from the centroid of a body or from the origin of
   /// the frame of an obstacle [m].
   double radius(std::int32_t index) const {
@@ -79,6 +87,7 @@ class Solids {
     std::int32_t first_vertex = 0, vertices = 0;
     std::int32_t first_plane = 0, planes = 0;
     double size = 0, mass = 0, radius = 0, width = 0;
+    InverseInertia inverse;
   };
   struct Extents {
     double radius = 0, width = 0;

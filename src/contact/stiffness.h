@@ -15,6 +15,7 @@ PairConstants pair_constants(const Solids& solids, const ContactOptions& options
 struct ContactRates {
   double stiffness = 0;  ///< [1/s^2]
   double damping = 0;    ///< [1/s]
+  double touch = 0;      ///< square of the angular frequency of a touch by a largest face [1/s^2]
 };
 ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
                            const ContactLaws& law);

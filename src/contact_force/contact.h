@@ -28,11 +28,13 @@ class Contact : public Force<Spatial> {
 /// NAME_peak_force_x.. (largest so far), NAME_mean_force_x.. (over the run so far).
 /// \param part     must outlive the force
 /// \param lattice  whole; not used after construction
+/// \param prescribed  per local body the bits of its prescribed components; empty: none
 /// \throws InputError if the lattice has no shapes, a shape is not convex, a body lies wholly
 /// inside another or inside an obstacle, or overlaps it by more than a tenth of the smaller size
 /// (unless initial_overlap is stress_free)
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
-                                      std::vector<Obstacle> obstacles);
+                                      std::vector<Obstacle> obstacles,
+                                      std::vector<std::uint8_t> prescribed = {});
 
 }  // namespace floe

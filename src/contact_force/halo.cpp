@@ -1,6 +1,7 @@
 #include "contact_force/halo.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -87,11 +88,16 @@ void ContactHalo::connect(const std::vector<std::int32_t>& sent) {
   std::map<std::int32_t, std::int32_t> place;  // of a body in the buffer of its owner
   std::int32_t owner = -1, next = 0;
   sent_.clear();
+  sent_at_.clear();
   for (const std::int32_t body : sent) {
     if (item(owner_, body) != owner) next = 0;
     owner = item(owner_, body);
     place[body] = next++;
-    if (owner == rank(part_.comm)) sent_.push_back(part_.local_index(body));
+    if (owner != rank(part_.comm)) continue;
+    sent_.push_back(part_.local_index(body));
+    // Pairs of an owned body are listed here too, so that the body is wanted here.
+    const auto found = std::lower_bound(wanted_.begin(), wanted_.end(), body);
+    sent_at_.push_back(static_cast<std::int32_t>(found - wanted_.begin()));
   }
   std::vector<std::int32_t> owners, places;
   auto received = static_cast<std::int32_t>(sent_.size());
@@ -123,6 +129,23 @@ void ContactHalo::gather(const State<Spatial>& state, std::span<MovingPose> bodi
                   product(Quat<double>{r[3], r[4], r[5], r[6]}, axes_[b])},
                  {v[0], v[1], v[2]},
                  {w[0], w[1], w[2]}};
+  }
+}
+
+void ContactHalo::complete(std::span<Acceleration> accelerations) {
+  constexpr std::size_t width = sizeof(Acceleration) / sizeof(double);
+  if (alone_) return;
+  for (std::size_t k = 0; k < sent_.size(); ++k) {
+    const Acceleration& a = item(accelerations, sent_at_[k]);
+    const std::array<double, width> row{a.linear.x,  a.linear.y,  a.linear.z,
+                                        a.angular.x, a.angular.y, a.angular.z};
+    std::copy_n(row.begin(), width, &buffer_[k * width]);
+  }
+  ghosts_.update(buffer_, width);
+  for (std::size_t k = 0; k < wanted_.size(); ++k) {
+    if (local_[k] >= 0) continue;
+    const double* row = &buffer_[static_cast<std::size_t>(from_[k]) * width];
+    accelerations[k] = {.linear = {row[0], row[1], row[2]}, .angular = {row[3], row[4], row[5]}};
   }
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/ghosts.h"
-#include "contact/places.h"
+#include "contact/contacts.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
 
@@ -27,6 +27,9 @@ class ContactHalo {
   /// Poses and velocities of the wanted bodies. Collective.
   /// \param bodies  filled, in the order of choose()
   void gather(const State<Spatial>& state, std::span<MovingPose> bodies);
+  /// Sets the accelerations of the wanted bodies that other ranks own. Collective.
+  /// \param accelerations  in the order of choose(); those of owned bodies are set
+  void complete(std::span<Acceleration> accelerations);
   /// Local index of each wanted body; -1 if another rank owns the body.
   const std::vector<std::int32_t>& local() const { return local_; }
 
@@ -44,6 +47,7 @@ class ContactHalo {
   std::vector<std::int32_t> sent_;  ///< owned bodies that another rank wants
   std::vector<std::int32_t> from_;  ///< per wanted body: index of its record in buffer_; -1: owned
   std::vector<double> buffer_;      ///< records sent, then records received
+  std::vector<std::int32_t> sent_at_;  ///< per sent body: its index in wanted_
   Ghosts ghosts_;
 };
 

@@ -14,7 +14,7 @@ struct FrictionSprings {
   Vec3<double> force{};  ///< F_t on A [N]
 
   /// Returns the energy in the springs [J].
-  double energy() const { return 0.5 * dot(force, force) / stiffness; }
+  double energy() const { return stiffness > 0 ? 0.5 * dot(force, force) / stiffness : 0.0; }
 };
 
 /// Returns the force of the springs in the tangent plane of the present normal: turned into this
@@ -34,32 +34,45 @@ inline Vec3<double> carried(const FrictionSprings& last, const Vec3<double>& nor
   return (falls * before / size) * in_plane;
 }
 
-/// Returns the springs in an evaluation: carried, and cut to the largest friction.
-/// \param most  mu times the normal force [N]
-inline FrictionSprings cut(const FrictionSprings& last, const Vec3<double>& normal,
-                           double stiffness, double most) {
-  Vec3<double> force = carried(last, normal, stiffness);
-  const double size = length(force);
-  if (size > most) force = (most / size) * force;
-  return {.stiffness = stiffness, .force = force};
+/// The spring of friction against a spin about the normal.
+struct TwistSpring {
+  double stiffness = 0;  ///< k_t tr(J2)/|S| [N m]
+  double couple = 0;     ///< M_n on A, about n [N m]
+
+  /// Returns the energy in the spring [J].
+  double energy() const { return stiffness > 0 ? 0.5 * couple * couple / stiffness : 0.0; }
+};
+
+/// Returns the couple of the spring, scaled down if the stiffness has fallen [N m].
+inline double carried(const TwistSpring& last, double stiffness) {
+  return last.stiffness > stiffness ? last.couple * (stiffness / last.stiffness) : last.couple;
 }
 
-/// Returns the springs after a step: they turn with the bodies about the normal and follow the
-/// sliding.
-/// \param springs    in the evaluation at the start of the step
-/// \param normal     of the contact; zero if there is no force
-/// \param velocity   of A relative to B in the step [m/s]
-/// \param mean_spin  mean of the spins of A and B [rad/s]
-/// \param dt         length of the step [s]
-inline FrictionSprings slid(const FrictionSprings& springs, const Vec3<double>& normal,
-                            const Vec3<double>& velocity, const Vec3<double>& mean_spin,
-                            double dt) {
-  if (dot(normal, normal) == 0 || springs.stiffness == 0) return springs;
-  const double turn = dt * dot(mean_spin, normal);
-  const Vec3<double> turned =
-      std::cos(turn) * springs.force + std::sin(turn) * cross(normal, springs.force);
-  const Vec3<double> slip = velocity - dot(velocity, normal) * normal;
-  return {.stiffness = springs.stiffness, .force = turned - (dt * springs.stiffness) * slip};
+/// Force and couple of friction.
+struct Friction {
+  Vec3<double> force{};  ///< on A, normal to n [N]
+  double couple = 0;     ///< on A, about n [N m]
+};
+
+/// Returns friction within its limit, which slip and spin share:
+/// (|F|/(mu F_n))^2 + (M/(mu F_n r_eff))^2 <= 1, within 14 % of the exact limit of a rigid face.
+/// \param most   mu F_n [N]
+/// \param reach  r_eff [m]
+inline Friction within(const Friction& friction, double most, double reach) {
+  if (most <= 0) return {};
+  Friction cut = friction;
+  if (reach <= 0) cut.couple = 0;
+  const double part = reach > 0 ? cut.couple / (most * reach) : 0.0;
+  const double load2 = dot(cut.force, cut.force) / (most * most) + part * part;
+  if (load2 <= 1) return cut;
+  const double share = 1 / std::sqrt(load2);
+  return {.force = share * cut.force, .couple = share * cut.couple};
+}
+
+/// Returns the force of the springs turned with the bodies about the normal.
+/// \param turn  mean angle of the bodies about the normal in the last step [rad]
+inline Vec3<double> turned(const Vec3<double>& force, const Vec3<double>& normal, double turn) {
+  return std::cos(turn) * force + std::sin(turn) * cross(normal, force);
 }
 
 }  // namespace floe

@@ -48,25 +48,42 @@ ContactLaws law_of(const ContactOptions& options) {
 /// direction and no force, and the force of the springs of friction is lost.
 /// \param overlap         in world axes, with V > 0
 /// \param depth           of its centroid below the plane of a half-space [m]; else not used
-/// \param motion          of A relative to B at the centroid of the overlap
+/// \param motion          of A relative to B at the centroid of the overlap, in the last step
+/// \param predicted       the same now, but for dashpots; null: dashpots are left out
+/// \param mobility        of A and B
+/// \param last            the last step; the turn about the normal is found here
+/// \param mean_spin       mean of the spins of A and B in the last step [rad/s]
 /// \param memory          history of the pair
 /// \param newly_eligible  the overlap is stress-free: V_p = V
 template <IsContactLaw Law>
 ContactResponse contact_response(const Law& law, const PairConstants& pair, const Overlap& overlap,
-                                 double depth, const RelativeMotion& motion, PairHistory memory,
+                                 double depth, const RelativeMotion& motion,
+                                 const RelativeMotion* predicted, const Mobility& mobility,
+                                 LastStep last, const Vec3<double>& mean_spin, PairHistory memory,
                                  bool newly_eligible) {
-  if (newly_eligible) memory.plastic = overlap.volume;
+  if (newly_eligible) {
+    memory.plastic = overlap.volume;
+    last.dt = 0;  // nothing has slipped yet
+  }
   const double area = length(overlap.area);
   if (area <= 1e-12 * pair.area) {
     memory.springs.force = {};
-    return {.contact = {.memory = memory}, .stored = {}};
+    memory.twist.couple = 0;
+    ContactResponse none;
+    none.contact.memory = memory;
+    return none;
   }
+  const Vec3<double> normal = (1 / area) * overlap.area;
+  last.mean_turn = last.dt * dot(mean_spin, normal);
   return law.respond({.pair = pair,
                       .overlap = overlap,
                       .depth = depth,
                       .motion = motion,
+                      .predicted = predicted,
+                      .mobility = mobility,
+                      .last = last,
                       .area = area,
-                      .normal = (1 / area) * overlap.area},
+                      .normal = normal},
                      memory);
 }
 

@@ -16,7 +16,8 @@ struct OverlapLaw {
 
   ContactResponse respond(const ContactState& state, const PairHistory& memory) const {
     const double stiffness = state.pair.stiffness;
-    ContactResponse response = elastic_response(constants, state, stiffness, memory);
+    ContactResponse response = elastic_response(
+        constants, state, {.rate = stiffness, .root = std::sqrt(stiffness * state.area)}, memory);
     const double plastic = response.contact.memory.plastic;
     const double elastic = state.elastic_volume(plastic);
     response.stored.normal = state.pair.half_space && plastic == 0

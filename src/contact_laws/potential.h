@@ -9,7 +9,9 @@
 namespace floe {
 
 /// The gradient of the energy k_v (V - V_p)^2/(2 A_r): a pressure p = k_v (V - V_p)/A_r, whose
-/// force is p S at c, with the couple p G_c.
+/// force is p S at c, with the couple p G_c. With its dashpot 2 zeta sqrt(m_eff k_v/A_r)|S| it is a
+/// linear oscillator in the time integral of |S|, so that faces, edges and corners that meet
+/// centrally return the same part of their speed, whatever it is.
 struct PotentialLaw {
   static constexpr ContactLaw word = ContactLaw::potential;
   SharedConstants constants;
@@ -19,9 +21,12 @@ struct PotentialLaw {
   ContactResponse respond(const ContactState& state, const PairHistory& memory) const {
     const double stiffness = state.pair.stiffness, reference = state.pair.area;
     ContactResponse response =
-        elastic_response(constants, state, stiffness * state.area / reference, memory);
+        elastic_response(constants, state,
+                         {.rate = stiffness * state.area / reference,
+                          .couple = (stiffness / reference) * state.overlap.moment,
+                          .root = std::sqrt(stiffness / reference) * state.area},
+                         memory);
     const double elastic = state.elastic_volume(response.contact.memory.plastic);
-    response.contact.couple = (stiffness * elastic / reference) * state.overlap.moment;
     response.stored.normal = 0.5 * stiffness * elastic * elastic / reference;
     return response;
   }

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "contact_laws/friction.h"
+#include "contact_laws/mobility.h"
 #include "geometry/overlap.h"
 
 namespace floe {
@@ -16,7 +17,6 @@ namespace floe {
 struct PairConstants {
   double stiffness = 0;     ///< k_v = E_c/(L_a + L_b) [Pa/m]
   double area = 0;          ///< A_r [m^2]
-  double mass = 0;          ///< m_r [kg]
   double friction = 0;      ///< mu
   bool half_space = false;  ///< whether B is a half-space
 };
@@ -24,17 +24,21 @@ struct PairConstants {
 /// History of a pair.
 struct PairHistory {
   double plastic = 0;       ///< V_p [m^3]
-  FrictionSprings springs;  ///< after the last step
+  FrictionSprings springs;  ///< at the last step
+  TwistSpring twist;        ///< at the last step
 
-  static constexpr std::size_t numbers = 5;
-  /// Returns V_p, k_t and the three components of F_t, as a checkpoint holds them.
+  static constexpr std::size_t numbers = 7;
+  /// Returns V_p, k_t, the three components of F_t, the stiffness of the twist and M_n, as a
+  /// checkpoint holds them.
   std::array<double, numbers> as_numbers() const {
     const Vec3<double>& f = springs.force;
-    return {plastic, springs.stiffness, f.x, f.y, f.z};
+    return {plastic, springs.stiffness, f.x, f.y, f.z, twist.stiffness, twist.couple};
   }
   /// Returns the history that gave these numbers.
   static PairHistory from(std::span<const double, numbers> n) {
-    return {.plastic = n[0], .springs = {.stiffness = n[1], .force = {n[2], n[3], n[4]}}};
+    return {.plastic = n[0],
+            .springs = {.stiffness = n[1], .force = {n[2], n[3], n[4]}},
+            .twist = {.stiffness = n[5], .couple = n[6]}};
   }
 };
 
@@ -44,12 +48,22 @@ struct RelativeMotion {
   Vec3<double> spin{};      ///< omega_A - omega_B [rad/s]
 };
 
+/// The last step, after which a contact is evaluated. Velocities lag half of it behind.
+struct LastStep {
+  double dt = 0;         ///< [s]; 0 before the first step
+  bool touched = true;   ///< whether the pair touched at its start
+  double mean_turn = 0;  ///< of the bodies about the normal [rad]
+};
+
 /// A contact in an evaluation, as a law sees it.
 struct ContactState {
   const PairConstants& pair;
   const Overlap& overlap;  ///< in world axes, with V > 0
   double depth = 0;        ///< of c below the plane of B where B is a half-space [m]; else not used
-  const RelativeMotion& motion;
+  const RelativeMotion& motion;     ///< in the middle of the last step
+  const RelativeMotion* predicted;  ///< now, but for dashpots; null: dashpots are left out
+  const Mobility& mobility;
+  LastStep last;
   double area = 0;        ///< |S| [m^2]
   Vec3<double> normal{};  ///< n = S/|S|, from B to A
 
@@ -62,9 +76,13 @@ struct ContactForce {
   Vec3<double> normal{};            ///< from B to A; zero if there is no force
   double elastic = 0, viscous = 0;  ///< along the normal [N]
   Vec3<double> couple{};            ///< elastic [N m]
-  PairHistory memory;               ///< for the commit; the force of its springs acts now
+  Vec3<double> viscous_couple{};    ///< of the viscous pressure [N m]
+  Friction friction;                ///< of springs and dashpots
+  PairHistory memory;               ///< for the commit
 
-  Vec3<double> force() const { return (elastic + viscous) * normal + memory.springs.force; }
+  Vec3<double> force() const { return (elastic + viscous) * normal + friction.force; }
+  /// Returns the couple of all terms [N m].
+  Vec3<double> whole_couple() const { return couple + viscous_couple + friction.couple * normal; }
 };
 
 /// Energy that a contact stores [J].

@@ -19,46 +19,169 @@ struct SharedConstants {
       : damping_ratio(options.damping_ratio), plastic_limit(options.plastic_limit) {}
 };
 
-/// The force along the normal.
-struct NormalForce {
-  double plastic = 0;   ///< V_p [m^3]
-  double elastic = 0;   ///< [N]
-  double pressing = 0;  ///< elastic and viscous, at least 0 and at most sigma_p |S| [N]
+/// The elastic force of a law, proportional to V - V_p.
+struct ElasticTerm {
+  double rate = 0;        ///< force per volume [N/m^3]
+  Vec3<double> couple{};  ///< couple about the centroid of the overlap per volume [N m/m^3]
+  double root = 0;        ///< square root of the stiffness along n [(N/m)^1/2]
 };
 
-/// Returns the force along the normal of a contact with an elastic force proportional to V - V_p.
-/// \param rate     elastic force per volume of overlap [N/m^3]
-/// \param plastic  V_p before the evaluation [m^3]
-inline NormalForce normal_force(const SharedConstants& constants, const ContactState& state,
-                                double rate, double plastic) {
-  const PairConstants& pair = state.pair;
-  const double volume = state.overlap.volume;
-  const double yield = constants.plastic_limit * state.area;
-  if (rate * (volume - plastic) > yield) plastic = volume - yield / rate;
-  const double elastic = rate * state.elastic_volume(plastic);
-  const double approach = -dot(state.motion.velocity, state.normal);
-  const double dashpot =
-      2 * constants.damping_ratio * std::sqrt(pair.mass * pair.stiffness * state.area);
-  const double pressing = std::min(std::max(elastic + dashpot * approach, 0.0), yield);
-  return {.plastic = plastic, .elastic = elastic, .pressing = pressing};
+/// Force and couple of a pressure over the facets.
+struct Pressure {
+  double force = 0;       ///< along n [N]
+  Vec3<double> couple{};  ///< about the centroid of the overlap [N m]
+};
+
+/// Returns T v, T = int (r x n)(r x n)^T |dA| (model.md, "Contact") [m^4 times v].
+inline Vec3<double> rocking(const Patch& patch, const Vec3<double>& n, const Vec3<double>& v) {
+  return cross(patch.second_moment(cross(n, v)), n);
+}
+
+/// Returns the trace and the largest eigenvalue of T, which are those of J2 across n [m^4].
+struct RockingMoments {
+  double trace = 0, largest = 0;
+};
+inline RockingMoments rocking_moments(const Patch& patch, const Vec3<double>& n) {
+  // Any vector that is not along n begins a basis across n.
+  const Vec3<double> other = std::abs(n.x) < 0.6 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0};
+  const Vec3<double> across = cross(n, other), u = (1 / length(across)) * across, v = cross(n, u);
+  const Vec3<double> tu = rocking(patch, n, u), tv = rocking(patch, n, v);
+  const double uu = dot(u, tu), vv = dot(v, tv), uv = dot(u, tv);
+  return {.trace = uu + vv, .largest = 0.5 * (uu + vv) + std::hypot(0.5 * (uu - vv), uv)};
+}
+
+/// Returns the part of the last step in which the dashpot acts: in the first step of a touch the
+/// impulse of the half step before t_n counts from the time t_c of the touch on, which is at most
+/// a step ago.
+/// \param approach  speed of approach in the middle of the last step [m/s]
+inline double touched_for(const ContactState& state, double approach) {
+  const double dt = state.last.dt;
+  if (state.last.touched || !(dt > 0) || !(approach > 0)) return dt;
+  return std::min(dt, state.overlap.volume / (state.area * approach));
+}
+
+/// Returns the viscous pressure before any limit: the force -c v_n n at the middle of the facets
+/// and the couple -(c/|S|) T omega, with the velocities at t_n that the pressure itself slows down:
+/// v* = v/(1 + (dt/2) c/m_eff), v predicted with all other forces.
+inline Pressure viscous_pressure(const SharedConstants& constants, const ContactState& state,
+                                 double root, double touched) {
+  if (constants.damping_ratio == 0 || state.predicted == nullptr) return {};
+  const Vec3<double>& n = state.normal;
+  const Patch& patch = state.overlap.patch;
+  const double dt = state.last.dt, half = 0.5 * dt;
+  const Vec3<double> middle = patch.area > 0 ? patch.middle : state.overlap.centroid;
+  const double yields = state.mobility.along(middle, n);
+  const double c = 2 * constants.damping_ratio * root / std::sqrt(yields);
+  const double counts = state.last.touched || !(dt > 0) ? 1.0 : (touched + half) / dt;
+  const RelativeMotion& motion = *state.predicted;
+  const Vec3<double> velocity =
+      motion.velocity + cross(motion.spin, middle - state.overlap.centroid);
+  Pressure viscous{.force = -counts * c * dot(velocity, n) / (1 + half * c * yields)};
+  const Vec3<double> w = motion.spin - dot(motion.spin, n) * n, tw = rocking(patch, n, w);
+  const double w2 = dot(w, w);
+  if (w2 > 0) {
+    const double per_area = c / state.area;
+    const double slows = per_area * (dot(w, tw) / w2) * (state.mobility.about(w) / w2);
+    viscous.couple = (-counts * per_area / (1 + half * slows)) * tw;
+  }
+  return viscous;
+}
+
+/// Advances the springs of friction by the slip of the last step and cuts them.
+/// \param stiffness  k_t [N/m]
+inline void advance_springs(const ContactState& state, double stiffness, const PairHistory& memory,
+                            double touched, double most, double reach, double twist_arm2,
+                            PairHistory& now) {
+  const Vec3<double>& n = state.normal;
+  const Vec3<double>& v = state.motion.velocity;
+  const Vec3<double> before =
+      turned(carried(memory.springs, n, stiffness), n, state.last.mean_turn);
+  const double twist = stiffness * twist_arm2;
+  const Friction springs =
+      within({.force = before - (touched * stiffness) * (v - dot(v, n) * n),
+              .couple = carried(memory.twist, twist) - touched * twist * dot(state.motion.spin, n)},
+             most, reach);
+  now.springs = {.stiffness = stiffness, .force = springs.force};
+  now.twist = {.stiffness = twist, .couple = springs.couple};
+}
+
+/// Returns what the dashpots of friction add: 2 zeta sqrt(m_t k_t) against slip and alike against
+/// spin, 1/m_t the mean over the directions across n.
+inline Friction friction_dashpots(const SharedConstants& constants, const ContactState& state,
+                                  const PairHistory& now) {
+  if (constants.damping_ratio == 0 || state.predicted == nullptr) return {};
+  const Vec3<double>& n = state.normal;
+  const Vec3<double>& at = state.overlap.centroid;
+  const double half = 0.5 * state.last.dt;
+  const Vec3<double> other = std::abs(n.x) < 0.6 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0};
+  const Vec3<double> across = cross(n, other), t = (1 / length(across)) * across;
+  const double yields = 0.5 * (state.mobility.along(at, t) + state.mobility.along(at, cross(n, t)));
+  const double c = 2 * constants.damping_ratio * std::sqrt(now.springs.stiffness / yields);
+  const Vec3<double>& v = state.predicted->velocity;
+  Friction dashpots{.force = (-c / (1 + half * c * yields)) * (v - dot(v, n) * n)};
+  const double turns = state.mobility.about(n);
+  if (turns > 0) {
+    const double d = 2 * constants.damping_ratio * std::sqrt(now.twist.stiffness / turns);
+    dashpots.couple = (-d / (1 + half * d * turns)) * dot(state.predicted->spin, n);
+  }
+  return dashpots;
+}
+
+/// Returns the couple of the viscous pressure under its limits. Where the force along the normal is
+/// cut, couples are cut by the same factor; none exceeds what the force can carry over the facets.
+inline Vec3<double> limited_couple(const ContactState& state, const Pressure& elastic,
+                                   const Pressure& viscous, double pressing, double largest) {
+  if (!(pressing > 0)) return -elastic.couple;
+  const double raw = elastic.force + viscous.force;
+  const Patch& patch = state.overlap.patch;
+  const Vec3<double> arm = patch.area > 0 ? patch.middle - state.overlap.centroid : Vec3<double>{};
+  const double factor = pressing < raw ? pressing / raw : 1.0;
+  Vec3<double> couple =
+      factor * viscous.couple + (pressing - elastic.force) * cross(arm, state.normal);
+  const double most = pressing * std::sqrt(std::max(largest, 0.0) / state.area);
+  const double size = length(couple);
+  if (size > most) couple = (most / size) * couple;
+  // An elastic couple ends with the force along the normal.
+  if (pressing < elastic.force) couple = couple + (pressing / elastic.force - 1) * elastic.couple;
+  return couple;
 }
 
 /// Returns the response of a contact with an elastic force along the normal, without the energy
-/// that this force stores and without a couple.
-/// \param rate    elastic force per volume of overlap [N/m^3]
+/// that this force stores.
+/// \param term    of the law
 /// \param memory  history of the pair
 inline ContactResponse elastic_response(const SharedConstants& constants, const ContactState& state,
-                                        double rate, const PairHistory& memory) {
-  const NormalForce normal = normal_force(constants, state, rate, memory.plastic);
-  const double shear = 0.6 * state.pair.stiffness * state.area;  // k_t
+                                        const ElasticTerm& term, const PairHistory& memory) {
+  const double yield = constants.plastic_limit * state.area, volume = state.overlap.volume;
+  PairHistory now = memory;
+  if (term.rate * (volume - now.plastic) > yield) now.plastic = volume - yield / term.rate;
+  const double pressed = state.elastic_volume(now.plastic);
+  const Pressure elastic{.force = term.rate * pressed, .couple = pressed * term.couple};
+  const double touched = touched_for(state, -dot(state.motion.velocity, state.normal));
+  const Pressure viscous = viscous_pressure(constants, state, term.root, touched);
+  const double pressing = std::min(std::max(elastic.force + viscous.force, 0.0), yield);
+
+  const Patch& patch = state.overlap.patch;
+  const RockingMoments moments =
+      patch.area > 0 ? rocking_moments(patch, state.normal) : RockingMoments{};
+  const double most = state.pair.friction * pressing, reach = patch.reach / state.area;
+  advance_springs(state, 0.6 * term.root * term.root, memory, touched, most, reach,
+                  moments.trace / state.area, now);
+  const Friction dashpots = friction_dashpots(constants, state, now);
+
   ContactResponse response;
-  response.contact.normal = state.normal;
-  response.contact.elastic = normal.elastic;
-  response.contact.viscous = normal.pressing - normal.elastic;
-  response.contact.memory = {
-      .plastic = normal.plastic,
-      .springs = cut(memory.springs, state.normal, shear, state.pair.friction * normal.pressing)};
-  response.stored.tangential = response.contact.memory.springs.energy();
+  ContactForce& contact = response.contact;
+  contact.normal = state.normal;
+  contact.elastic = elastic.force;
+  contact.viscous = pressing - elastic.force;
+  contact.couple = elastic.couple;
+  if (constants.damping_ratio > 0)
+    contact.viscous_couple = limited_couple(state, elastic, viscous, pressing, moments.largest);
+  contact.friction = within(
+      {.force = now.springs.force + dashpots.force, .couple = now.twist.couple + dashpots.couple},
+      most, reach);
+  contact.memory = now;
+  response.stored.tangential = now.springs.energy() + now.twist.energy();
   return response;
 }
 

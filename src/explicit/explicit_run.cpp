@@ -51,10 +51,21 @@ void ExplicitRun<Space>::choose_step() {
     throw InputError(this->dt_key() + ": " + text(given) + " must be <= " + text(stable.dt) +
                      " [s], the stable step, limited by the " + stable.limit +
                      " (time: allow_unstable: true takes it all the same)");
-  const double wanted = given > 0 ? given : explicit_options_.safety * stable.dt;
+  const double wanted = given > 0 ? given : automatic(stable.dt);
   if (!std::isfinite(wanted))
     throw InputError("time: dt: auto finds no force that limits the step; give one");
   this->plan(wanted);
+}
+
+/// The step that `dt: auto` takes [s].
+/// \param stable  the stable step [s]
+template <class Space>
+double ExplicitRun<Space>::automatic(double stable) const {
+  double dt = explicit_options_.safety * stable;
+  for (const auto& force : this->model().forces()) {
+    if (const auto* role = force->roles().step) dt = std::min(dt, role->resolved_step());
+  }
+  return dt;
 }
 
 /// Sum over the forces of their fastest rates [1/s], each the largest over ranks; 0 if no force
@@ -125,7 +136,9 @@ bool ExplicitRun<Space>::keep_step_stable() {
     this->result().stable_dt = stable.dt;
     this->result().limited_by = stable.limit;
   }
-  if (needed() <= stable.dt) return true;
+  const bool resolved = this->options().dt > 0 || this->dt() <= automatic(stable.dt) ||
+                        automatic(stable.dt) == explicit_options_.safety * stable.dt;
+  if (needed() <= stable.dt && resolved) return true;
   if (this->options().dt > 0) {
     this->give_up(
         "the stable step has fallen to " + text(stable.dt) + " s, below dt, at time " +
@@ -134,14 +147,14 @@ bool ExplicitRun<Space>::keep_step_stable() {
         "all the same)");
     return false;
   }
-  if (!(this->options().end / stable.dt <= this->options().most_steps)) {
+  if (!(this->options().end / automatic(stable.dt) <= this->options().most_steps)) {
     this->give_up("the stable step has fallen to " + text(stable.dt) + " s at time " +
                   text(this->time()) + " s, limited by the " + stable.limit +
                   ": more steps to time: end than are made (limit: steps)");
     return false;
   }
   const double before = this->dt();
-  this->replan(explicit_options_.safety * stable.dt);
+  this->replan(automatic(stable.dt));
   step_changed(before);
   return true;
 }

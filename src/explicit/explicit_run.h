@@ -47,6 +47,7 @@ class ExplicitRun : public DynamicRun<Space> {
   double rate_estimate();
   typename LimitsStep<Space>::Limit step_limit();
   double own_stiffness();
+  double automatic(double stable) const;
   double needed() const;
 
   const ExplicitOptions explicit_options_;

@@ -125,6 +125,9 @@ class LimitsStep {
   /// Limit that this rank's bodies set, such as their travel in a step against their widths.
   /// Default: none.
   virtual Limit step_limit(const State<Space>& /*state*/) const { return {}; }
+  /// Longest step that resolves the motion by this force, the same on all ranks [s]. `time: dt:
+  /// auto` takes no longer one; a given step may be longer. Default: none.
+  virtual double resolved_step() const { return std::numeric_limits<double>::infinity(); }
 
  protected:
   ~LimitsStep() = default;

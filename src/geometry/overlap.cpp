@@ -31,6 +31,27 @@ std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   return HalfSpace{normal, offset};
 }
 
+/// Returns int rho dA over the triangle between the origin and an edge from a to b, both seen along
+/// a unit normal; below 0 where the edge runs clockwise [m^3]. With the edge at the distance d from
+/// the origin it is (d^3/6) [sec t tan t + asinh(tan t)] between the directions t of its ends.
+double reach_of_edge(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& normal) {
+  const Vec3<double> p = a - dot(a, normal) * normal, way = b - a;
+  const Vec3<double> along = way - dot(way, normal) * normal;
+  const double size = length(along);
+  if (size == 0) return 0;
+  const double twice = dot(normal, cross(p, along)), d = std::abs(twice) / size;
+  if (d <= 1e-14 * size) return 0;  // the integral is of the order of d size^2
+  const double from = dot(p, along) / size, to = from + size;
+  const double far_from = std::hypot(d, from), far_to = std::hypot(d, to);
+  // asinh(to/d) - asinh(from/d), by the end that is farther from the foot of the perpendicular.
+  const double turn =
+      from + to >= 0
+          ? std::log((to + far_to) / (from >= 0 ? from + far_from : d * d / (far_from - from)))
+          : std::log((far_from - from) / (to <= 0 ? far_to - to : d * d / (far_to + to)));
+  const double sum = (d / 6) * (to * far_to - from * far_from + d * d * turn);
+  return twice > 0 ? sum : -sum;
+}
+
 }  // namespace
 
 void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<HalfSpace>& planes) {
@@ -59,7 +80,8 @@ double concavity(const Shapes& shapes, std::int32_t body) {
 }
 
 Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
-                         std::span<const Vec3<double>> placed, std::span<const HalfSpace> planes) {
+                         std::span<const Vec3<double>> placed, std::span<const HalfSpace> planes,
+                         bool with_patch) {
   // Clip first by the plane that removes most of A, because the later cuts are then small.
   std::size_t first_plane = 0;
   double shallowest = -std::numeric_limits<double>::infinity();
@@ -78,7 +100,10 @@ Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (k != first_plane && !cut(planes[k])) return {};
   }
-  return integrals();
+  Overlap found = integrals();
+  const double area = length(found.area);
+  if (with_patch && area > 0) found.patch = patch((1 / area) * found.area);
+  return found;
 }
 
 /// Sets now_ to the whole body.
@@ -239,6 +264,50 @@ Overlap Clipper::integrals() const {
   o.area = 0.5 * area2;
   o.moment = (1.0 / 6) * moment6 - cross(c, o.area);
   return o;
+}
+
+/// Sums over the triangles of the facets on B. A triangle with corners p_k, s their sum, has
+/// int r r^T dA = (A/12) (sum p_k p_k^T + s s^T).
+Patch Clipper::patch(const Vec3<double>& normal) const {
+  const Vec3<double> apex = now_.points[0];
+  const auto corner = [&](std::int32_t c) {
+    return item(now_.points, item(now_.corners, c)) - apex;
+  };
+  Patch sum;
+  Vec3<double> first{};  // int r dA, from the apex
+  for (std::size_t f = 0; f < now_.faces.size(); ++f) {
+    const Face& face = now_.faces[f];
+    if (!face.on_b) continue;
+    const Vec3<double> p = corner(face.begin);
+    Vec3<double> q = corner(face.begin + 1);
+    for (std::int32_t c = face.begin + 2; c < face.end; ++c) {
+      const Vec3<double> r = corner(c), s = p + q + r;
+      const double area = 0.5 * length(cross(q - p, r - p)), part = area / 12;
+      sum.area += area;
+      first = first + (area / 3) * s;
+      for (const Vec3<double>& a : {p, q, r, s}) {
+        sum.squares = sum.squares + part * Vec3<double>{a.x * a.x, a.y * a.y, a.z * a.z};
+        sum.products = sum.products + part * Vec3<double>{a.y * a.z, a.z * a.x, a.x * a.y};
+      }
+      q = r;
+    }
+  }
+  if (!(sum.area > 0)) return {};
+  const Vec3<double> m = (1 / sum.area) * first;
+  sum.squares = sum.squares - sum.area * Vec3<double>{m.x * m.x, m.y * m.y, m.z * m.z};
+  sum.products = sum.products - sum.area * Vec3<double>{m.y * m.z, m.z * m.x, m.x * m.y};
+  sum.middle = apex + m;
+  for (std::size_t f = 0; f < now_.faces.size(); ++f) {
+    const Face& face = now_.faces[f];
+    if (!face.on_b) continue;
+    Vec3<double> a = corner(face.end - 1) - m;
+    for (std::int32_t c = face.begin; c < face.end; ++c) {
+      const Vec3<double> b = corner(c) - m;
+      sum.reach += reach_of_edge(a, b, normal);
+      a = b;
+    }
+  }
+  return sum;
 }
 
 }  // namespace floe

@@ -18,11 +18,31 @@
 
 namespace floe {
 
+/// Integrals over the facets of an overlap on B's surface, for what acts over an area
+/// (model.md, "Contact"). All r are from `middle`, the centroid of |dA|.
+struct Patch {
+  double area = 0;        ///< integral of |dA| [m^2]
+  Vec3<double> middle{};  ///< centroid of |dA| [m]
+  /// Diagonal (xx, yy, zz) and rest (yz, zx, xy) of J2, the integral of r r^T |dA| [m^4].
+  Vec3<double> squares{}, products{};
+  /// Integral of the distance of r from the axis through `middle` along S, over the area that the
+  /// facets show along this axis [m^3]: a spin w about the axis slides at w times that distance.
+  double reach = 0;
+
+  /// Returns J2 times a vector.
+  Vec3<double> second_moment(const Vec3<double>& v) const {
+    return {squares.x * v.x + products.z * v.y + products.y * v.z,
+            products.z * v.x + squares.y * v.y + products.x * v.z,
+            products.y * v.x + products.x * v.y + squares.z * v.z};
+  }
+};
+
 struct Overlap {
   double volume = 0;        ///< V [m^3]
   Vec3<double> centroid{};  ///< c [m]
   Vec3<double> area{};      ///< S, the sum of the area vectors of the facets on B, outwards [m^2]
   Vec3<double> moment{};    ///< sum of int (r - c) x dA over the facets on B [m^3]
+  Patch patch;              ///< zeros unless it was asked for
 };
 
 /// Appends the half-spaces whose intersection is body b of `shapes`, one per face, in the body's
@@ -47,8 +67,9 @@ class Clipper {
   /// Returns the overlap of A and B, zeros if there is none.
   /// \param placed  vertices of body `body` of `shapes`, in B's frame [m]
   /// \param planes  B's half-spaces
+  /// \param with_patch  whether to integrate over the facets on B for Overlap::patch
   Overlap overlap(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed,
-                  std::span<const HalfSpace> planes);
+                  std::span<const HalfSpace> planes, bool with_patch = false);
 
  private:
   struct Face {
@@ -95,6 +116,7 @@ class Clipper {
   std::int32_t crossing(std::int32_t inside, std::int32_t outside);
   std::int32_t place(std::int32_t corner) const { return item(place_, item(now_.corners, corner)); }
   Overlap integrals() const;
+  Patch patch(const Vec3<double>& normal) const;
 
   Mesh now_, next_;
   std::vector<double> distance_;

@@ -259,7 +259,9 @@ template <class Space>
 void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
   if constexpr (std::is_same_v<Space, Spatial>) {
     if (!scene.forces.contact) return;
-    auto contact = make_contact(model.part(), lattice, scene.contact, scene.obstacles);
+    const auto prescribed = model.prescribed();
+    auto contact = make_contact(model.part(), lattice, scene.contact, scene.obstacles,
+                                {prescribed.begin(), prescribed.end()});
     const std::string& overlap = contact->overlap_at_start();
     if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
     model.add_force(std::move(contact));

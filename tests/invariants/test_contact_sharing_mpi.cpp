@@ -75,10 +75,15 @@ TEST(ContactLoadBalance, ChangesNoForceAndNoHistory) {
     sharing.plan(contacts);
     const std::vector<MovingPose> bodies = blocks.of(contacts);
     std::vector<ContactWrench> wrenches(bodies.size());
-    contacts.place(bodies, 0, 0);
+    contacts.place(bodies, 0, -0.5e-4);  // friction's springs go on by a step of 1e-4 s
     sharing.evaluate(contacts, wrenches);
+    std::vector<Acceleration> accelerations;
+    for (std::size_t s = 0; s < wrenches.size(); ++s)
+      accelerations.push_back(contacts.acceleration(static_cast<std::int32_t>(s), wrenches[s]));
+    std::fill(wrenches.begin(), wrenches.end(), ContactWrench{});
+    contacts.damp(accelerations, wrenches);
     powers.push_back(contacts.power().friction);
-    contacts.commit(bodies, 0.5e-4, 1e-4);
+    contacts.commit(bodies, 0.5e-4);
     powers.push_back(contacts.later_power().friction);
     return wrenches;
   };

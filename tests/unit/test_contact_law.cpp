@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <variant>
 
@@ -29,15 +30,19 @@ Overlap overlap_of(double volume, const Vec3<double>& area, const Vec3<double>& 
 
 struct Law {
   ContactOptions options{.law = ContactLaw::overlap, .young = 1, .friction = 0.5};
-  PairConstants pair{.stiffness = 1e6, .area = 4, .mass = 10, .friction = 0.5};
+  PairConstants pair{.stiffness = 1e6, .area = 4, .friction = 0.5};
+  Mobility mobility{.a = {.mass = 0.1}};  // 10 kg against an obstacle
   PairHistory memory;
   RelativeMotion motion;
+  LastStep last;
+  Vec3<double> mean_spin{};
   bool newly_eligible = false;
   StoredEnergy stored;
   ContactForce operator()(const Overlap& o) {
     const ContactResponse response = std::visit(
         [&](const auto& law) {
-          return contact_response(law, pair, o, 0, motion, memory, newly_eligible);
+          return contact_response(law, pair, o, 0, motion, &motion, mobility, last, mean_spin,
+                                  memory, newly_eligible);
         },
         law_of(options));
     stored = response.stored;
@@ -99,11 +104,14 @@ TEST(ContactLaw, FrictionOpposesSlipAndTurnsWithTheMeanSpin) {
   EXPECT_NEAR(c.memory.springs.stiffness, 0.6 * 1e6 * 2, tolerance * 1e6);
   const double dt = 1e-3;
   // What A moves along the normal does not count.
-  const FrictionSprings springs = c.memory.springs;
-  expect_vector(slid(springs, c.normal, {0.3, -0.4, 5}, {}, dt).force, {-360, 480, 0}, 1e3);
-  const FrictionSprings stuck{.stiffness = springs.stiffness, .force = {100, 0, 0}};
+  law.last.dt = dt;
+  law.motion.velocity = {0.3, -0.4, 5};
+  expect_vector(law(overlap_of(0.01, {0, 0, 2})).memory.springs.force, {-360, 480, 0}, 1e3);
+  law.motion = {};
+  law.memory.springs = {.stiffness = c.memory.springs.stiffness, .force = {100, 0, 0}};
+  law.mean_spin = {3, 4, 20};
   const double turn = 20 * dt;
-  expect_vector(slid(stuck, c.normal, {}, {3, 4, 20}, dt).force,
+  expect_vector(law(overlap_of(0.01, {0, 0, 2})).memory.springs.force,
                 {100 * std::cos(turn), 100 * std::sin(turn), 0}, 100);
 }
 
@@ -135,6 +143,98 @@ TEST(ContactLaw, FrictionIsCutToTheCoefficientTimesTheNormalForce) {
   expect_vector(law(o).memory.springs.force, {600, -800, 0}, 1e3);
   law.pair.friction = 0;
   expect_vector(law(o).memory.springs.force, {0, 0, 0});
+}
+
+/// A face of 1 m along x and 2 m along y.
+Overlap face_of(double volume) {
+  Overlap o = overlap_of(volume, {0, 0, 2});
+  o.patch = {.area = 2, .squares = {2.0 / 12, 8.0 / 12, 0}, .reach = 1.2};
+  return o;
+}
+
+TEST(ContactLaw, ViscousPressureResistsRocking) {
+  Law law;
+  law.options.damping_ratio = 0.2;
+  const double c = 2 * 0.2 * std::sqrt(10 * 1e6 * 2);
+  law.motion.spin = {0.1, 0, 0};  // sides go up and down over y
+  expect_vector(law(face_of(0.01)).whole_couple(), {-0.1 * c / 2 * 8 / 12, 0, 0}, 100);
+  law.motion.spin = {0, -0.1, 0};
+  const ContactForce rocks = law(face_of(0.01));
+  expect_vector(rocks.viscous_couple, {0, 0.1 * c / 2 * 2 / 12, 0}, 100);
+  EXPECT_EQ(rocks.viscous, 0);
+  // It is at most what the force can carry over the face: its largest arm is sqrt(8/12/2).
+  law.motion.spin = {1e6, 0, 0};
+  expect_vector(law(face_of(0.01)).viscous_couple, {-1e4 * std::sqrt(1 / 3.0), 0, 0}, 1e4);
+  // It ends with the force.
+  law.motion.velocity = {0, 0, 100};
+  expect_vector(law(face_of(0.01)).whole_couple(), {0, 0, 0});
+}
+
+/// The dashpot sees the velocity at the middle of the facets and acts there.
+TEST(ContactLaw, ViscousForceActsAtTheMiddleOfTheFacets) {
+  Law law;
+  law.options.damping_ratio = 0.2;
+  const double c = 2 * 0.2 * std::sqrt(10 * 1e6 * 2);
+  Overlap o = face_of(0.01);
+  o.patch.middle = {0, 0.1, 0};
+  o.patch.squares = {2.0 / 12, 8.0 / 12, 0};
+  law.motion.spin = {0.05, 0, 0};  // the middle goes up by 0.005 m/s
+  const ContactForce contact = law(o);
+  EXPECT_NEAR(contact.viscous, -c * 0.005, 1e-9 * c);
+  expect_vector(contact.viscous_couple, {-0.05 * c / 2 * 8 / 12 - 0.1 * c * 0.005, 0, 0}, 1e3);
+}
+
+TEST(ContactLaw, FrictionResistsSpinAboutTheNormal) {
+  Law law;
+  law.last.dt = 1e-3;
+  law.motion.spin = {3, 0, 2};
+  const double stiffness = 0.6 * 1e6 * (2 + 8) / 12;  // k_t tr(J2)/|S| [N m]
+  const ContactForce c = law(face_of(0.01));
+  EXPECT_NEAR(c.memory.twist.stiffness, stiffness, tolerance * stiffness);
+  EXPECT_NEAR(c.memory.twist.couple, -stiffness * 2e-3, tolerance * stiffness);
+  expect_vector(c.whole_couple(), {0, 0, -stiffness * 2e-3}, 1e3);
+  EXPECT_NEAR(law.stored.tangential, 0.5 * stiffness * 4e-6, tolerance);
+  law.motion.spin = {0, 0, 2000};  // to mu F_n r_eff = 0.5 1e4 1.2/2
+  EXPECT_NEAR(law(face_of(0.01)).whole_couple().z, -3000, 1e-9);
+}
+
+/// Dashpots act on velocities at t_n that they slow down themselves, and in the first step of a
+/// touch for the time since the touch and half a step.
+TEST(ContactLaw, DashpotIsImplicitAndCountsFromTheTouch) {
+  Law law;
+  law.options.damping_ratio = 0.2;
+  law.motion.velocity = {0, 0, -0.1};
+  law.last = {.dt = 1e-3, .touched = true};
+  const double c = 2 * 0.2 * std::sqrt(10 * 1e6 * 2), slow = 1 + 0.5e-3 * c / 10;
+  EXPECT_NEAR(law(face_of(0.01)).viscous, c * 0.1 / slow, 1e-9 * c);
+  law.last.touched = false;  // 5e-5 m deep at 0.1 m/s: half a step ago
+  EXPECT_NEAR(law(face_of(1e-4)).viscous, c * 0.1 / slow, 1e-9 * c);
+  EXPECT_NEAR(law(face_of(0.01)).viscous, 1.5 * c * 0.1 / slow, 1e-9 * c);  // a whole step ago
+  EXPECT_NEAR(law(face_of(1e-5)).viscous, 0.55 * c * 0.1 / slow, 1e-9 * c);
+}
+
+TEST(ContactLaw, EffectiveMassIsThatOfBothBodiesAtThePoint) {
+  Mobility mobility{.a = {.mass = 0.5, .moments = {2, 3, 5}},
+                    .b = {.mass = 0.25, .moments = {7, 11, 13}},
+                    .axes_a = triad(Quat<double>{1, 0, 0, 0}),
+                    .axes_b = triad(exp_rotation({0, 0, 0.5 * std::acos(-1.0)})),
+                    .apart = {0, 0, 4}};
+  // Along z at (0.1, 0.2, -2) from A, (0.1, 0.2, 2) from B: r x d = (0.2, -0.1, 0); x of B's own
+  // axes is along the world's y.
+  const double expected = 0.75 + 2 * 0.04 + 3 * 0.01 + 7 * 0.01 + 11 * 0.04;
+  EXPECT_NEAR(mobility.along({0.1, 0.2, -2}, {0, 0, 1}), expected, tolerance);
+  EXPECT_NEAR(mobility.about({0, 1, 0}), 3 + 7, tolerance);
+  EXPECT_NEAR(mobility.along({0.1, 0.2, -2}, {1, 0, 0}),
+              0.75 + 3 * 4 + 5 * 0.04 + 7 * 4 + 13 * 0.04, tolerance);
+}
+
+TEST(ContactLaw, HistoryGoesThroughACheckpoint) {
+  const PairHistory memory{.plastic = 1,
+                           .springs = {.stiffness = 2, .force = {3, 4, 5}},
+                           .twist = {.stiffness = 6, .couple = 7}};
+  const auto numbers = memory.as_numbers();
+  EXPECT_EQ(PairHistory::from(numbers).as_numbers(), numbers);
+  EXPECT_EQ(numbers, (std::array<double, 7>{1, 2, 3, 4, 5, 6, 7}));
 }
 
 }  // namespace

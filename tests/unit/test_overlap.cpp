@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <list>
+#include <numbers>
 
 #include "geometry/separation.h"
 #include "support/polyhedra.h"
@@ -233,6 +234,112 @@ TEST(Overlap, OfBoxesIsABox) {
   EXPECT_NEAR(o.area.z, 0, 1e-15);
   EXPECT_NEAR(length(o.moment), 0, 1e-15);
   EXPECT_EQ(clipper.overlap(s, 0, test::placed(s, 0, {1, 0, 0, 0}, {4, 0, 0}), planes).volume, 0);
+}
+
+/// Closed forms of a rectangle of the sides a, b: J2 = diag(a^3 b, a b^3)/12; of a square the mean
+/// distance from the centre is (sqrt(2) + asinh(1))/6 a = 0.3826 a.
+TEST(Overlap, PatchOfAFaceHasItsMomentsAndReach) {
+  Shapes s;
+  test::append_box(s, 2, 3, 2);
+  Clipper clipper;
+  test::Random random(4);
+  for (int k = 0; k < 20; ++k) {  // turned about the normal and away from the origin
+    const double turn = 0.3 * k;
+    const Quat<double> q = exp_rotation({0, 0, turn});
+    const std::vector<HalfSpace> floor{{{0, 0, 1}, 0}};
+    const Vec3<double> at{random.uniform(-9, 9), random.uniform(-9, 9), 0.8};  // 0.2 deep
+    const Patch p = clipper.overlap(s, 0, test::placed(s, 0, q, at), floor, true).patch;
+    EXPECT_NEAR(p.area, 6, 1e-13);
+    EXPECT_NEAR(length(p.middle - Vec3<double>{at.x, at.y, 0}), 0, 1e-13);
+    const Vec3<double> along{std::cos(turn), std::sin(turn), 0}, across{-along.y, along.x, 0};
+    EXPECT_NEAR(dot(along, p.second_moment(along)), 8 * 3 / 12.0, 1e-12);
+    EXPECT_NEAR(dot(across, p.second_moment(across)), 2 * 27 / 12.0, 1e-12);
+    EXPECT_NEAR(dot(along, p.second_moment(across)), 0, 1e-12);
+    EXPECT_NEAR(length(p.second_moment({0, 0, 1})), 0, 1e-12);
+    // Of a rectangle: d = hypot(a, b), (a b d/6 + a^3 asinh(b/a)/12 + b^3 asinh(a/b)/12) [m^3].
+    const double reach =
+        6 * std::hypot(2, 3) / 6 + 8 * std::asinh(1.5) / 12 + 27 * std::asinh(2 / 3.0) / 12;
+    EXPECT_NEAR(p.reach, reach, 1e-12);
+  }
+  test::append_box(s, 1, 1, 1);
+  const std::vector<HalfSpace> floor{{{0, 0, 1}, 0}};
+  const Overlap square =
+      clipper.overlap(s, 1, test::placed(s, 1, {1, 0, 0, 0}, {5, 0, 0.4}), floor, true);
+  EXPECT_NEAR(square.patch.reach / square.patch.area, (std::sqrt(2) + std::asinh(1)) / 6, 1e-14);
+  EXPECT_NEAR(square.patch.reach / square.patch.area, 0.3826, 5e-5);
+  const Overlap plain = clipper.overlap(s, 1, test::placed(s, 1, {1, 0, 0, 0}, {5, 0, 0.4}), floor);
+  EXPECT_EQ(plain.patch.area, 0);
+  EXPECT_EQ(plain.volume, square.volume);
+}
+
+/// Of n triangles from the centre of a polygon in a circle: (2R/3) of the disc as n grows.
+TEST(Overlap, PatchOfADiscReachesTwoThirdsOfItsRadius) {
+  Clipper clipper;
+  const std::vector<HalfSpace> floor{{{0, 0, 1}, 0}};
+  double last = 1;
+  for (const int n : {16, 32, 64}) {
+    std::vector<Point2> polygon;
+    for (int k = 0; k < n; ++k) {
+      const double angle = 2 * std::numbers::pi * k / n;
+      polygon.push_back({1.5 * std::cos(angle), 1.5 * std::sin(angle)});
+    }
+    Shapes s;
+    append_prism(s, polygon, -0.5, 0.5);
+    const auto placed = test::placed(s, 0, {1, 0, 0, 0}, {2, 7, 0.4});
+    const Patch p = clipper.overlap(s, 0, placed, floor, true).patch;
+    const double error = std::abs(p.reach / p.area - 1.0);
+    EXPECT_LT(error, 0.26 * last);  // of second order in 1/n
+    last = error;
+    const double inner = (1.5 * 1.5 / 4) * p.area;  // J2 of a disc: R^2/4 times its area
+    EXPECT_NEAR(p.second_moment({1, 0, 0}).x, inner, 15.0 / (n * n) * inner);
+  }
+  EXPECT_LT(last, 2e-3);
+}
+
+/// A corner cuts the floor's plane in a triangle; a floor's corner in a body has three facets,
+/// whose centroid, moments and reach an independent sum over small pieces gives.
+TEST(Overlap, PatchOfACornerIsThatOfItsPieces) {
+  Shapes s;
+  test::append_box(s, 2, 2, 2);
+  Clipper clipper;
+  // B's octant x, y, z < 0 with three faces reaches by c into a box: facets are squares of side c.
+  const std::vector<HalfSpace> octant{{{1, 0, 0}, 0}, {{0, 1, 0}, 0}, {{0, 0, 1}, 0}};
+  constexpr double c = 0.6;
+  const Overlap o =
+      clipper.overlap(s, 0, test::placed(s, 0, {1, 0, 0, 0}, {1 - c, 1 - c, 1 - c}), octant, true);
+  ASSERT_NEAR(o.volume, c * c * c, 1e-14);
+  const Vec3<double> n = (1 / length(o.area)) * o.area;
+  Vec3<double> first{}, xx{}, yz{};
+  double area = 0, reach = 0;
+  const auto each = [&](auto&& take) {
+    constexpr int m = 200;
+    for (int side = 0; side < 3; ++side)
+      for (int i = 0; i < m; ++i)
+        for (int j = 0; j < m; ++j) {
+          const double u = -c * (i + 0.5) / m, v = -c * (j + 0.5) / m;
+          const Vec3<double> r = side == 0   ? Vec3<double>{0, u, v}
+                                 : side == 1 ? Vec3<double>{u, 0, v}
+                                             : Vec3<double>{u, v, 0};
+          const Vec3<double> out{side == 0 ? 1.0 : 0, side == 1 ? 1.0 : 0, side == 2 ? 1.0 : 0};
+          take(r, out, c * c / (m * m));
+        }
+  };
+  each([&](const Vec3<double>& r, const Vec3<double>&, double a) {
+    area += a;
+    first = first + a * r;
+  });
+  const Vec3<double> middle = (1 / area) * first;
+  each([&](const Vec3<double>& at, const Vec3<double>& out, double a) {
+    const Vec3<double> r = at - middle;
+    xx = xx + a * Vec3<double>{r.x * r.x, r.y * r.y, r.z * r.z};
+    yz = yz + a * Vec3<double>{r.y * r.z, r.z * r.x, r.x * r.y};
+    reach += a * dot(out, n) * length(r - dot(r, n) * n);
+  });
+  EXPECT_NEAR(o.patch.area, area, 1e-12);
+  EXPECT_NEAR(length(o.patch.middle - middle), 0, 1e-12);
+  EXPECT_NEAR(length(o.patch.squares - xx), 0, 1e-5);
+  EXPECT_NEAR(length(o.patch.products - yz), 0, 1e-5);
+  EXPECT_NEAR(o.patch.reach, reach, 1e-4 * reach);
 }
 
 /// The change of volume with the place of A is -S, with its turning the moment of S: what makes a

@@ -238,14 +238,16 @@ TEST(Contact, LedgerOfImpactsWithLosses) {
 /// A crushed block does not press again before it has sunk deeper than it was.
 TEST(Contact, CrushingIsRemembered) {
   const OverlapLaw law(ContactOptions{.young = 1e7, .plastic_limit = 1e5});
-  const PairConstants pair{
-      .stiffness = 1e7, .area = 1, .mass = 920, .friction = 0, .half_space = true};
+  const PairConstants pair{.stiffness = 1e7, .area = 1, .friction = 0, .half_space = true};
+  const Mobility mobility{.a = {.mass = 1.0 / 920}};
   PairHistory memory;
   const auto at = [&](double depth) {
     Overlap o;
     o.volume = depth;  // 1 m^2 sunk by `depth`
     o.area = {0, 0, 1};
-    const ContactForce c = contact_response(law, pair, o, 0.5 * depth, {}, memory, false).contact;
+    const ContactForce c =
+        contact_response(law, pair, o, 0.5 * depth, {}, nullptr, mobility, {}, {}, memory, false)
+            .contact;
     memory = c.memory;
     return c.force().z;
   };
