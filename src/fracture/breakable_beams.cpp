@@ -149,6 +149,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if (!options_.dynamic) {
       kept_ = cracks_;
       kept_energy_ = dissipated_;
+      kept_released_ = released_energy_;
     }
   }
 
@@ -178,6 +179,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       count(g.crack, 1);
     }
     columns.add("energy_fracture", fracture);
+    if (!options_.dynamic) columns.add("energy_released", released_energy_);
     columns.add("beams_damaged", counts[0]);
     columns.add("beams_broken", counts[1]);
     columns.add("beams_brittle", counts[2]);
@@ -282,6 +284,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     newly_broken_.clear();
     for (const Crack& c : kept_) put(c);
     dissipated_ = kept_energy_;
+    released_energy_ = kept_released_;
+  }
+
+  void add_released(double energy) override {
+    if (rank(part_.comm) == 0) released_energy_ += energy;
   }
 
  private:
@@ -347,7 +354,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// that of the forces of this state on the strains of the last one,
   /// 1/2 e_n k e_(n-1) (D_n - D_(n-1)), which makes the energy balance of leapfrog exact for linear
   /// strains (work by the mean of the forces at the two ends of a step). In statics, on a
-  /// proportional path from rest, it is U_1 s kappa (D - D_old), exact for any step.
+  /// proportional path from rest, it is U_1 s kappa (D - D_old) with s at most s_u, exact for any
+  /// step: sum_k U_1 k^2 D'(k) dk.
   [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s,
                                              const State<Spatial>& state) const {
     const auto [i, j] = item(part_.beams.bodies, m);
@@ -373,7 +381,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       path = damage_energy(force, {strain.n - dt_ * rate.n, strain.qy - dt_ * rate.qy,
                                    strain.qz - dt_ * rate.qz, strain.c - dt_ * rate.c});
     } else {
-      for (double* part : {&path.stretch, &path.shear, &path.bending}) *part *= passed / s;
+      // A beam that jumps beyond s_u dissipates what is left of G A; the rest is released.
+      const double most = next.brittle() ? s : std::min(s, next.ultimate);
+      for (double* part : {&path.stretch, &path.shear, &path.bending})
+        *part *= most == s ? passed / s : passed * most / (s * s);
     }
     g.dissipated = std::max(0.0, path.damaged() * (next.damage - before));
     g.released = energy.damaged() * (next.damage - before);
@@ -517,7 +528,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   DashpotBlock soft_dashpots_;
   std::vector<Growth> growing_;              ///< by-product of the last evaluation, no history
   double dissipated_ = 0, kept_energy_ = 0;  ///< by counted beams; the same at the last commit [J]
-  double dt_ = 0;                            ///< length of the last step [s]
+  /// Statics, on rank 0: energy that breaks released; the same at the last commit [J].
+  double released_energy_ = 0, kept_released_ = 0;
+  double dt_ = 0;  ///< length of the last step [s]
 };
 
 template <Kinematics kinematics, bool damped, template <class> class Frame>

@@ -55,7 +55,10 @@ class Fracture {
   /// For statics: updates damage after a state in balance. All beams that soften are updated, and
   /// of the beams that would break only the most overloaded one. Collective.
   virtual Advance advance(const State<Spatial>& state) = 0;
-  /// For statics: takes back all changes by advance() since the last commit.
+  /// For statics: adds energy that left the system when beams broke or softened, and that no beam
+  /// dissipated [J]; the same on all ranks.
+  virtual void add_released(double energy) = 0;
+  /// For statics: takes back all changes by advance() and add_released() since the last commit.
   virtual void retreat() = 0;
 };
 
