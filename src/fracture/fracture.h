@@ -11,6 +11,7 @@
 
 #include "beams/beam_force.h"
 #include "floe/fracture/fracture_options.h"
+#include "fracture/crack_tips.h"
 
 namespace floe {
 
@@ -23,6 +24,8 @@ struct Break {
   double energy;      ///< dissipated [J]
   double nominal;     ///< G A, the energy it should dissipate [J]; less than `energy` if brittle
   bool brittle;       ///< the beam stored more than G A when it reached its strength
+  bool at_tip;        ///< it broke at a crack's tip, by the strength of tips
+  double area;        ///< of its section [m^2]
 };
 
 /// Effect of a state in balance on the beams.
@@ -71,9 +74,10 @@ class BreakableForce {
 
 /// Makes the force of breakable beams. Collective.
 /// \param part  must outlive the force
+/// \param junctions  of the lattice; needed for Propagation::energy only
 /// \throws InputError if the lattice does not give the sides of the sections
 BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
-                                    const FractureOptions& fracture);
+                                    const FractureOptions& fracture, Junctions junctions = {});
 
 /// Largest s of the beams of all ranks under given section forces, undamaged and without scatter of
 /// strengths. Collective.
