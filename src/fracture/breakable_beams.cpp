@@ -277,7 +277,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         const double s = std::sqrt(s2[lane]);
         if (is_tip(m)) {
           const double s_tip = std::sqrt(at_tips[lane]);
-          if (s_tip > 1 + rounding) {
+          if (s_tip > 1 + rounding && s_tip > s) {  // else as elsewhere, by s
             growing_.push_back(growth(m, s, state, true));
             if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
             continue;
@@ -546,7 +546,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       if (options_.dynamic && falls && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state, true));
         c = &growing_.back().crack;
-      } else if (options_.dynamic && at_tips[lane] > 1 && is_tip(m)) {
+      } else if (options_.dynamic && at_tips[lane] > 1 && at_tips[lane] > s2[lane] && is_tip(m)) {
         overloaded_.emplace_back(std::sqrt(at_tips[lane]), m);
       } else if (options_.dynamic && s2[lane] > passed * passed && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state));

@@ -88,26 +88,32 @@ Run pull(double element, std::uint64_t seed, double energy, Propagation propagat
   return run;
 }
 
+/// Mean peak of meshes of seeds 1 to `seeds` over their mean Griffith load. Peaks scatter by 15 %
+/// at l = 2 m: the saw's cut and the crack follow the cells.
 double mean_over_griffith(double element, double energy, Propagation propagation, int seeds) {
-  double sum = 0;
+  double peaks = 0, loads = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     const auto s = static_cast<std::uint64_t>(seed);
-    sum += pull(element, s, energy, propagation).peak / griffith(element, s, energy);
+    peaks += pull(element, s, energy, propagation).peak;
+    loads += griffith(element, s, energy);
   }
-  return sum / seeds;
+  return peaks / loads;
 }
 
 /// With strengths of tips the notched sheet bears what fracture mechanics says, on any mesh; by the
 /// beams' strength it bears several times as much on coarse ones.
 TEST(CrackGrowth, ANotchedSheetBearsGriffithsLoadOnAnyMesh) {
-  constexpr int seeds = 6;
-  const std::vector<double> elements =
-      test::full_form() ? std::vector{2.0, 1.0, 0.5} : std::vector{2.0};
-  for (const double element : elements)
+  struct Meshes {
+    double element;
+    int seeds;
+  };
+  std::vector<Meshes> all{{2, 24}};
+  if (test::full_form()) all.insert(all.end(), {{1, 12}, {0.5, 6}});
+  for (const auto& [element, seeds] : all)
     test::verify({.section = "Fracture",
                   .quantity = "notched sheet, propagation: energy, l = " +
-                              std::to_string(element).substr(0, 3) +
-                              " m, six meshes: mean peak over Griffith's load",
+                              std::to_string(element).substr(0, 3) + " m, " +
+                              std::to_string(seeds) + " meshes: mean peak over Griffith's load",
                   .value = mean_over_griffith(element, 15, Propagation::energy, seeds),
                   .reference = 1,
                   .tolerance = 0.1});
@@ -118,7 +124,7 @@ TEST(CrackGrowth, ANotchedSheetBearsGriffithsLoadOnAnyMesh) {
 TEST(CrackGrowth, NothingChangesOnFineMeshes) {
   const Run strengths = pull(2, 1, 300, Propagation::strength),
             tips = pull(2, 1, 300, Propagation::energy);
-  EXPECT_NEAR(tips.peak, strengths.peak, 0.02 * strengths.peak);
+  EXPECT_EQ(tips.peak, strengths.peak);
 }
 
 }  // namespace
