@@ -67,11 +67,11 @@ double griffith(double element, std::uint64_t seed, double energy) {
 }
 
 /// Largest mean stress of a notched sheet [Pa], and its broken area over that of the ligament.
-struct Run {
+struct Outcome {
   double peak = 0;
   bool apart = false;
 };
-Run pull(double element, std::uint64_t seed, double energy, Propagation propagation) {
+Outcome pull(double element, std::uint64_t seed, double energy, Propagation propagation) {
   Scene scene = pulled(element, seed, notch, energy > 100 ? 2.5e-3 : 1.5e-3);
   scene.forces.fracture = true;
   scene.fracture.energy = scene.fracture.energy_shear = energy;
@@ -80,7 +80,7 @@ Run pull(double element, std::uint64_t seed, double energy, Propagation propagat
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
   add_forces(scene, {}, model, &lattice);
   hold_free_motions(scene, lattice, model);
-  Run run;
+  Outcome run;
   const RunResult result = run_quasistatic(model, {1, 0.02}, [&](const Accepted<Spatial>& a) {
     run.peak = std::max(run.peak, force_on_left(model, a.wrenches) / (side * h));
   });
@@ -122,8 +122,8 @@ TEST(CrackGrowth, ANotchedSheetBearsGriffithsLoadOnAnyMesh) {
 
 /// Below l = 2 E G_f/(kappa sigma_t^2) beams at tips have their strength, and nothing changes.
 TEST(CrackGrowth, NothingChangesOnFineMeshes) {
-  const Run strengths = pull(2, 1, 300, Propagation::strength),
-            tips = pull(2, 1, 300, Propagation::energy);
+  const Outcome strengths = pull(2, 1, 300, Propagation::strength),
+                tips = pull(2, 1, 300, Propagation::energy);
   EXPECT_EQ(tips.peak, strengths.peak);
 }
 
