@@ -40,7 +40,12 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     // Beams without stiffness, on body 0, fill up the last block.
     for (std::size_t m = part.beams.bodies.size(); m < blocks_.size() * lanes; ++m)
       blocks_[m / lanes].set(m % lanes, Beam::none());
-    for (std::int32_t m = 0; m < part.beams.size(); ++m) set(m, options);
+    for (std::int32_t m = 0; m < part.beams.size(); ++m) {
+      set(m, options);
+      const Constants c = constants(m);
+      for (const std::int32_t body : item(part.beams.bodies, m))
+        item(stiffness_, body) += std::max(c.kn, Beam::shear_stiffness(c));
+    }
   }
 
   std::string_view name() const override { return "beam"; }
@@ -166,7 +171,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   /// per step; a beam costs 15 ns with the prefetch and 17 ns without.
   static constexpr std::size_t blocks_ahead = 4;
 
-  /// Enters beam m as it is at rest, undamaged.
+  /// Enters beam m as it is at rest, undamaged. Bounds of stiffness stay.
   void set(std::int32_t m, const BeamOptions& options) {
     const auto k = static_cast<std::size_t>(m);
     Block& block = blocks_[k / lanes];
@@ -175,8 +180,6 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     const auto [i, j] = part_.beams.bodies[k];
     block.i[k % lanes] = i;
     block.j[k % lanes] = j;
-    for (const std::int32_t body : {i, j})
-      item(stiffness_, body) += std::max(c.kn, Beam::shear_stiffness(c));
     if constexpr (damped) {
       const BeamStiffness springs = beam_stiffness(part_.beams, m, options.shear);
       dashpots_[k / lanes].set(k % lanes, beam_damping(part_, m, springs, options),

@@ -1,5 +1,9 @@
 // The force of beams that crack: the beams of spatial_lanes.h with strengths and damage.
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "base/collectives.h"
 #include "beams/spatial_lanes.h"
@@ -12,15 +16,15 @@
 namespace floe {
 namespace {
 
-constexpr std::size_t crack_size = 11;  // numbers of a Crack in a checkpoint
+constexpr std::size_t crack_size = 12;  // numbers of a Crack in a checkpoint
 
 std::vector<double> packed(const std::vector<Crack>& cracks) {
   std::vector<double> values;
   values.reserve(cracks.size() * crack_size);
   for (const Crack& c : cracks) {
-    values.insert(values.end(),
-                  {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate, c.mode_mix,
-                   c.nominal, c.dissipated, c.time, c.place[0], c.place[1], c.place[2]});
+    values.insert(values.end(), {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate,
+                                 c.mode_mix, c.nominal, c.dissipated, c.time, c.place[0],
+                                 c.place[1], c.place[2], c.at_tip ? 1.0 : 0.0});
   }
   return values;
 }
@@ -43,6 +47,7 @@ void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& crac
                       v[4],
                       v[5],
                       v[6],
+                      v[11] != 0,
                       v[7],
                       {v[8], v[9], v[10]}});
   }
@@ -59,7 +64,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   using typename Base::Pointwise;
 
  public:
-  BreakableBeams(const Part& part, const BeamOptions& beams, const FractureOptions& options)
+  BreakableBeams(const Part& part, const BeamOptions& beams, const FractureOptions& options,
+                 Junctions junctions)
       : Base(part, beams),
         beams_(beams),
         options_(options),
@@ -70,6 +76,12 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         viscous_now_(viscous_) {
     const auto all = strengths(part, options);
     for (std::size_t m = 0; m < all.size(); ++m) strengths_[m / lanes].set(m % lanes, all[m]);
+    if (options.propagation == Propagation::energy) {
+      tips_.emplace(std::move(junctions));
+      whole_ = strengths_;
+      doomed_.assign(crack_of_.size(), 0);
+      set_all_strengths();
+    }
   }
 
   Roles<Spatial> roles() override {
@@ -83,6 +95,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// every beam is computed by the same instructions, whatever its neighbours in the block.
   [[gnu::flatten]] void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     growing_.clear();
+    overloaded_.clear();
     const double* records = state.records.data();
     double* values = wrenches.values.data();
     Lanes lost(0.0), lost_before(0.0);
@@ -145,10 +158,14 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const auto [i, j] = item(part_.beams.bodies, m);
       released_.push_back({item(part_.global, i), item(part_.global, j)});
     }
+    if (tips_ && options_.dynamic) propagate();
     newly_broken_.clear();
     if (!options_.dynamic) {
       kept_ = cracks_;
       kept_energy_ = dissipated_;
+      kept_released_ = released_energy_;
+      broken_before_.insert(broken_before_.end(), lost_.begin(), lost_.end());
+      lost_.clear();
     }
   }
 
@@ -178,6 +195,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       count(g.crack, 1);
     }
     columns.add("energy_fracture", fracture);
+    if (!options_.dynamic) columns.add("energy_released", released_energy_);
     columns.add("beams_damaged", counts[0]);
     columns.add("beams_broken", counts[1]);
     columns.add("beams_brittle", counts[2]);
@@ -194,6 +212,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     persist_cracks(archive, part_, mine);
     if constexpr (damped) remember_dashpots(archive);
+    if (tips_) persist_tips(archive, mine);
     if (archive.loading()) set_cracks(std::move(mine));
   }
 
@@ -226,7 +245,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (const Crack& c : cracks_) {
       if (c.broken() && counts_here(c.beam))
         all.push_back({c.time, item(part_.global_beam, c.beam), c.place, c.mode_mix, c.dissipated,
-                       c.nominal, c.brittle()});
+                       c.nominal, c.brittle(), c.at_tip, area(c.beam)});
     }
     return all;
   }
@@ -235,7 +254,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   double overload(const State<Spatial>& state) const override {
     double most = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = criterion_of(b, state);
+      const Lanes s2 = criterion_of(strengths_, b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t m = b * lanes + lane;
         if (m < crack_of_.size() && crack_of_[m] == none) most = std::max(most, double(s2[lane]));
@@ -249,12 +268,21 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     growing_.clear();
     RankedValue worst{0, -1};  // largest s/kappa of the beams that would break
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = criterion_of(b, state);
+      const Lanes s2 = criterion_of(whole(), b, state);
+      const Lanes at_tips = tips_ ? criterion_of(strengths_, b, state) : Lanes(0.0);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t at = b * lanes + lane;
         if (at >= crack_of_.size()) continue;
         const auto m = static_cast<std::int32_t>(at);
         const double s = std::sqrt(s2[lane]);
+        if (is_tip(m)) {
+          const double s_tip = std::sqrt(at_tips[lane]);
+          if (s_tip > 1 + rounding && s_tip > s) {  // else as elsewhere, by s
+            growing_.push_back(growth(m, s, state, true));
+            if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
+            continue;
+          }
+        }
         if (broken(m) || s <= kappa(m) * (1 + rounding)) continue;
         growing_.push_back(growth(m, s, state));
         if (growing_.back().crack.broken() && s / kappa(m) > worst.value)
@@ -271,6 +299,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     growing_.clear();
     softened = on_any_rank(softened, part_.comm);
+    if (tips_ && worst.index >= 0) lose(static_cast<std::int32_t>(worst.index));
     if (worst.index >= 0) return Advance::broke;
     return softened ? Advance::softened : Advance::none;
   }
@@ -281,7 +310,18 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     cracks_.clear();
     newly_broken_.clear();
     for (const Crack& c : kept_) put(c);
+    if (tips_) {
+      tips_->reset();
+      for (const std::int32_t beam : broken_before_) (void)tips_->lose(beam);
+      lost_.clear();
+      set_all_strengths();
+    }
     dissipated_ = kept_energy_;
+    released_energy_ = kept_released_;
+  }
+
+  void add_released(double energy) override {
+    if (rank(part_.comm) == 0) released_energy_ += energy;
   }
 
  private:
@@ -309,8 +349,94 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   }
   /// s^2 of the undamaged beams of a block, which decides on damage. The hook in add() only selects
   /// the blocks for which it is computed.
-  Lanes criterion_of(std::size_t b, const State<Spatial>& state) const {
-    return block_criterion<kinematics>(blocks_[b], strengths_[b], state.records.data());
+  Lanes criterion_of(const std::vector<StrengthBlock>& of, std::size_t b,
+                     const State<Spatial>& state) const {
+    return block_criterion<kinematics>(blocks_[b], of[b], state.records.data());
+  }
+  double area(std::int32_t m) const {
+    return item(part_.beams.width, m) * item(part_.beams.height, m);
+  }
+
+  // -- Tips of cracks; without Propagation::energy there are none.
+  /// Strengths at initiation, also of beams at tips.
+  const std::vector<StrengthBlock>& whole() const { return tips_ ? whole_ : strengths_; }
+  bool is_tip(std::int32_t m) const {
+    return tips_ && !broken(m) && tips_->is_tip(item(part_.global_beam, m));
+  }
+  void set_strength(std::int32_t m) {
+    const std::size_t b = static_cast<std::size_t>(m) / lanes,
+                      lane = static_cast<std::size_t>(m) % lanes;
+    const Strength<double> initial = whole_[b].get(lane);
+    strengths_[b].set(lane, is_tip(m) ? tip_strength(part_, m, options_, initial) : initial);
+  }
+  void set_all_strengths() {
+    for (std::int32_t m = 0; m < part_.beams.size(); ++m) set_strength(m);
+  }
+  /// Local index of a global beam, or none.
+  std::int32_t local_beam(std::int32_t global) const {
+    const auto& all = part_.global_beam;
+    const auto found = std::lower_bound(all.begin(), all.end(), global);
+    return found == all.end() || *found != global ? none
+                                                  : static_cast<std::int32_t>(found - all.begin());
+  }
+  /// Notes that a global beam is gone: tips change. To be called alike on all ranks.
+  void lose(std::int32_t global) {
+    if (!tips_->lose(global)) return;
+    lost_.push_back(global);
+    tips_->for_neighbours(global, [this](std::int32_t beam) {
+      if (const std::int32_t m = local_beam(beam); m != none) set_strength(m);
+    });
+  }
+  /// Beams that will break in the next evaluation, whatever their s.
+  void doom(std::int32_t global) {
+    all_doomed_.push_back(global);
+    const std::int32_t m = local_beam(global);
+    if (m == none) return;
+    item(doomed_, m) = 1;
+    mark(static_cast<std::size_t>(m) / lanes);
+  }
+  /// Dynamics: the breaks of a step become known to all ranks. Of the overloaded beams at tips
+  /// those break that are at a tip when their turn comes, by falling s: they go in the next
+  /// evaluation. Collective.
+  void propagate() {
+    for (const std::int32_t m : all_doomed_) {
+      if (const std::int32_t here = local_beam(m); here != none) item(doomed_, here) = 0;
+    }
+    all_doomed_.clear();
+    if (!on_any_rank(!newly_broken_.empty() || !overloaded_.empty(), part_.comm)) return;
+    std::vector<double> mine;  // s, beam; a beam that broke has s = infinity
+    for (const std::int32_t m : newly_broken_)
+      mine.insert(mine.end(), {std::numeric_limits<double>::infinity(),
+                               static_cast<double>(item(part_.global_beam, m))});
+    for (const auto& [s, m] : overloaded_)
+      mine.insert(mine.end(), {s, static_cast<double>(item(part_.global_beam, m))});
+    const std::vector<double> all = all_gathered(mine, part_.comm);
+    std::vector<std::pair<double, std::int32_t>> turns;
+    for (std::size_t k = 0; k + 2 <= all.size(); k += 2)
+      turns.emplace_back(-all[k], static_cast<std::int32_t>(all[k + 1]));
+    std::sort(turns.begin(), turns.end());
+    turns.erase(std::unique(turns.begin(), turns.end()), turns.end());
+    for (const auto& [minus_s, beam] : turns) {
+      const bool gone = std::isinf(minus_s);
+      if (!gone && !tips_->is_tip(beam)) continue;
+      lose(beam);
+      if (!gone) doom(beam);
+    }
+    lost_.clear();
+  }
+  /// \param cracks  those of all ranks when loading
+  void persist_tips(Archive& archive, const std::vector<Crack>& cracks) {
+    std::vector<double> doomed(all_doomed_.begin(), all_doomed_.end());
+    archive.common("doomed", doomed);
+    if (!archive.loading()) return;
+    for (const Crack& c : cracks) {
+      if (c.broken()) (void)tips_->lose(c.beam);
+    }
+    for (const double beam : doomed) {
+      (void)tips_->lose(static_cast<std::int32_t>(beam));
+      doom(static_cast<std::int32_t>(beam));
+    }
+    set_all_strengths();
   }
 
   BeamStrains<double> strains(std::int32_t m, const State<Spatial>& state) const {
@@ -347,9 +473,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// that of the forces of this state on the strains of the last one,
   /// 1/2 e_n k e_(n-1) (D_n - D_(n-1)), which makes the energy balance of leapfrog exact for linear
   /// strains (work by the mean of the forces at the two ends of a step). In statics, on a
-  /// proportional path from rest, it is U_1 s kappa (D - D_old), exact for any step.
-  [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s,
-                                             const State<Spatial>& state) const {
+  /// proportional path from rest, it is U_1 s kappa (D - D_old) with s at most s_u, exact for any
+  /// step: sum_k U_1 k^2 D'(k) dk.
+  /// \param at_once  the beam breaks at a tip, and dissipates what it stores
+  [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s, const State<Spatial>& state,
+                                             bool at_once = false) const {
     const auto [i, j] = item(part_.beams.bodies, m);
     const BeamConstants<double> c = constants(m);
     const BeamStrains<double> e = strains(m, state);
@@ -364,16 +492,20 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       initiate(next, energy, s, item(part_.beams.width, m) * item(part_.beams.height, m),
                options_.energy, options_.energy_shear);
     }
-    next.kappa = s;
-    next.damage = damage_at(next, s);
+    next.kappa = at_once ? std::max(s, passed) : s;
+    next.damage = at_once ? 1 : damage_at(next, s);
+    next.at_tip = at_once;
     DamageEnergy path = energy;
     BeamStress<double> rate{};
     if (options_.dynamic) {
       rate = rates(c, e, record(state, i), record(state, j));
       path = damage_energy(force, {strain.n - dt_ * rate.n, strain.qy - dt_ * rate.qy,
                                    strain.qz - dt_ * rate.qz, strain.c - dt_ * rate.c});
-    } else {
-      for (double* part : {&path.stretch, &path.shear, &path.bending}) *part *= passed / s;
+    } else if (!at_once) {
+      // A beam that jumps beyond s_u dissipates what is left of G A; the rest is released.
+      const double most = next.brittle() ? s : std::min(s, next.ultimate);
+      for (double* part : {&path.stretch, &path.shear, &path.bending})
+        *part *= most == s ? passed / s : passed * most / (s * s);
     }
     g.dissipated = std::max(0.0, path.damaged() * (next.damage - before));
     g.released = energy.damaged() * (next.damage - before);
@@ -401,7 +533,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// this state; notes growths of damage (dynamics).
   [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
                                                          const State<Spatial>& state) {
-    const Lanes s2 = criterion_of(b, state);
+    const Lanes s2 = criterion_of(whole(), b, state);
+    const Lanes at_tips = tips_ ? criterion_of(strengths_, b, state) : Lanes(0.0);
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t at = b * lanes + lane;
@@ -409,7 +542,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const auto m = static_cast<std::int32_t>(at);
       const Crack* c = crack(m);
       const double passed = kappa(m);
-      if (options_.dynamic && s2[lane] > passed * passed && !broken(m)) {
+      const bool falls = tips_ && item(doomed_, m) != 0;
+      if (options_.dynamic && falls && !broken(m)) {
+        growing_.push_back(growth(m, std::sqrt(s2[lane]), state, true));
+        c = &growing_.back().crack;
+      } else if (options_.dynamic && at_tips[lane] > 1 && at_tips[lane] > s2[lane] && is_tip(m)) {
+        overloaded_.emplace_back(std::sqrt(at_tips[lane]), m);
+      } else if (options_.dynamic && s2[lane] > passed * passed && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state));
         c = &growing_.back().crack;
       }
@@ -486,6 +625,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t m = b * lanes; m < std::min((b + 1) * lanes, crack_of_.size()); ++m) {
       const Crack* c = crack(static_cast<std::int32_t>(m));
       if (c != nullptr && !c->broken()) damaged_[b] = 1;
+      if (tips_ && doomed_[m] != 0) damaged_[b] = 1;
     }
   }
 
@@ -517,35 +657,50 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   DashpotBlock soft_dashpots_;
   std::vector<Growth> growing_;              ///< by-product of the last evaluation, no history
   double dissipated_ = 0, kept_energy_ = 0;  ///< by counted beams; the same at the last commit [J]
-  double dt_ = 0;                            ///< length of the last step [s]
+  /// Statics, on rank 0: energy that breaks released; the same at the last commit [J].
+  double released_energy_ = 0, kept_released_ = 0;
+  std::optional<CrackTips> tips_;         ///< with Propagation::energy
+  std::vector<StrengthBlock> whole_;      ///< strengths at initiation, also of beams at tips
+  std::vector<std::uint8_t> doomed_;      ///< per local beam: breaks in the next evaluation
+  std::vector<std::int32_t> all_doomed_;  ///< the same of all ranks, global
+  std::vector<std::int32_t> lost_,
+      broken_before_;  ///< statics: global, since and before the commit
+  /// Dynamics: s and local beam of tip beams that the last evaluation overloaded.
+  std::vector<std::pair<double, std::int32_t>> overloaded_;
+  double dt_ = 0;  ///< length of the last step [s]
 };
 
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 BreakableForce make_with(const Part& part, const BeamOptions& beams,
-                         const FractureOptions& fracture) {
-  auto force = std::make_unique<BreakableBeams<kinematics, damped, Frame>>(part, beams, fracture);
+                         const FractureOptions& fracture, Junctions junctions) {
+  auto force = std::make_unique<BreakableBeams<kinematics, damped, Frame>>(part, beams, fracture,
+                                                                           std::move(junctions));
   Fracture* cracks = force.get();
   return {std::move(force), cracks};
 }
 
 template <Kinematics kinematics>
 BreakableForce make_kinematic(const Part& part, const BeamOptions& beams,
-                              const FractureOptions& fracture) {
+                              const FractureOptions& fracture, Junctions junctions) {
   const bool damped = beams.damping_ratio > 0;
   if (all_flat(part))
-    return damped ? make_with<kinematics, true, FlatFrame>(part, beams, fracture)
-                  : make_with<kinematics, false, FlatFrame>(part, beams, fracture);
-  return damped ? make_with<kinematics, true, AnyFrame>(part, beams, fracture)
-                : make_with<kinematics, false, AnyFrame>(part, beams, fracture);
+    return damped
+               ? make_with<kinematics, true, FlatFrame>(part, beams, fracture, std::move(junctions))
+               : make_with<kinematics, false, FlatFrame>(part, beams, fracture,
+                                                         std::move(junctions));
+  return damped
+             ? make_with<kinematics, true, AnyFrame>(part, beams, fracture, std::move(junctions))
+             : make_with<kinematics, false, AnyFrame>(part, beams, fracture, std::move(junctions));
 }
 
 }  // namespace
 
 BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
-                                    const FractureOptions& fracture) {
+                                    const FractureOptions& fracture, Junctions junctions) {
   return beams.kinematics == Kinematics::linear
-             ? make_kinematic<Kinematics::linear>(part, beams, fracture)
-             : make_kinematic<Kinematics::corotational>(part, beams, fracture);
+             ? make_kinematic<Kinematics::linear>(part, beams, fracture, std::move(junctions))
+             : make_kinematic<Kinematics::corotational>(part, beams, fracture,
+                                                        std::move(junctions));
 }
 
 }  // namespace floe

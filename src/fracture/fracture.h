@@ -11,6 +11,7 @@
 
 #include "beams/beam_force.h"
 #include "floe/fracture/fracture_options.h"
+#include "fracture/crack_tips.h"
 
 namespace floe {
 
@@ -23,6 +24,8 @@ struct Break {
   double energy;      ///< dissipated [J]
   double nominal;     ///< G A, the energy it should dissipate [J]; less than `energy` if brittle
   bool brittle;       ///< the beam stored more than G A when it reached its strength
+  bool at_tip;        ///< it broke at a crack's tip, by the strength of tips
+  double area;        ///< of its section [m^2]
 };
 
 /// Effect of a state in balance on the beams.
@@ -55,7 +58,10 @@ class Fracture {
   /// For statics: updates damage after a state in balance. All beams that soften are updated, and
   /// of the beams that would break only the most overloaded one. Collective.
   virtual Advance advance(const State<Spatial>& state) = 0;
-  /// For statics: takes back all changes by advance() since the last commit.
+  /// For statics: adds energy that left the system when beams broke or softened, and that no beam
+  /// dissipated [J]; the same on all ranks.
+  virtual void add_released(double energy) = 0;
+  /// For statics: takes back all changes by advance() and add_released() since the last commit.
   virtual void retreat() = 0;
 };
 
@@ -68,9 +74,10 @@ class BreakableForce {
 
 /// Makes the force of breakable beams. Collective.
 /// \param part  must outlive the force
+/// \param junctions  of the lattice; needed for Propagation::energy only
 /// \throws InputError if the lattice does not give the sides of the sections
 BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
-                                    const FractureOptions& fracture);
+                                    const FractureOptions& fracture, Junctions junctions = {});
 
 /// Largest s of the beams of all ranks under given section forces, undamaged and without scatter of
 /// strengths. Collective.

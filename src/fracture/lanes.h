@@ -16,6 +16,10 @@ struct alignas(64) StrengthBlock {
     const std::array<double, 5> all{s.axial, s.bending_y, s.bending_z, s.shear, s.torsion};
     for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
   }
+  Strength<double> get(std::size_t lane) const {
+    const auto at = [&](std::size_t k) { return values[k][lane]; };
+    return {at(0), at(1), at(2), at(3), at(4)};
+  }
   Strength<Lanes> get() const {
     const auto at = [&](std::size_t k) { return load(values[k].data()); };
     return {at(0), at(1), at(2), at(3), at(4)};

@@ -81,6 +81,7 @@ struct Crack {
   double mode_mix = 0;    ///< beta
   double nominal = 0;     ///< G A [J]
   double dissipated = 0;  ///< [J]
+  bool at_tip = false;    ///< it broke at a crack's tip, by the strength of tips
   double time = 0;        ///< when it broke [s]
   Point3 place{};         ///< where it broke [m]
   bool brittle() const { return ultimate <= 1; }
@@ -94,9 +95,9 @@ struct Crack {
 inline void initiate(Crack& crack, const DamageEnergy& energy, double s, double area, double g,
                      double g_shear) {
   const double damaged = energy.damaged();
-  crack.mode_mix = energy.shear / damaged;
+  crack.mode_mix = damaged > 0 ? energy.shear / damaged : 0;
   crack.nominal = area / ((1 - crack.mode_mix) / g + crack.mode_mix / g_shear);
-  crack.ultimate = crack.nominal * s * s / damaged;
+  crack.ultimate = damaged > 0 ? crack.nominal * s * s / damaged : 1;
 }
 
 /// Damage D at kappa >= 1.

@@ -12,7 +12,7 @@
 namespace floe {
 namespace {
 
-constexpr std::size_t width = 9;
+constexpr std::size_t width = 11;
 
 }  // namespace
 
@@ -21,7 +21,8 @@ std::vector<Break> CrackLog::gather() const {
   std::vector<double> mine, all;
   for (const Break& b : fracture_.breaks())
     mine.insert(mine.end(), {b.time, static_cast<double>(b.beam), b.place[0], b.place[1],
-                             b.place[2], b.mode_mix, b.energy, b.nominal, b.brittle ? 1.0 : 0.0});
+                             b.place[2], b.mode_mix, b.energy, b.nominal, b.brittle ? 1.0 : 0.0,
+                             b.at_tip ? 1.0 : 0.0, b.area});
   const auto ranks = static_cast<std::size_t>(size(part_.comm));
   const int count = static_cast<int>(mine.size());
   std::vector<int> counts(ranks), offsets(ranks, 0);
@@ -33,8 +34,15 @@ std::vector<Break> CrackLog::gather() const {
   std::vector<Break> breaks;
   for (std::size_t k = 0; k + width <= all.size(); k += width) {
     const double* v = &all[k];
-    breaks.push_back(
-        {v[0], static_cast<std::int32_t>(v[1]), {v[2], v[3], v[4]}, v[5], v[6], v[7], v[8] != 0});
+    breaks.push_back({v[0],
+                      static_cast<std::int32_t>(v[1]),
+                      {v[2], v[3], v[4]},
+                      v[5],
+                      v[6],
+                      v[7],
+                      v[8] != 0,
+                      v[9] != 0,
+                      v[10]});
   }
   std::sort(breaks.begin(), breaks.end(), [](const Break& a, const Break& b) {
     return a.time != b.time ? a.time < b.time : a.beam < b.beam;

@@ -19,7 +19,7 @@ void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, dou
   for (const auto& [name, value] : forces) {
     if (name.rfind("energy_", 0) == 0) floor_ = std::max(floor_, rounding * std::abs(value));
     if (name == "energy_damping" || name == "energy_drag" || name == "energy_fracture" ||
-        name == "energy_numerical") {
+        name == "energy_released" || name == "energy_numerical") {
       lost += value;
       size += std::abs(value);  // a current may add energy
     } else if (name == "energy_external") {

@@ -83,6 +83,7 @@ void read_fracture(Options& options, Scene& scene) {
     fracture.calibrate = options.choice<Calibrated>("fracture: calibrate") == Calibrated::strength;
   fracture.energy = options.number("fracture: energy");
   fracture.energy_shear = options.number("fracture: energy_shear", {}, fracture.energy);
+  fracture.propagation = options.choice<Propagation>("fracture: propagation");
   fracture.dynamic = scene.integrator != Integrator::quasistatic;
   if (options.given("fracture: weibull_modulus")) {
     fracture.weibull_modulus = options.number("fracture: weibull_modulus");

@@ -217,11 +217,16 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
 }
 
 template <class Space>
-void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model) {
+void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model,
+                const Lattice* lattice) {
   const Part& part = model.part();
   if constexpr (std::is_same_v<Space, Spatial>) {  // fracture, and forces along z
     if (scene.forces.fracture) {
-      BreakableForce breakable = make_breakable_beams(part, scene.beam, scene.fracture);
+      BreakableForce breakable = make_breakable_beams(
+          part, scene.beam, scene.fracture,
+          lattice != nullptr && scene.fracture.propagation == Propagation::energy
+              ? find_junctions(*lattice)
+              : Junctions{});
       model.set_fracture(breakable.fracture);
       model.set_beams(std::move(breakable.force), scene.beam.kinematics);
     }
@@ -269,7 +274,8 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
 }
 
 bool needs_shapes(const Scene& scene) {
-  return scene.forces.buoyancy || scene.forces.drag || scene.forces.contact;
+  return scene.forces.buoyancy || scene.forces.drag || scene.forces.contact ||
+         scene.fracture.propagation == Propagation::energy;
 }
 
 template <class Space>
@@ -309,8 +315,10 @@ template std::unique_ptr<Run> make_run(const Scene&, Model<Spatial>&, const OutO
                                        const RunHooks&, Observer<Spatial>);
 template std::unique_ptr<Run> make_run(const Scene&, Model<Planar>&, const OutOfPlane*,
                                        const RunHooks&, Observer<Planar>);
-template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&);
-template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&);
+template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&,
+                         const Lattice*);
+template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&,
+                         const Lattice*);
 template void add_contact(const Scene&, const Lattice&, Model<Spatial>&);
 template void add_contact(const Scene&, const Lattice&, Model<Planar>&);
 template void release_setup(const Scene&, Model<Spatial>&);

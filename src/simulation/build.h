@@ -96,9 +96,11 @@ std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize&
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice);
 
 /// Adds the scene's forces and loads to the model.
+/// \param lattice  whole; needed for `fracture: propagation: energy`, which looks at its facets
 /// \throws InputError if the lattice cannot carry one (buoyancy without shapes)
 template <class Space>
-void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model);
+void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model,
+                const Lattice* lattice = nullptr);
 
 /// Adds contact, if the scene names it.
 /// \param lattice  whole

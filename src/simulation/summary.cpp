@@ -127,6 +127,50 @@ void add_contacts(const Scene& scene, const Sample& last, Json& json) {
   }
 }
 
+/// Adds what the cracks cost: l sigma_t^2/(2 E G_f), by means over the beams of l0/E; the areas of
+/// broken sections, at tips of cracks and all; and energy_fracture + energy_released (statics) over
+/// the broken area, over G_f (model.md, "Fracture"). Collective.
+template <class Space>
+void add_fracture(const Scene& scene, const Model<Space>& model, const Sample& last, Json& json,
+                  std::string& text) {
+  const Part& part = model.part();
+  std::array<double, 4> sums{};  // l0/E of the beams, their number, area at tips, all area
+  for (std::size_t m = 0; m < part.beams.bodies.size(); ++m) {
+    if (part.counts_here[m] == 0) continue;
+    sums[0] += part.beams.length[m] / part.beams.young[m];
+    sums[1] += 1;
+  }
+  for (const Break& b : model.fracture()->breaks()) {
+    sums[2] += b.at_tip ? b.area : 0;
+    sums[3] += b.area;
+  }
+  const auto [ratio, beams, at_tips, area] = sum_over_ranks(sums, part.comm);
+  const FractureOptions& options = scene.fracture;
+  const double length =
+      ratio / beams * options.tensile_strength * options.tensile_strength / (2 * options.energy);
+  double spent = 0;
+  for (const auto& [name, value] : last.forces) {
+    if (name == "energy_fracture" || name == "energy_released") spent += value;
+  }
+  json["length_over_fracture_length"] = length;
+  json["broken_area"] = area;
+  json["broken_area_at_tips"] = at_tips;
+  if (area == 0) return;
+  const double toughness = spent / area / options.energy;
+  json["Geff_over_Gf"] = toughness;
+  text += line(
+      "cracks: %.6g m^2 broken, %.6g m^2 at tips; G_eff/G_f = %.4g, l/(2 E G_f/sigma_t^2) "
+      "= %.4g",
+      area, at_tips, toughness, length);
+  constexpr double kappa = 2.6;  // of a beam at a tip
+  if (options.propagation == Propagation::strength && kappa * length > 1)
+    text +=
+        "warning: cracks run at the strength of the beams at their tips, so they cost more than "
+        "G_f "
+        "(about 2.6 l sigma_t^2/(2 E)), the more the larger the elements; fracture: propagation: "
+        "energy makes them cost G_f\n";
+}
+
 /// Adds the expected constants of a large sheet of this lattice less those of the material.
 void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::string& text) {
   const double nu = scene.ice.poisson;
@@ -259,6 +303,7 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     if (name.rfind("beams_", 0) == 0 || name == "fragments")
       json[name] = static_cast<std::int64_t>(std::llround(value));
   }
+  if (model.fracture() != nullptr) add_fracture(scene, model, last, json, text);
   json["wall_s"] = wall;
   json["mesh_s"] = wall_seconds(Event::mesh);
   json["lattice_s"] = wall_seconds(Event::lattice);

@@ -383,6 +383,7 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
   stopped_ = StopSignals::came(part_.comm);
   if (stopped_) return false;
   collapsed_ = false;
+  before_breaks_.reset();
   if (!balance(time) || (model_.fracture() != nullptr && !let_break(time, overload_limit))) {
     restore(before);
     return false;
@@ -391,15 +392,33 @@ bool Equilibrium<Space>::solve(double time, double overload_limit) {
   audit("a load step");
   for (std::size_t k = 0; k < model_.forces().size(); ++k) {
     const Roles<Space> roles = model_.forces()[k]->roles();
-    if (roles.work != nullptr) roles.work->add_works(before.state, state_, works_.of(k));
+    if (roles.work != nullptr)
+      roles.work->add_works(before.state, before_breaks_ ? *before_breaks_ : state_, works_.of(k));
     if (roles.commits != nullptr) roles.commits->commit(state_, time - before.state.time);
   }
   return true;
 }
 
+/// Sums of what the forces store, of the work of loads and of what beams have dissipated [J].
+template <class Space>
+typename Equilibrium<Space>::Energies Equilibrium<Space>::energies() const {
+  Energies all;
+  for (const auto& [name, value] : model_.report(state_, works_.all())) {
+    if (name == "energy_fracture")
+      all.dissipated += value;
+    else if (name == "energy_external")
+      all.external += value;
+    else if (name.rfind("energy_", 0) == 0 && name != "energy_load" && name != "energy_released" &&
+             name != "energy_damping")
+      all.stored += value;
+  }
+  return all;
+}
+
 /// Lets beams break, one at a time, the most overloaded first, and others soften; each change is
 /// followed by a new equilibrium. The path passes through states that are in equilibrium except for
-/// the beams that break, as under slow loading.
+/// the beams that break, as under slow loading. Loads and prescribed motions rest meanwhile. What
+/// the stored energy falls by, with the work of the loads, and no beam dissipates is released.
 template <class Space>
 bool Equilibrium<Space>::let_break(double time, double overload_limit) {
   if constexpr (std::is_same_v<Space, Spatial>) {
@@ -410,14 +429,25 @@ bool Equilibrium<Space>::let_break(double time, double overload_limit) {
     }
     constexpr int most_rounds = 1000;  // of softening without a break
     int rounds = 0;
+    const Energies whole = energies();
     for (Advance done = fracture.advance(state_); done != Advance::none;
          done = fracture.advance(state_)) {
+      if (!before_breaks_) before_breaks_ = state_;
       rounds = done == Advance::broke ? 0 : rounds + 1;
       if (rounds <= most_rounds && balance(time)) continue;
       if (why_.empty()) why_ = "damage does not come to rest";
       collapsed_ = !stopped_;
       fracture.retreat();
       return false;
+    }
+    if (before_breaks_) {
+      for (std::size_t k = 0; k < model_.forces().size(); ++k) {
+        if (const auto* work = model_.forces()[k]->roles().work)
+          work->add_works(*before_breaks_, state_, works_.of(k));
+      }
+      const Energies left = energies();
+      fracture.add_released(whole.stored - left.stored + left.external - whole.external +
+                            whole.dissipated - left.dissipated);
     }
     return true;
   } else {  // planar beams do not break

@@ -14,6 +14,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -98,6 +99,10 @@ class Equilibrium {
   static PetscErrorCode converged(SNES, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal f,
                                   SNESConvergedReason*, void* self) noexcept;
 
+  struct Energies {
+    double stored = 0, external = 0, dissipated = 0;
+  };
+
   static constexpr std::size_t turns = n - Space::translations;
 
   void set_defaults();
@@ -116,6 +121,7 @@ class Equilibrium {
   void fill_right_hand_side(std::vector<double>& increments);
   bool predict(double time);
   bool balance(double time);
+  Energies energies() const;
   bool let_break(double time, double overload_limit);
   bool keeps_factorisation() const;
   Scale scale_of_forces() const;
@@ -152,6 +158,7 @@ class Equilibrium {
   std::function<void(std::int64_t)> on_iteration_ = [](std::int64_t) {};
   std::function<void()> on_factorisation_ = [] {};
   std::string why_;
+  std::optional<State<Space>> before_breaks_;  ///< in the last step, before beams broke or softened
   bool collapsed_ = false, stopped_ = false;
 };
 

@@ -351,14 +351,14 @@ class Refused(RestartTest):
 class Breaking(RestartTest):
     """A check without a test of its own, for one rank and for several."""
 
-    def check_breaking(self, ranks):
+    def check_breaking(self, ranks, more=""):
         """Damage, breaks and the ledger go on bit for bit; the log of breaks is that of the
         straight run."""
         (self.folder / "scene.yaml").write_text(SCENE.replace("forces: [beam,",
                                                               "forces: [beam, fracture,")
                                                 .replace("[0.01, 0, 0]", "[0.02, 0, 0]")
                                                 + "fracture: {energy: 100, weibull_modulus: "
-                                                  "8, seed: 3}\n"
+                                                  "8, seed: 3" + more + "}\n"
                                                 + "limit: {energy_error: 1}\n")
         a = self.run_whole("-time_end", "2", dir=f"a{ranks}", ranks=ranks)
         summary = json.loads((a / "summary.json").read_text())
@@ -423,6 +423,9 @@ checkpoint: {every: 1000}
 class Fracture(Breaking):
     def test_a_sheet_that_breaks(self):
         self.check_breaking(1)
+
+    def test_cracks_that_run_by_energy(self):
+        self.check_breaking(1, ", propagation: energy")
 
 
 class Killing(RestartTest):

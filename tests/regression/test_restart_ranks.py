@@ -50,6 +50,9 @@ class Fracture(Breaking):
     def test_a_sheet_that_breaks(self):
         self.check_breaking(2)
 
+    def test_cracks_that_run_by_energy(self):
+        self.check_breaking(2, ", propagation: energy")
+
 
 class Killed(Killing):
     def test_at_random_moments(self):

@@ -82,7 +82,7 @@ class DynamicsIn {
   /// Forces first: water that bodies take along adds to what LeapfrogStepper moves.
   static Model<Space>& with_forces(const Scene& scene, const Lattice& lattice,
                                    Model<Space>& model) {
-    add_forces(scene, place_loads(scene, lattice), model);
+    add_forces(scene, place_loads(scene, lattice), model, &lattice);
     add_contact(scene, lattice, model);
     return model;
   }

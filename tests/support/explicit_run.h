@@ -26,7 +26,7 @@ struct ExplicitRun {
 inline ExplicitRun run_scene(const Scene& scene, const Lattice& lattice, double dt,
                              int samples = 1) {
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, place_loads(scene, lattice), model);
+  add_forces(scene, place_loads(scene, lattice), model, &lattice);
   ExplicitOptions options;
   options.end = scene.time.end;
   options.dt = dt;

@@ -29,7 +29,7 @@ inline ImplicitRun run_implicitly(
     const Scene& scene, const Lattice& lattice, double dt,
     const std::function<void(DynamicOptions&)>& change = [](DynamicOptions&) {}) {
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, place_loads(scene, lattice), model);
+  add_forces(scene, place_loads(scene, lattice), model, &lattice);
   DynamicOptions options;
   options.end = scene.time.end;
   options.dt = dt;

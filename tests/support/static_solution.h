@@ -51,7 +51,7 @@ StaticSolutionIn<Space> solve_static(const Scene& scene, const Lattice& lattice,
   StaticSolutionIn<Space> s;
   s.loads = place_loads(scene, lattice);
   s.model = std::make_unique<Model<Space>>(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, s.loads, *s.model);
+  add_forces(scene, s.loads, *s.model, &lattice);
   if (pins != nullptr) {
     s.model->pin(*pins);
   } else {

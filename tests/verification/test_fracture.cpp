@@ -270,6 +270,21 @@ TEST(Fracture, StrengthsAreWeibulls) {
   }
 }
 
+/// Statics take breaks back when no equilibrium is left; the beam then has its stiffness once.
+TEST(Fracture, ARetreatLeavesTheBoundOfTheStiffness) {
+  test::OneBeam beam(test::one_beam(length, w, h), options(false));
+  const double before = stiffness_bound(*beam.force, 0);
+  ASSERT_GT(before, 0);
+  test::OneBeam stretched(test::one_beam(length, w, h), options());
+  stretched.go(20.0 * modes()[0].at_strength);
+  for (int round = 0; round < 3; ++round) {
+    ASSERT_EQ(beam.fracture->advance(stretched.state()), Advance::broke);
+    beam.fracture->retreat();
+    EXPECT_EQ(beam.fracture->damage(0), 0);
+    EXPECT_EQ(stiffness_bound(*beam.force, 0), before);
+  }
+}
+
 TEST(Fracture, NeedsTheSectionsSides) {
   Lattice lattice = test::one_beam(length, w, h);
   lattice.beams.width.clear(), lattice.beams.height.clear();

@@ -183,6 +183,67 @@ TEST(FractureOfStrips, DisplacementControlFollowsTheSoftening) {
   EXPECT_LT(strain, 1e-9 * nominal);
 }
 
+/// A strip of 40 short beams snaps back when its weakest beam has reached its strength: the beam
+/// dissipates G A, and the rest of what the boundaries put in, 1/2 k u^2, is released.
+TEST(FractureOfStrips, WhatNoBeamDissipatesIsReleased) {
+  constexpr double short_beam = 0.05, narrow = 0.98;
+  constexpr int elements = 40;
+  Lattice lattice = strip(elements);
+  for (Point3& place : lattice.bodies.position) place[0] *= short_beam / spacing;
+  for (double& length : lattice.beams.length) length = short_beam;
+  lattice.beams.width[17] *= narrow;
+  lattice.beams.area[17] *= narrow;
+  Scene scene = strip_scene();
+  scene.beam.kinematics = Kinematics::linear;
+  Boundary tip = scene.boundaries[0];
+  tip.name = tip.set = "tip";
+  tip.displacement = Point3{1.2 * elements * short_beam * strength / young, 0, 0};
+  tip.ramp.seconds = 1;
+  scene.boundaries.push_back(tip);
+  Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
+  add_forces(scene, {}, model);
+  double stretch = 0, fracture = 0, released = 0, broken = 0;
+  const RunResult run = run_quasistatic(model, {1, 0.01}, [&](const Accepted<Spatial>& a) {
+    const bool whole = broken == 0;
+    for (const auto& [name, value] : a.forces) {
+      if (name == "energy_fracture") fracture = value;
+      if (name == "energy_released") released = value;
+      if (name == "beams_broken") broken = value;
+    }
+    if (whole) stretch = a.state.time * (*tip.displacement)[0];  // up to the break
+  });
+  ASSERT_TRUE(run.done) << run.message;
+  ASSERT_EQ(broken, 1);
+  const double nominal = 15 * narrow * w * h;
+  const double k = young * w * h / (short_beam * (elements - 1 + 1 / narrow));
+  EXPECT_NEAR(fracture, nominal, 1e-9 * nominal);
+  EXPECT_NEAR(fracture + released, 0.5 * k * stretch * stretch, 1e-9 * nominal);
+  EXPECT_GT(released, nominal);
+}
+
+/// A load on the middle of two beams breaks the one that it stretches; the other one holds it. The
+/// load works while the beam breaks.
+TEST(FractureOfStrips, TheLedgerOfStaticsClosesUnderLoads) {
+  Lattice lattice = strip(2);
+  lattice.sets["middle"] = {1};
+  Scene scene = strip_scene();
+  scene.beam.kinematics = Kinematics::linear;
+  Boundary tip = scene.boundaries[0];
+  tip.name = tip.set = "tip";
+  scene.boundaries.push_back(tip);
+  Load load = at_tip({3 * strength * w * h, 0, 0}, {0, 0.1 * strength * w * h * h / 6, 0});
+  load.set = "middle";
+  scene.loads = {load};
+  const test::StaticSolution s = test::solve_static(scene, lattice);
+  ASSERT_TRUE(s.result.done) << s.result.message;
+  EXPECT_EQ(s.columns.at("beams_broken"), 1);
+  const double external = s.columns.at("energy_external");
+  EXPECT_GT(s.columns.at("energy_released"), 0.1 * s.columns.at("energy_fracture"));
+  EXPECT_NEAR(s.columns.at("energy_strain") + s.columns.at("energy_fracture") +
+                  s.columns.at("energy_released"),
+              external, 1e-9 * external);
+}
+
 /// A sheet pulled apart: 24 x 12 m of bodies of 1.5 m.
 struct Pulled {
   double external = 0, fracture = 0, error = 0;

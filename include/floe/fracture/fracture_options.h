@@ -6,6 +6,12 @@
 
 namespace floe {
 
+/// What decides on the breaks of beams at the tips of cracks.
+enum class Propagation {
+  strength,  ///< the strengths, as everywhere
+  energy,    ///< strengths that make a crack cost its fracture energy, whatever the mesh
+};
+
 /// Options of fracture, for all beams of a lattice.
 struct FractureOptions {
   double tensile_strength = 6e5;  ///< sigma_t [Pa]
@@ -16,6 +22,7 @@ struct FractureOptions {
   double weibull_modulus = 0;     ///< m; 0: all beams have the same strengths
   double weibull_area = 0;        ///< A_ref [m^2]; 0: the mean section of the lattice
   std::uint64_t seed = 1;         ///< of the scatter
+  Propagation propagation = Propagation::strength;
   /// Damage follows each evaluation, with the strain increments of a step taken from velocities;
   /// false (statics): damage changes by Fracture::advance() only.
   bool dynamic = true;
