@@ -55,6 +55,7 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverla
 void Contacts::damp(std::span<const Acceleration> accelerations,
                     std::span<ContactWrench> wrenches) {
   active_.start();
+  places_.set_obstacles_now(solids_);
   const auto later = [&](Placed solid, std::int32_t slot) {
     const Acceleration& change = item(accelerations, slot);
     solid.velocity = solid.velocity + (0.5 * last_dt_) * change.linear;
@@ -66,8 +67,8 @@ void Contacts::damp(std::span<const Acceleration> accelerations,
         for (const Touch& touch : touches_) {
           const Pair& pair = list_.pair(touch.pair);
           const Placed a = later(places_.of_a(pair), pair.slot_a);
-          const Placed b =
-              is_obstacle(pair.b) ? places_.of_b(pair) : later(places_.of_b(pair), pair.slot_b);
+          const Placed b = is_obstacle(pair.b) ? places_.obstacle_now(pair)
+                                               : later(places_.of_b(pair), pair.slot_b);
           const RelativeMotion predicted = relative_motion(a, b, touch.met.overlap.centroid);
           respond(law, touch, &predicted, wrenches);
         }

@@ -57,4 +57,13 @@ void Places::set_obstacle_velocities(const Solids& solids, double time) {
   }
 }
 
+void Places::set_obstacles_now(const Solids& solids) {
+  obstacles_now_ = obstacles_;
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const ObstacleMotion& motion = solids.obstacles()[k].motion;
+    obstacles_now_[k].velocity = motion.rate(time_);
+    obstacles_now_[k].spin = motion.spin(time_);
+  }
+}
+
 }  // namespace floe

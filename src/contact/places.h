@@ -74,6 +74,10 @@ class Places {
   Placed moving(std::int32_t slot, const MovingPose& later) const {
     return {item(bodies_, slot).x, {}, later.velocity, later.spin};
   }
+  /// Returns an obstacle at its place of the evaluation with its velocity and spin at that time.
+  Placed obstacle_now(const Pair& pair) const { return obstacles_now_[obstacle_number(pair.b)]; }
+  /// Gives obstacle_now() its obstacles.
+  void set_obstacles_now(const Solids& solids);
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }
 
@@ -82,6 +86,7 @@ class Places {
 
   std::vector<Placed> bodies_;     ///< per slot
   std::vector<Placed> obstacles_;  ///< per obstacle
+  std::vector<Placed> obstacles_now_;
   double time_ = 0;
   bool counts_travels_ = false;  ///< place() was called since restart()
 };

@@ -63,7 +63,7 @@ class DistributedContact final : public Contact,
                                  public Remarks {
  public:
   DistributedContact(const Part& part, const Lattice& lattice, const ContactOptions& options,
-                     std::vector<Obstacle> obstacles, std::vector<std::uint8_t> prescribed)
+                     std::vector<Obstacle> obstacles, PrescribedMotion prescribed)
       : part_(part),
         contacts_(lattice.shapes, lattice.bodies.mass, sorted(lattice.beams.bodies), options,
                   std::move(obstacles)),
@@ -73,6 +73,7 @@ class DistributedContact final : public Contact,
         obstacle_forces_(contacts_.solids().obstacles().size()),
         here_(owned_bodies(part)),
         prescribed_(std::move(prescribed)),
+        prescribed_accelerations_(6 * prescribed_.bits.size()),
         rates_(contacts_.rates()),
         possible_(pieces() > 1 || lattice.beams.bodies.empty()) {}
 
@@ -94,7 +95,7 @@ class DistributedContact final : public Contact,
     std::fill(mine_.begin(), mine_.end(), ContactWrench{});
     contacts_.place(bodies_, state.time, state.velocity_time);
     balance_.evaluate(contacts_, mine_);
-    if (contacts_.damps()) add_dashpots(wrenches);
+    if (contacts_.damps()) add_dashpots(state, wrenches);
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = halo_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
@@ -186,7 +187,7 @@ class DistributedContact final : public Contact,
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
   void build(const State<Spatial>& state);
-  void add_dashpots(const Wrenches<Spatial>& others);
+  void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
   void restore(const std::vector<double>& rows, const std::vector<double>& released, bool changed,
                const PairListExpiry& expiry);
 
@@ -196,10 +197,11 @@ class DistributedContact final : public Contact,
   ContactLoadBalance balance_;
   PairListExpiry expiry_;
   ObstacleForces obstacle_forces_;
-  std::vector<std::uint8_t> here_;           ///< per body of the model: 1 if this rank owns it
-  std::vector<std::uint8_t> prescribed_;     ///< per local body: bits of prescribed components
-  std::vector<MovingPose> bodies_;           ///< by slot
-  std::vector<ContactWrench> mine_;          ///< by slot
+  std::vector<std::uint8_t> here_;  ///< per body of the model: 1 if this rank owns it
+  PrescribedMotion prescribed_;
+  std::vector<double> prescribed_accelerations_;  ///< six per local body
+  std::vector<MovingPose> bodies_;                ///< by slot
+  std::vector<ContactWrench> mine_;               ///< by slot
   std::vector<Acceleration> accelerations_;  ///< by slot, by all forces but dashpots of contacts
   ContactRates rates_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
@@ -230,7 +232,9 @@ void DistributedContact::build(const State<Spatial>& state) {
 /// Evaluates the contacts with their dashpots, which act on the velocities to which all other
 /// forces take the bodies at t_n. Collective. \param others  wrenches of the other forces, complete
 /// for owned bodies
-void DistributedContact::add_dashpots(const Wrenches<Spatial>& others) {
+void DistributedContact::add_dashpots(const State<Spatial>& state,
+                                      const Wrenches<Spatial>& others) {
+  if (!prescribed_.bits.empty()) prescribed_.accelerations(state.time, prescribed_accelerations_);
   const std::vector<std::int32_t>& local = halo_.local();
   for (std::size_t k = 0; k < local.size(); ++k) {
     if (local[k] < 0) continue;
@@ -238,10 +242,11 @@ void DistributedContact::add_dashpots(const Wrenches<Spatial>& others) {
     Acceleration a = contacts_.acceleration(
         static_cast<std::int32_t>(k), {.force = mine_[k].force + Vec3<double>{w[0], w[1], w[2]},
                                        .moment = mine_[k].moment + Vec3<double>{w[3], w[4], w[5]}});
-    const unsigned bits = prescribed_.empty() ? 0U : item(prescribed_, local[k]);
+    const unsigned bits = prescribed_.bits.empty() ? 0U : item(prescribed_.bits, local[k]);
+    const std::size_t row = 6 * static_cast<std::size_t>(local[k]);
     for (std::size_t c = 0; c < 3 && bits != 0; ++c) {  // no force changes these velocities
-      if ((bits >> c & 1U) != 0) a.linear[c] = 0;
-      if ((bits >> (3 + c) & 1U) != 0) a.angular[c] = 0;
+      if ((bits >> c & 1U) != 0) a.linear[c] = prescribed_accelerations_[row + c];
+      if ((bits >> (3 + c) & 1U) != 0) a.angular[c] = prescribed_accelerations_[row + 3 + c];
     }
     accelerations_[k] = a;
   }
@@ -311,7 +316,7 @@ void check_shapes(const Lattice& lattice) {
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles,
-                                      std::vector<std::uint8_t> prescribed) {
+                                      PrescribedMotion prescribed) {
   check_shapes(lattice);
   auto contact = std::make_unique<DistributedContact>(part, lattice, options, std::move(obstacles),
                                                       std::move(prescribed));

@@ -2,7 +2,10 @@
 /// The force of contacts between bodies, and between bodies and obstacles (model.md, "Contact").
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,13 @@ class Contact : public Force<Spatial> {
   virtual const std::string& overlap_at_start() const = 0;
 };
 
+/// The components of bodies that boundaries prescribe, and which no force changes.
+struct PrescribedMotion {
+  std::vector<std::uint8_t> bits;  ///< per local body: its prescribed components; empty: none
+  /// Writes the accelerations of these components at a time [m/s^2, rad/s^2], six per local body.
+  std::function<void(double time, std::span<double> accelerations)> accelerations;
+};
+
 /// Makes the force of contacts. Collective.
 ///
 /// Reports energy_contact (stored), energy_contact_viscous, energy_friction, energy_crushing
@@ -28,13 +38,13 @@ class Contact : public Force<Spatial> {
 /// NAME_peak_force_x.. (largest so far), NAME_mean_force_x.. (over the run so far).
 /// \param part     must outlive the force
 /// \param lattice  whole; not used after construction
-/// \param prescribed  per local body the bits of its prescribed components; empty: none
+/// \param prescribed  what it names must outlive the force
 /// \throws InputError if the lattice has no shapes, a shape is not convex, a body lies wholly
 /// inside another or inside an obstacle, or overlaps it by more than a tenth of the smaller size
 /// (unless initial_overlap is stress_free)
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles,
-                                      std::vector<std::uint8_t> prescribed = {});
+                                      PrescribedMotion prescribed = {});
 
 }  // namespace floe

@@ -265,8 +265,16 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
   if constexpr (std::is_same_v<Space, Spatial>) {
     if (!scene.forces.contact) return;
     const auto prescribed = model.prescribed();
-    auto contact = make_contact(model.part(), lattice, scene.contact, scene.obstacles,
-                                {prescribed.begin(), prescribed.end()});
+    const bool any =
+        std::any_of(prescribed.begin(), prescribed.end(), [](auto b) { return b != 0; });
+    PrescribedMotion motion;
+    if (any)
+      motion = {.bits = {prescribed.begin(), prescribed.end()},
+                .accelerations = [&model](double time, std::span<double> values) {
+                  model.prescribe_accelerations(time, values);
+                }};
+    auto contact =
+        make_contact(model.part(), lattice, scene.contact, scene.obstacles, std::move(motion));
     const std::string& overlap = contact->overlap_at_start();
     if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
     model.add_force(std::move(contact));
