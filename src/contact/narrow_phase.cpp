@@ -21,17 +21,12 @@ void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, co
   for (const Vec3<double>& r : vertices) placed.push_back(x + axes.to_world(r));
 }
 
-/// Returns R J2 R^T, of which the columns of J2 R^T are images of the axes of the world.
 Patch in_world(const Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
-  const auto column = [&](const Vec3<double>& axis) {
-    return axes.to_world(p.second_moment(axes.to_local(axis)));
-  };
-  const Vec3<double> x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
-  return {.area = p.area,
-          .middle = axes.to_world(p.middle) + origin,
-          .squares = {x.x, y.y, z.z},
-          .products = {y.z, z.x, x.y},
-          .reach = p.reach};
+  Patch turned = p;
+  turned.middle = axes.to_world(p.middle) + origin;
+  turned.u = axes.to_world(p.u);
+  turned.v = axes.to_world(p.v);
+  return turned;
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ class DistributedContact final : public Contact,
         prescribed_(std::move(prescribed)),
         prescribed_accelerations_(6 * prescribed_.bits.size()),
         rates_(contacts_.rates()),
+        steps_per_touch_(contacts_.options().damping_ratio > damping_ratio_of(0.4) ? 14 : 11),
         possible_(pieces() > 1 || lattice.beams.bodies.empty()) {}
 
   std::string_view name() const override { return "contact"; }
@@ -114,8 +115,7 @@ class DistributedContact final : public Contact,
   /// (zeta > 0.34): then e errs by at most 2 %.
   double resolved_step() const override {
     if (!possible_) return std::numeric_limits<double>::infinity();
-    const double steps = contacts_.options().damping_ratio > damping_ratio_of(0.4) ? 14 : 11;
-    return std::numbers::pi / (steps * std::sqrt(rates_.touch));
+    return std::numbers::pi / (steps_per_touch_ * std::sqrt(rates_.touch));
   }
   const std::string& overlap_at_start() const override { return overlap_at_start_; }
   Limit step_limit(const State<Spatial>& state) const override {
@@ -204,6 +204,7 @@ class DistributedContact final : public Contact,
   std::vector<ContactWrench> mine_;               ///< by slot
   std::vector<Acceleration> accelerations_;  ///< by slot, by all forces but dashpots of contacts
   ContactRates rates_;
+  double steps_per_touch_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
   /// would keep the step short), and once an obstacle is listed or bodies of the one piece overlap.
   bool possible_;

@@ -69,10 +69,14 @@ inline Friction within(const Friction& friction, double most, double reach) {
   return {.force = share * cut.force, .couple = share * cut.couple};
 }
 
-/// Returns the force of the springs turned with the bodies about the normal.
+/// Returns the force of the springs turned with the bodies about the normal, by a rotation of
+/// Cayley's form, which keeps lengths. The tangent of half the angle is the start of its series,
+/// which errs by 5e-8 of the angle at 0.2 rad, far more than a step's.
 /// \param turn  mean angle of the bodies about the normal in the last step [rad]
 inline Vec3<double> turned(const Vec3<double>& force, const Vec3<double>& normal, double turn) {
-  return std::cos(turn) * force + std::sin(turn) * cross(normal, force);
+  const double h = 0.5 * turn, t = h * (1 + h * h * (1.0 / 3 + h * h * (2.0 / 15)));
+  const double share = 1 / (1 + t * t);
+  return share * ((1 - t * t) * force + (2 * t) * cross(normal, force));
 }
 
 }  // namespace floe

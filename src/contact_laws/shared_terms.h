@@ -32,24 +32,6 @@ struct Pressure {
   Vec3<double> couple{};  ///< about the centroid of the overlap [N m]
 };
 
-/// Returns T v, T = int (r x n)(r x n)^T |dA| (model.md, "Contact") [m^4 times v].
-inline Vec3<double> rocking(const Patch& patch, const Vec3<double>& n, const Vec3<double>& v) {
-  return cross(patch.second_moment(cross(n, v)), n);
-}
-
-/// Returns the trace and the largest eigenvalue of T, which are those of J2 across n [m^4].
-struct RockingMoments {
-  double trace = 0, largest = 0;
-};
-inline RockingMoments rocking_moments(const Patch& patch, const Vec3<double>& n) {
-  // Any vector that is not along n begins a basis across n.
-  const Vec3<double> other = std::abs(n.x) < 0.6 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0};
-  const Vec3<double> across = cross(n, other), u = (1 / length(across)) * across, v = cross(n, u);
-  const Vec3<double> tu = rocking(patch, n, u), tv = rocking(patch, n, v);
-  const double uu = dot(u, tu), vv = dot(v, tv), uv = dot(u, tv);
-  return {.trace = uu + vv, .largest = 0.5 * (uu + vv) + std::hypot(0.5 * (uu - vv), uv)};
-}
-
 /// Returns the part of the last step in which the dashpot acts: in the first step of a touch the
 /// impulse of the half step before t_n counts from the time t_c of the touch on, which is at most
 /// a step ago.
@@ -77,7 +59,7 @@ inline Pressure viscous_pressure(const SharedConstants& constants, const Contact
   const Vec3<double> velocity =
       motion.velocity + cross(motion.spin, middle - state.overlap.centroid);
   Pressure viscous{.force = -counts * c * dot(velocity, n) / (1 + half * c * yields)};
-  const Vec3<double> w = motion.spin - dot(motion.spin, n) * n, tw = rocking(patch, n, w);
+  const Vec3<double> w = motion.spin - dot(motion.spin, n) * n, tw = patch.rocking(w);
   const double w2 = dot(w, w);
   if (w2 > 0) {
     const double per_area = c / state.area;
@@ -109,13 +91,12 @@ inline void advance_springs(const ContactState& state, double stiffness, const P
 /// spin, 1/m_t the mean over the directions across n.
 inline Friction friction_dashpots(const SharedConstants& constants, const ContactState& state,
                                   const PairHistory& now) {
-  if (constants.damping_ratio == 0 || state.predicted == nullptr) return {};
   const Vec3<double>& n = state.normal;
   const Vec3<double>& at = state.overlap.centroid;
   const double half = 0.5 * state.last.dt;
-  const Vec3<double> other = std::abs(n.x) < 0.6 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0};
-  const Vec3<double> across = cross(n, other), t = (1 / length(across)) * across;
-  const double yields = 0.5 * (state.mobility.along(at, t) + state.mobility.along(at, cross(n, t)));
+  const Patch& patch = state.overlap.patch;
+  const double yields =
+      0.5 * (state.mobility.along(at, patch.u) + state.mobility.along(at, patch.v));
   const double c = 2 * constants.damping_ratio * std::sqrt(now.springs.stiffness / yields);
   const Vec3<double>& v = state.predicted->velocity;
   Friction dashpots{.force = (-c / (1 + half * c * yields)) * (v - dot(v, n) * n)};
@@ -162,12 +143,9 @@ inline ContactResponse elastic_response(const SharedConstants& constants, const 
   const double pressing = std::min(std::max(elastic.force + viscous.force, 0.0), yield);
 
   const Patch& patch = state.overlap.patch;
-  const RockingMoments moments =
-      patch.area > 0 ? rocking_moments(patch, state.normal) : RockingMoments{};
   const double most = state.pair.friction * pressing, reach = patch.reach / state.area;
   advance_springs(state, 0.6 * term.root * term.root, memory, touched, most, reach,
-                  moments.trace / state.area, now);
-  const Friction dashpots = friction_dashpots(constants, state, now);
+                  (patch.uu + patch.vv) / state.area, now);
 
   ContactResponse response;
   ContactForce& contact = response.contact;
@@ -175,11 +153,14 @@ inline ContactResponse elastic_response(const SharedConstants& constants, const 
   contact.elastic = elastic.force;
   contact.viscous = pressing - elastic.force;
   contact.couple = elastic.couple;
-  if (constants.damping_ratio > 0)
-    contact.viscous_couple = limited_couple(state, elastic, viscous, pressing, moments.largest);
-  contact.friction = within(
-      {.force = now.springs.force + dashpots.force, .couple = now.twist.couple + dashpots.couple},
-      most, reach);
+  contact.friction = {.force = now.springs.force, .couple = now.twist.couple};
+  if (constants.damping_ratio > 0 && state.predicted != nullptr) {
+    contact.viscous_couple = limited_couple(state, elastic, viscous, pressing, patch.largest());
+    const Friction dashpots = friction_dashpots(constants, state, now);
+    contact.friction = within({.force = contact.friction.force + dashpots.force,
+                               .couple = contact.friction.couple + dashpots.couple},
+                              most, reach);
+  }
   contact.memory = now;
   response.stored.tangential = now.springs.energy() + now.twist.energy();
   return response;

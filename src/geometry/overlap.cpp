@@ -1,6 +1,7 @@
 #include "geometry/overlap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,25 +32,28 @@ std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   return HalfSpace{normal, offset};
 }
 
-/// Returns int rho dA over the triangle between the origin and an edge from a to b, both seen along
-/// a unit normal; below 0 where the edge runs clockwise [m^3]. With the edge at the distance d from
-/// the origin it is (d^3/6) [sec t tan t + asinh(tan t)] between the directions t of its ends.
-double reach_of_edge(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& normal) {
-  const Vec3<double> p = a - dot(a, normal) * normal, way = b - a;
-  const Vec3<double> along = way - dot(way, normal) * normal;
-  const double size = length(along);
-  if (size == 0) return 0;
-  const double twice = dot(normal, cross(p, along)), d = std::abs(twice) / size;
-  if (d <= 1e-14 * size) return 0;  // the integral is of the order of d size^2
-  const double from = dot(p, along) / size, to = from + size;
-  const double far_from = std::hypot(d, from), far_to = std::hypot(d, to);
-  // asinh(to/d) - asinh(from/d), by the end that is farther from the foot of the perpendicular.
-  const double turn =
-      from + to >= 0
-          ? std::log((to + far_to) / (from >= 0 ? from + far_from : d * d / (far_from - from)))
-          : std::log((far_from - from) / (to <= 0 ? far_to - to : d * d / (far_to + to)));
-  const double sum = (d / 6) * (to * far_to - from * far_from + d * d * turn);
-  return twice > 0 ? sum : -sum;
+/// A vector across the direction of S.
+struct Across {
+  double u, v;
+};
+
+/// Returns int rho dA over the triangle between the origin and an edge from a to b; below 0 where
+/// the edge runs clockwise [m^3]. It is a third of twice the area times the mean of rho along the
+/// edge, here by the rule of Gauss-Legendre with four points: 6e-5 too large for a square about its
+/// centre, at most 1.5 % for narrow rectangles.
+double reach_of_edge(const Across& a, const Across& b) {
+  constexpr std::array<double, 4> at{0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
+                                     0.9305681557970263};
+  constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307,
+                                         0.32607257743127307, 0.17392742256872693};
+  std::array<double, 4> rho;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double u = a.u + at[k] * (b.u - a.u), v = a.v + at[k] * (b.v - a.v);
+    rho[k] = std::sqrt(u * u + v * v);
+  }
+  const double mean =
+      (weight[0] * rho[0] + weight[1] * rho[1]) + (weight[2] * rho[2] + weight[3] * rho[3]);
+  return (a.u * b.v - a.v * b.u) / 3 * mean;
 }
 
 }  // namespace
@@ -268,42 +272,55 @@ Overlap Clipper::integrals() const {
 
 /// Sums over the triangles of the facets on B. A triangle with corners p_k, s their sum, has
 /// int r r^T dA = (A/12) (sum p_k p_k^T + s s^T).
-Patch Clipper::patch(const Vec3<double>& normal) const {
+/// \param n  unit vector along S
+Patch Clipper::patch(const Vec3<double>& n) const {
   const Vec3<double> apex = now_.points[0];
   const auto corner = [&](std::int32_t c) {
     return item(now_.points, item(now_.corners, c)) - apex;
   };
   Patch sum;
-  Vec3<double> first{};  // int r dA, from the apex
+  // Any vector that is not along n begins a basis across n.
+  const Vec3<double> side =
+      std::abs(n.x) < 0.6 ? Vec3<double>{0, n.z, -n.y} : Vec3<double>{-n.z, 0, n.x};
+  sum.u = (1 / length(side)) * side;
+  sum.v = cross(n, sum.u);
+  const auto across = [&](const Vec3<double>& r) { return Across{dot(sum.u, r), dot(sum.v, r)}; };
+  Vec3<double> first{};           // int r dA, from the apex
+  double uu = 0, vv = 0, uv = 0;  // 12 times those about the apex
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     if (!face.on_b) continue;
     const Vec3<double> p = corner(face.begin);
     Vec3<double> q = corner(face.begin + 1);
-    for (std::int32_t c = face.begin + 2; c < face.end; ++c) {
-      const Vec3<double> r = corner(c), s = p + q + r;
-      const double area = 0.5 * length(cross(q - p, r - p)), part = area / 12;
+    const Across a = across(p);
+    Across b = across(q);
+    for (std::int32_t k = face.begin + 2; k < face.end; ++k) {
+      const Vec3<double> r = corner(k);
+      const Across c = across(r), s{a.u + b.u + c.u, a.v + b.v + c.v};
+      const double area = 0.5 * length(cross(q - p, r - p));
       sum.area += area;
-      first = first + (area / 3) * s;
-      for (const Vec3<double>& a : {p, q, r, s}) {
-        sum.squares = sum.squares + part * Vec3<double>{a.x * a.x, a.y * a.y, a.z * a.z};
-        sum.products = sum.products + part * Vec3<double>{a.y * a.z, a.z * a.x, a.x * a.y};
-      }
+      first = first + area * (p + q + r);
+      uu += area * ((a.u * a.u + b.u * b.u) + (c.u * c.u + s.u * s.u));
+      vv += area * ((a.v * a.v + b.v * b.v) + (c.v * c.v + s.v * s.v));
+      uv += area * ((a.u * a.v + b.u * b.v) + (c.u * c.v + s.u * s.v));
       q = r;
+      b = c;
     }
   }
   if (!(sum.area > 0)) return {};
-  const Vec3<double> m = (1 / sum.area) * first;
-  sum.squares = sum.squares - sum.area * Vec3<double>{m.x * m.x, m.y * m.y, m.z * m.z};
-  sum.products = sum.products - sum.area * Vec3<double>{m.y * m.z, m.z * m.x, m.x * m.y};
-  sum.middle = apex + m;
+  const Vec3<double> middle = (1 / (3 * sum.area)) * first;
+  const Across m = across(middle);
+  sum.middle = apex + middle;
+  sum.uu = uu / 12 - sum.area * m.u * m.u;
+  sum.vv = vv / 12 - sum.area * m.v * m.v;
+  sum.uv = uv / 12 - sum.area * m.u * m.v;
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     if (!face.on_b) continue;
-    Vec3<double> a = corner(face.end - 1) - m;
-    for (std::int32_t c = face.begin; c < face.end; ++c) {
-      const Vec3<double> b = corner(c) - m;
-      sum.reach += reach_of_edge(a, b, normal);
+    Across a = across(corner(face.end - 1) - middle);
+    for (std::int32_t k = face.begin; k < face.end; ++k) {
+      const Across b = across(corner(k) - middle);
+      sum.reach += reach_of_edge(a, b);
       a = b;
     }
   }

@@ -7,6 +7,7 @@
 /// half-spaces leaves.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,21 +20,26 @@
 namespace floe {
 
 /// Integrals over the facets of an overlap on B's surface, for what acts over an area
-/// (model.md, "Contact"). All r are from `middle`, the centroid of |dA|.
+/// (model.md, "Contact"). All r are from `middle`, the centroid of |dA|. Only the parts of r across
+/// the direction n of S count; u, v and n are a right-handed basis.
 struct Patch {
-  double area = 0;        ///< integral of |dA| [m^2]
-  Vec3<double> middle{};  ///< centroid of |dA| [m]
-  /// Diagonal (xx, yy, zz) and rest (yz, zx, xy) of J2, the integral of r r^T |dA| [m^4].
-  Vec3<double> squares{}, products{};
+  double area = 0;                ///< integral of |dA| [m^2]
+  Vec3<double> middle{};          ///< centroid of |dA| [m]
+  Vec3<double> u{}, v{};          ///< unit vectors across S
+  double uu = 0, vv = 0, uv = 0;  ///< J2, the integral of r r^T |dA|, in u and v [m^4]
   /// Integral of the distance of r from the axis through `middle` along S, over the area that the
   /// facets show along this axis [m^3]: a spin w about the axis slides at w times that distance.
   double reach = 0;
 
-  /// Returns J2 times a vector.
-  Vec3<double> second_moment(const Vec3<double>& v) const {
-    return {squares.x * v.x + products.z * v.y + products.y * v.z,
-            products.z * v.x + squares.y * v.y + products.x * v.z,
-            products.y * v.x + products.x * v.y + squares.z * v.z};
+  /// Returns T w, T = int (r x n)(r x n)^T |dA|, of a vector w across n [m^4 times w].
+  Vec3<double> rocking(const Vec3<double>& w) const {
+    const double wu = dot(u, w), wv = dot(v, w);
+    return (vv * wu - uv * wv) * u + (uu * wv - uv * wu) * v;
+  }
+  /// Returns the largest eigenvalue of T, and of J2 across n [m^4].
+  double largest() const {
+    const double half = 0.5 * (uu - vv);
+    return 0.5 * (uu + vv) + std::sqrt(half * half + uv * uv);
   }
 };
 

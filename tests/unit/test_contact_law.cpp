@@ -148,7 +148,12 @@ TEST(ContactLaw, FrictionIsCutToTheCoefficientTimesTheNormalForce) {
 /// A face of 1 m along x and 2 m along y.
 Overlap face_of(double volume) {
   Overlap o = overlap_of(volume, {0, 0, 2});
-  o.patch = {.area = 2, .squares = {2.0 / 12, 8.0 / 12, 0}, .reach = 1.2};
+  o.patch = {.area = 2,
+             .u = {1, 0, 0},
+             .v = {0, 1, 0},
+             .uu = 2.0 / 12,
+             .vv = 8.0 / 12,
+             .reach = 1.2};
   return o;
 }
 
@@ -177,7 +182,6 @@ TEST(ContactLaw, ViscousForceActsAtTheMiddleOfTheFacets) {
   const double c = 2 * 0.2 * std::sqrt(10 * 1e6 * 2);
   Overlap o = face_of(0.01);
   o.patch.middle = {0, 0.1, 0};
-  o.patch.squares = {2.0 / 12, 8.0 / 12, 0};
   law.motion.spin = {0.05, 0, 0};  // the middle goes up by 0.005 m/s
   const ContactForce contact = law(o);
   EXPECT_NEAR(contact.viscous, -c * 0.005, 1e-9 * c);
