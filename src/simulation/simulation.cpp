@@ -71,8 +71,10 @@ struct Setting {
   /// is known to be possible.
   void say_warnings() const {
     if (!settings.talks || rank() != 0) return;
-    for (const std::string& warning : scene.warnings)
-      print_error("floe: warning: " + warning + "\n");
+    for (const auto* warnings : {&scene.warnings, &mesh.warnings}) {
+      for (const std::string& warning : *warnings)
+        print_error("floe: warning: " + warning + "\n");
+    }
   }
 };
 
