@@ -101,8 +101,8 @@ class Placer {
       const Point2 u = ray(e, k);
       at.push_back(std::atan2(u[1], u[0]));
       for (const Point2& w : walls(graph_.nodes[k]))
-        wall = std::min(wall, std::abs(std::atan2(u[0] * w[1] - u[1] * w[0],
-                                                  u[0] * w[0] + u[1] * w[1])));
+        wall = std::min(wall,
+                        std::abs(std::atan2(u[0] * w[1] - u[1] * w[0], u[0] * w[0] + u[1] * w[1])));
     }
     std::sort(at.begin(), at.end());
     std::vector<double> gaps;
@@ -139,8 +139,8 @@ class Placer {
       radius = std::min(radius, 0.3 * item(graph_.edges, e).length / cosine);
     for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
       const auto& ends = graph_.edges[e].nodes;
-      const bool ends_here = static_cast<std::size_t>(ends[0]) == k ||
-                             static_cast<std::size_t>(ends[1]) == k;
+      const bool ends_here =
+          static_cast<std::size_t>(ends[0]) == k || static_cast<std::size_t>(ends[1]) == k;
       if (fitted_[e] && !ends_here)
         radius = std::min(radius, 0.4 * distance(graph_, graph_.edges[e], node.at));
     }
@@ -181,8 +181,7 @@ class Placer {
       const std::int32_t left = at({foot[0] - s * u[1], foot[1] + s * u[0]});
       const std::int32_t right = at({foot[0] + s * u[1], foot[1] - s * u[0]});
       const bool forward = static_cast<std::size_t>(item(graph_.edges, e).nodes[0]) == k;
-      item(ends_, e)[forward ? 0 : 1] =
-          forward ? std::array{left, right} : std::array{right, left};
+      item(ends_, e)[forward ? 0 : 1] = forward ? std::array{left, right} : std::array{right, left};
     }
     if (edges.size() == 1 && node.sides == 0) {
       const Point2 u = ray(edges.front(), k);
@@ -228,8 +227,8 @@ class Placer {
       for (int j = 0; j < 2; ++j) {
         if (e.nodes[i] != other.nodes[j]) continue;
         const double sign = i == j ? 1 : -1;
-        const double cosine = sign * (e.direction[0] * other.direction[0] +
-                                      e.direction[1] * other.direction[1]);
+        const double cosine =
+            sign * (e.direction[0] * other.direction[0] + e.direction[1] * other.direction[1]);
         if (cosine <= 0.5 + 1e-9) return true;
       }
     return false;
@@ -265,8 +264,7 @@ class Placer {
       const double s = begin + (end - begin) * k / samples;
       const double density = 1 / spacing(edge, offset(edge, on(s)));
       if (k > 0)
-        integral.push_back(integral.back() +
-                           0.5 * (last + density) * (end - begin) / samples);
+        integral.push_back(integral.back() + 0.5 * (last + density) * (end - begin) / samples);
       last = density;
     }
     const int n = std::max(1, static_cast<int>(std::lround(integral.back())));

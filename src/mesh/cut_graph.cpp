@@ -51,9 +51,9 @@ std::optional<Segment> clipped(const CutLine& line, const Point2& half, double t
     }
   }
   if (end - begin <= tolerance) return std::nullopt;
-  const Segment inside = segment(snapped(begin > 0 ? whole.at(begin) : line.from, half, tolerance),
-                                 snapped(end < whole.length ? whole.at(end) : line.to, half,
-                                         tolerance));
+  const Segment inside =
+      segment(snapped(begin > 0 ? whole.at(begin) : line.from, half, tolerance),
+              snapped(end < whole.length ? whole.at(end) : line.to, half, tolerance));
   for (int axis = 0; axis < 2; ++axis) {  // along a side: there is nothing to cut
     if (std::abs(inside.from[axis]) == half[axis] &&
         inside.from[axis] == inside.at(inside.length)[axis])
@@ -169,8 +169,7 @@ CutGraph make_cut_graph(const SheetPlan& plan, std::span<const CutLine> lines) {
 double distance(const CutGraph& graph, const CutEdge& edge, const Point2& p) {
   const Point2& from = item(graph.nodes, edge.nodes[0]).at;
   const double x = p[0] - from[0], y = p[1] - from[1];
-  const double along =
-      std::clamp(edge.direction[0] * x + edge.direction[1] * y, 0.0, edge.length);
+  const double along = std::clamp(edge.direction[0] * x + edge.direction[1] * y, 0.0, edge.length);
   return std::hypot(x - along * edge.direction[0], y - along * edge.direction[1]);
 }
 

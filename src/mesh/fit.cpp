@@ -46,10 +46,10 @@ class Surroundings {
   bool sorted_ = true;
 };
 
-constexpr double clear = 1.05;    ///< free generators stay this times a disc's radius away
-constexpr double hole = 0.78;     ///< over l: an empty circle of this radius gets a generator
-constexpr double affected = 3;    ///< over l: nearer free generators relax again
-constexpr int sweeps = 60;        ///< of that relaxation
+constexpr double clear = 1.05;  ///< free generators stay this times a disc's radius away
+constexpr double hole = 0.78;   ///< over l: an empty circle of this radius gets a generator
+constexpr double affected = 3;  ///< over l: nearer free generators relax again
+constexpr int sweeps = 60;      ///< of that relaxation
 
 /// The generators of a plan with lines.
 struct Fit {
@@ -93,8 +93,8 @@ struct Fit {
         for (std::int32_t v = t.offset[k]; v < t.offset[k + 1]; ++v) {
           const Point2& p = item(t.vertices, v);
           const double radius = std::hypot(p[0] - z[0], p[1] - z[1]);
-          const double room = std::min(plan.length / 2 - std::abs(p[0]),
-                                       plan.width / 2 - std::abs(p[1]));
+          const double room =
+              std::min(plan.length / 2 - std::abs(p[0]), plan.width / 2 - std::abs(p[1]));
           if (radius > hole * l && room > 0.25 * l && may_be_at(p)) holes.emplace_back(radius, p);
         }
       }
@@ -112,8 +112,7 @@ struct Fit {
 
   /// Moves the free generators near the lines to the centroids of their cells, sweep by sweep.
   Tessellation relax(const Share& share) {
-    const std::vector<std::int32_t> order =
-        hilbert_order(generators, plan.length, plan.width);
+    const std::vector<std::int32_t> order = hilbert_order(generators, plan.length, plan.width);
     number.resize(order.size());
     std::vector<Point2> at(order.size());
     std::vector<std::uint8_t> moves(order.size());

@@ -56,8 +56,10 @@ constexpr std::array table{
     OptionSpec{"region: NAME: box", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x0, x1, y0, y1, z0, z1: the set is the bodies with their centroid inside", 6},
     OptionSpec{"cut: names", names, "(none)", "", "", "cuts through the sheet: one section each"},
-    OptionSpec{"cut: NAME: from", numbers, "(required)", "m", ">= -1e9, <= 1e9",
-               "x, y of one end: beams whose facet lies on the segment, or that cross it, are not made", 2},
+    OptionSpec{
+        "cut: NAME: from", numbers, "(required)", "m", ">= -1e9, <= 1e9",
+        "x, y of one end: beams whose facet lies on the segment, or that cross it, are not made",
+        2},
     OptionSpec{"cut: NAME: to", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x, y of the other end", 2},
 

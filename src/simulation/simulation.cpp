@@ -72,8 +72,7 @@ struct Setting {
   void say_warnings() const {
     if (!settings.talks || rank() != 0) return;
     for (const auto* warnings : {&scene.warnings, &mesh.warnings}) {
-      for (const std::string& warning : *warnings)
-        print_error("floe: warning: " + warning + "\n");
+      for (const std::string& warning : *warnings) print_error("floe: warning: " + warning + "\n");
     }
   }
 };
