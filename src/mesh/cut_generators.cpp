@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <set>
 #include <utility>
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double row = std::numbers::sqrt3 / 2;  ///< height over l of a cell that is l wide
 constexpr double shortest_edge = 0.4;            ///< over l; shorter ones are not fitted
-constexpr double smallest_scale = 0.3;           ///< of the sizes along an edge
+constexpr double smallest_scale = 0.25;          ///< of the sizes along an edge
 constexpr double shrink = 0.75;                  ///< of the sizes in a conflict
 
 /// The generators about a node lie on its circle, on both sides of each edge at the same angle.
@@ -32,6 +33,7 @@ class Placer {
   Placer(const CutGraph& graph, const SheetPlan& plan)
       : graph_(graph),
         l_(plan.element_size),
+        seed_(plan.seed),
         half_{plan.length / 2, plan.width / 2},
         scale_(graph.edges.size(), 1),
         fitted_(graph.edges.size(), 1) {
@@ -55,7 +57,7 @@ class Placer {
     result_ = {};
     result_.pairs.resize(graph_.edges.size());
     placed_owner_.clear(), disc_owner_.clear();
-    broken_.clear();
+    broken_.clear(), tight_.clear();
     ends_.assign(graph_.edges.size(), {});
     node_.assign(graph_.nodes.size(), {});
     for (std::size_t k = 0; k < graph_.nodes.size(); ++k) plan_node(k);
@@ -137,19 +139,27 @@ class Placer {
     double radius = single ? l_ / std::numbers::sqrt3 : std::min(0.6, 0.5 / cosine) * l_;
     for (const std::int32_t e : edges)
       radius = std::min(radius, 0.3 * item(graph_.edges, e).length / cosine);
+    std::int32_t culprit = -1;
     for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
       const auto& ends = graph_.edges[e].nodes;
       const bool ends_here =
           static_cast<std::size_t>(ends[0]) == k || static_cast<std::size_t>(ends[1]) == k;
-      if (fitted_[e] && !ends_here)
-        radius = std::min(radius, 0.4 * distance(graph_, graph_.edges[e], node.at));
+      if (!fitted_[e] || ends_here) continue;
+      const double least = 0.3 * distance(graph_, graph_.edges[e], node.at);
+      if (least < radius) radius = least, culprit = static_cast<std::int32_t>(e);
     }
     for (int axis = 0; axis < 2; ++axis) {
       const double limits[] = {half_[axis] - node.at[axis], half_[axis] + node.at[axis]};
       for (const double room : limits)
         if (room > 0) radius = std::min(radius, 0.45 * room);
     }
-    for (const std::int32_t e : edges) radius = std::min(radius, radius * item(scale_, e));
+    const double unscaled = radius;
+    for (const std::int32_t e : edges) radius = std::min(radius, unscaled * item(scale_, e));
+    if (radius < smallest_scale * 0.6 * l_) {
+      Edges all = edges;
+      if (culprit >= 0) all.push_back(culprit);
+      tight_.push_back(std::move(all));
+    }
     node_[k] = {angle, radius};
   }
 
@@ -185,7 +195,14 @@ class Placer {
     }
     if (edges.size() == 1 && node.sides == 0) {
       const Point2 u = ray(edges.front(), k);
-      (void)at({node.at[0] - radius * u[0], node.at[1] - radius * u[1]});
+      // Straight ahead both of the next facets would be at 60 degrees to the line, where a crack
+      // has it hardest; in a mesh by chance one is at 30 in the mean. The seed says to which side.
+      std::mt19937_64 engine(seed_ + k);
+      constexpr double aside = pi / 6;
+      const double across = ((engine() >> 63U) != 0 ? 1 : -1) * radius * std::sin(aside);
+      const double ahead = radius * std::cos(aside);
+      (void)at(
+          {node.at[0] - ahead * u[0] - across * u[1], node.at[1] - ahead * u[1] + across * u[0]});
     }
     result_.discs.push_back({node.at, radius});
     disc_owner_.push_back(edges);
@@ -193,31 +210,35 @@ class Placer {
 
   /// Returns the offset of the generators of an edge from it at a place on it, such that whole rows
   /// of cells fit between it and the next edge or the outline. [m]
-  double offset(std::int32_t edge, const Point2& p) const {
+  /// \param is_pair  notes a pair that has too little room
+  double offset(std::int32_t edge, const Point2& p, bool is_pair) {
     const CutEdge& e = item(graph_.edges, edge);
     const double height = row * l_;
     double least = 0.5 * height, most = 0;
-    const auto fit = [&](double room, double fewest) {
+    std::int32_t culprit = edge;
+    const auto fit = [&](double room, double fewest, std::int32_t by) {
       if (room > 6 * height) return;
       const double rows = std::max(fewest, std::round(room / height));
-      least = std::min(least, room / (2 * rows));
+      if (room / (2 * rows) < least) least = room / (2 * rows), culprit = by;
       most = std::max(most, room / (2 * rows));
     };
     for (std::size_t k = 0; k < graph_.edges.size(); ++k) {
       const CutEdge& other = graph_.edges[k];
       if (!fitted_[k] || static_cast<std::int32_t>(k) == edge || is_beside(e, other)) continue;
-      fit(distance(graph_, other, p), 2);
+      fit(distance(graph_, other, p), 2, static_cast<std::int32_t>(k));
     }
     for (int axis = 0; axis < 2; ++axis) {
       for (const int sign : {-1, 1}) {
         if (std::abs(e.direction[axis]) > std::sin(pi / 3) && leads_to(e, axis, sign)) continue;
-        fit(half_[axis] - sign * p[axis], 1);
+        fit(half_[axis] - sign * p[axis], 1, edge);
       }
     }
     // Where all gaps ask for rows that are a little higher, they are.
     const double usual = 0.5 * height;
     const double chosen = least < usual ? least : std::clamp(most, usual, 1.3 * usual);
-    return chosen * item(scale_, edge);
+    const double size = chosen * item(scale_, edge), smallest = smallest_scale * usual;
+    if (size < smallest && is_pair) tight_.push_back({edge, culprit});
+    return std::max(size, smallest);
   }
 
   /// Whether two edges meet at an angle of 60 degrees or more, so that they are not in each other's
@@ -262,7 +283,7 @@ class Placer {
     double last = 0;
     for (int k = 0; k <= samples; ++k) {
       const double s = begin + (end - begin) * k / samples;
-      const double density = 1 / spacing(edge, offset(edge, on(s)));
+      const double density = 1 / spacing(edge, offset(edge, on(s), false));
       if (k > 0)
         integral.push_back(integral.back() + 0.5 * (last + density) * (end - begin) / samples);
       last = density;
@@ -278,7 +299,7 @@ class Placer {
       const double part = (wish - integral[j - 1]) / (integral[j] - integral[j - 1]);
       const double s = begin + (end - begin) * (static_cast<double>(j - 1) + part) / samples;
       const Point2 foot = on(s);
-      const double d = offset(edge, foot);
+      const double d = offset(edge, foot, true);
       const double reach = std::min(0.62 * l_, 1.45 * d);
       local.push_back({s, d});
       const std::int32_t left = add({foot[0] - d * u[1], foot[1] + d * u[0]}, reach, {edge});
@@ -308,6 +329,10 @@ class Placer {
     const auto x = [&](std::int32_t k) { return item(result_.placed, k).at[0]; };
     std::sort(order.begin(), order.end(),
               [&](std::int32_t a, std::int32_t b) { return x(a) < x(b); });
+    if (!tight_.empty()) {
+      drop_last(tight_);
+      return true;
+    }
     std::vector<Edges> conflicts = broken_;
     for (std::size_t d = 0; d < result_.discs.size(); ++d) {
       const auto& [centre, radius] = result_.discs[d];
@@ -332,27 +357,38 @@ class Placer {
   }
 
   void shrink_or_drop(const std::vector<Edges>& conflicts) {
-    std::set<std::int32_t> involved, dropped;
+    std::set<std::int32_t> involved;
     for (const Edges& edges : conflicts) involved.insert(edges.begin(), edges.end());
     for (const std::int32_t e : involved) item(scale_, e) *= shrink;
+    std::vector<Edges> hopeless;
     for (const Edges& edges : conflicts) {
       if (std::any_of(edges.begin(), edges.end(),
                       [&](std::int32_t e) { return item(scale_, e) < smallest_scale; }))
-        dropped.insert(*std::max_element(edges.begin(), edges.end()));
+        hopeless.push_back(edges);
     }
-    for (const std::int32_t e : dropped) item(fitted_, e) = 0;
-    if (dropped.empty()) return;
-    for (const std::int32_t e : involved) item(scale_, e) = 1;  // again, without those
+    drop_last(hopeless);
+  }
+
+  /// Drops an edge of each conflict, and lets the others have their sizes again.
+  void drop_last(const std::vector<Edges>& conflicts) {
+    for (const Edges& edges : conflicts) {
+      // One that another conflict has dropped may have been in the way of this one.
+      if (std::all_of(edges.begin(), edges.end(), [&](std::int32_t e) { return item(fitted_, e); }))
+        item(fitted_, *std::max_element(edges.begin(), edges.end())) = 0;
+    }
+    if (!conflicts.empty()) std::fill(scale_.begin(), scale_.end(), 1.0);
   }
 
   const CutGraph& graph_;
   double l_;
+  std::uint64_t seed_;
   Point2 half_;
   std::vector<double> scale_;         ///< per edge: of the sizes along it
   std::vector<std::uint8_t> fitted_;  ///< per edge
   std::vector<NodePlan> node_;
   std::vector<std::array<std::array<std::int32_t, 2>, 2>> ends_;  ///< per edge: pairs at its ends
   std::vector<Edges> placed_owner_, disc_owner_;
+  std::vector<Edges> tight_;   ///< edges between which only too small cells have room
   std::vector<Edges> broken_;  ///< edges whose facets are not in order
   CutGenerators result_;
 };

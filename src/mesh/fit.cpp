@@ -137,20 +137,20 @@ struct Fit {
 }  // namespace
 }  // namespace mesh
 
-FittedCells fit_to_cuts(const SheetPlan& plan, std::vector<Point2> generators,
-                        std::span<const CutLine> lines, MPI_Comm comm) {
+FittedCells fit_to_cuts(const SheetPlan& plan, Tessellation cells, std::span<const CutLine> lines,
+                        MPI_Comm comm) {
   const mesh::CutGraph graph = mesh::make_cut_graph(plan, lines);
   mesh::Fit fit(plan, graph);
   FittedCells result;
   if (fit.cuts.placed.empty()) {  // the cells stay
-    result.cells = tessellate(plan, std::move(generators));
+    result.cells = std::move(cells);
     for (const auto& edges : graph.of_line) {
       result.cuts.emplace_back();
       for (const std::int32_t e : edges) result.cuts.back().length += item(graph.edges, e).length;
     }
     return result;
   }
-  fit.take(generators);
+  fit.take(cells.generators);
   fit.fill();
   result.cells = fit.relax(mesh::Share(comm));
   const auto& facets = result.cells.facets;

@@ -44,7 +44,7 @@ std::vector<FittedCut> fit_cuts(const Scene& scene, MPI_Comm comm, Tessellation&
                                 MeshReport& report) {
   std::vector<CutLine> lines;
   for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
-  FittedCells fitted = fit_to_cuts(scene.sheet, std::move(cells.generators), lines, comm);
+  FittedCells fitted = fit_to_cuts(scene.sheet, std::move(cells), lines, comm);
   cells = std::move(fitted.cells);
   for (std::size_t k = 0; k < fitted.cuts.size(); ++k) {
     const auto& [pairs, length, followed] = fitted.cuts[k];

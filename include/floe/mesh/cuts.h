@@ -36,9 +36,9 @@ struct FittedCells {
 /// the others near it relax once more. Cells far from all lines keep their generators. Lines may
 /// meet, cross and end on the outline or inside. A line (or its part between two others) is left
 /// as it is where it would need cells much smaller than the element size: shorter than 0.4 l, or
-/// close to another line or to the outline. Collective; the same bits for any number of ranks.
-/// \param generators  of the relaxed plan
-FittedCells fit_to_cuts(const SheetPlan& plan, std::vector<std::array<double, 2>> generators,
-                        std::span<const CutLine> lines, MPI_Comm comm);
+/// too close to another line or to the outline. Collective; the same bits for any number of ranks.
+/// \param cells  of the relaxed plan; returned as they are if no line can be followed
+FittedCells fit_to_cuts(const SheetPlan& plan, Tessellation cells, std::span<const CutLine> lines,
+                        MPI_Comm comm);
 
 }  // namespace floe
