@@ -46,14 +46,22 @@ std::vector<FittedCut> fit_cuts(const Scene& scene, MPI_Comm comm, Tessellation&
   for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
   FittedCells fitted = fit_to_cuts(scene.sheet, std::move(cells), lines, comm);
   cells = std::move(fitted.cells);
+  double length = 0, followed = 0;
+  std::vector<std::string> apart;
   for (std::size_t k = 0; k < fitted.cuts.size(); ++k) {
-    const auto& [pairs, length, followed] = fitted.cuts[k];
-    if (std::abs(followed - length) <= 1e-6 * length) continue;
-    report.warnings.push_back(
-        "cut: " + scene.cuts[k].name + ": only " + text_of(followed) + " of " + text_of(length) +
-        " m are edges of cells, elsewhere the cut follows the cells: it is short, or near other " +
-        "cuts or the outline, for sheet: element_size: " + text_of(scene.sheet.element_size));
+    const FittedCut& cut = fitted.cuts[k];
+    length += cut.length, followed += cut.followed;
+    if (std::abs(cut.followed - cut.length) > 1e-6 * cut.length)
+      apart.push_back(scene.cuts[k].name);
   }
+  if (!apart.empty())
+    report.cuts = "cut: " + apart.front() +
+                  (apart.size() > 1 ? " and " + std::to_string(apart.size() - 1) + " more" : "") +
+                  ": the cells do not end on " + (apart.size() > 1 ? "them" : "it") +
+                  " everywhere (" + text_of(followed) + " of " + text_of(length) +
+                  " m of all cuts), but the cuts follow the cells: they are short, or near each "
+                  "other or the outline, for sheet: element_size: " +
+                  text_of(scene.sheet.element_size);
   return std::move(fitted.cuts);
 }
 

@@ -71,9 +71,8 @@ struct Setting {
   /// is known to be possible.
   void say_warnings() const {
     if (!settings.talks || rank() != 0) return;
-    for (const auto* warnings : {&scene.warnings, &mesh.warnings}) {
-      for (const std::string& warning : *warnings) print_error("floe: warning: " + warning + "\n");
-    }
+    for (const std::string& warning : scene.warnings)
+      print_error("floe: warning: " + warning + "\n");
   }
 };
 
@@ -145,7 +144,7 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
   if (!needs_shapes(scene_)) packed_.pack_shapes(lattice);
   loads_ = place_loads(scene_, lattice);
   model_.emplace(lattice, PETSC_COMM_WORLD, scene_.boundaries);
-  add_forces(scene_, loads_, *model_, &lattice);
+  add_forces(scene_, loads_, *model_);
   add_contact(scene_, lattice, *model_);
   if (is_static_) hold_free_motions(scene_, lattice, *model_);
   if (is_static_ && setting_.choice.planar)
@@ -350,6 +349,7 @@ void Simulation::Impl::make_lattice_and_choose_model() {
   const bool mixed = processors != built_for();
   say("library: built for " + processors +
       (mixed ? "; results differ by rounding from those of one level\n" : "\n"));
+  if (!mesh.cuts.empty()) say(mesh.cuts + "\n");
   if (mesh.strength) say("strength: " + text_of(*mesh.strength) + "\n");
 }
 
