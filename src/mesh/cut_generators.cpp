@@ -113,12 +113,16 @@ class Placer {
     return {gaps, wall};
   }
 
-  /// Chooses the angle and the radius at a node. In the sector between two edges there are either
-  /// two generators, far enough from each other, or one on the bisector.
   void plan_node(std::size_t k) {
-    const CutNode& node = graph_.nodes[k];
-    const std::vector<std::int32_t> edges = fitted_edges(node);
+    const std::vector<std::int32_t> edges = fitted_edges(graph_.nodes[k]);
     if (edges.empty()) return;
+    const double angle = angle_at(k, edges);
+    node_[k] = {angle, radius_at(k, edges, std::cos(angle))};
+  }
+
+  /// Chooses the angle at a node. In the sector between two edges there are either two generators,
+  /// far enough from each other, or one on the bisector.
+  double angle_at(std::size_t k, const Edges& edges) const {
     const auto [gaps, wall] = angles(k, edges);
     constexpr double apart = pi / 6, usual = pi / 3, widest = 75 * pi / 180;
     double angle = *std::min_element(gaps.begin(), gaps.end()) / 2;
@@ -129,13 +133,15 @@ class Placer {
         return std::abs(gap - 2 * a) < 1e-9 || gap - 2 * a >= apart - 1e-9;
       });
     };
-    for (double less = angle; less > pi / 36; less -= pi / 180) {
-      if (!good(less)) continue;
-      angle = less;
-      break;
-    }
+    for (double less = angle; less > pi / 36; less -= pi / 180)
+      if (good(less)) return less;
+    return angle;
+  }
+
+  /// Chooses the radius at a node so that its circle is in nobody's way. [m]
+  double radius_at(std::size_t k, const Edges& edges, double cosine) {
+    const CutNode& node = graph_.nodes[k];
     const bool single = edges.size() == 1 && node.sides == 0;
-    const double cosine = std::cos(angle);
     double radius = single ? l_ / std::numbers::sqrt3 : std::min(0.6, 0.5 / cosine) * l_;
     for (const std::int32_t e : edges)
       radius = std::min(radius, 0.3 * item(graph_.edges, e).length / cosine);
@@ -160,7 +166,7 @@ class Placer {
       if (culprit >= 0) all.push_back(culprit);
       tight_.push_back(std::move(all));
     }
-    node_[k] = {angle, radius};
+    return radius;
   }
 
   std::int32_t add(const Point2& at, double reach, Edges owner) {
@@ -268,37 +274,49 @@ class Placer {
                     4.8 * d);
   }
 
-  void place_edge(std::int32_t edge) {
-    const CutEdge& e = item(graph_.edges, edge);
-    const Point2 &u = e.direction, &origin = item(graph_.nodes, e.nodes[0]).at;
-    const auto [angle0, radius0] = item(node_, e.nodes[0]);
-    const auto [angle1, radius1] = item(node_, e.nodes[1]);
-    const double begin = radius0 * std::cos(angle0);
-    const double end = e.length - radius1 * std::cos(angle1);
-    const auto on = [&](double s) { return Point2{origin[0] + s * u[0], origin[1] + s * u[1]}; };
-
-    // Places at equal steps of the integral of ds/spacing.
+  /// Returns places along an edge from `begin` to `end` at equal steps of the integral of
+  /// ds/spacing, without these two. [m]
+  std::vector<double> places(std::int32_t edge, double begin, double end) {
     const int samples = 8 + static_cast<int>(16 * (end - begin) / l_);
+    const double step = (end - begin) / samples;
     std::vector<double> integral{0};
     double last = 0;
     for (int k = 0; k <= samples; ++k) {
-      const double s = begin + (end - begin) * k / samples;
-      const double density = 1 / spacing(edge, offset(edge, on(s), false));
-      if (k > 0)
-        integral.push_back(integral.back() + 0.5 * (last + density) * (end - begin) / samples);
+      const double d = offset(edge, point(edge, begin + k * step), false);
+      const double density = 1 / spacing(edge, d);
+      if (k > 0) integral.push_back(integral.back() + 0.5 * (last + density) * step);
       last = density;
     }
     const int n = std::max(1, static_cast<int>(std::lround(integral.back())));
-    std::vector<Point2> local{{begin, radius0 * std::sin(angle0)}};  // place, offset
-    auto& pairs = item(result_.pairs, edge);
-    pairs.push_back(item(ends_, edge)[0]);
+    std::vector<double> found;
     for (int k = 1; k < n; ++k) {
       const double wish = integral.back() * k / n;
       const auto above = std::lower_bound(integral.begin(), integral.end(), wish);
       const auto j = static_cast<std::size_t>(above - integral.begin());
       const double part = (wish - integral[j - 1]) / (integral[j] - integral[j - 1]);
-      const double s = begin + (end - begin) * (static_cast<double>(j - 1) + part) / samples;
-      const Point2 foot = on(s);
+      found.push_back(begin + (static_cast<double>(j - 1) + part) * step);
+    }
+    return found;
+  }
+
+  Point2 point(std::int32_t edge, double s) const {
+    const CutEdge& e = item(graph_.edges, edge);
+    const Point2& origin = item(graph_.nodes, e.nodes[0]).at;
+    return {origin[0] + s * e.direction[0], origin[1] + s * e.direction[1]};
+  }
+
+  void place_edge(std::int32_t edge) {
+    const CutEdge& e = item(graph_.edges, edge);
+    const Point2& u = e.direction;
+    const auto [angle0, radius0] = item(node_, e.nodes[0]);
+    const auto [angle1, radius1] = item(node_, e.nodes[1]);
+    const double begin = radius0 * std::cos(angle0);
+    const double end = e.length - radius1 * std::cos(angle1);
+    std::vector<Point2> local{{begin, radius0 * std::sin(angle0)}};  // place, offset
+    auto& pairs = item(result_.pairs, edge);
+    pairs.push_back(item(ends_, edge)[0]);
+    for (const double s : places(edge, begin, end)) {
+      const Point2 foot = point(edge, s);
       const double d = offset(edge, foot, true);
       const double reach = std::min(0.62 * l_, 1.45 * d);
       local.push_back({s, d});
@@ -308,17 +326,24 @@ class Placer {
     }
     local.push_back({end, radius1 * std::sin(angle1)});
     pairs.push_back(item(ends_, edge)[1]);
+    add_discs(edge, local);
+  }
+
+  /// Adds the discs about the ends of an edge's facets, on whose rims two pairs lie each.
+  /// \param local  place and offset of each pair
+  void add_discs(std::int32_t edge, const std::vector<Point2>& local) {
     double before = 0;
+    bool in_order = true;
     for (std::size_t k = 0; k + 1 < local.size(); ++k) {
       const auto [s0, d0] = local[k];
       const auto [s1, d1] = local[k + 1];
       const double middle = (s0 + s1) / 2 + (d1 * d1 - d0 * d0) / (2 * (s1 - s0));
-      if (!(middle > before)) broken_.push_back({edge});
+      in_order = in_order && middle > before;
       before = middle;
-      result_.discs.push_back({on(middle), std::hypot(middle - s0, d0)});
+      result_.discs.push_back({point(edge, middle), std::hypot(middle - s0, d0)});
       disc_owner_.push_back({edge});
     }
-    if (!(before < e.length)) broken_.push_back({edge});
+    if (!in_order || !(before < item(graph_.edges, edge).length)) broken_.push_back({edge});
   }
 
   /// Makes the cells of edges smaller that are in each other's way, or drops edges. \return whether

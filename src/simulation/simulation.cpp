@@ -144,7 +144,7 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
   if (!needs_shapes(scene_)) packed_.pack_shapes(lattice);
   loads_ = place_loads(scene_, lattice);
   model_.emplace(lattice, PETSC_COMM_WORLD, scene_.boundaries);
-  add_forces(scene_, loads_, *model_);
+  add_forces(scene_, loads_, *model_, &lattice);
   add_contact(scene_, lattice, *model_);
   if (is_static_) hold_free_motions(scene_, lattice, *model_);
   if (is_static_ && setting_.choice.planar)

@@ -243,6 +243,37 @@ TEST(FitToCuts, AnyLines) {
   EXPECT_GT(followed / length, 0.75);
 }
 
+TEST(FitToCuts, AnyLinesInAnySheet) {
+  std::uint64_t state = 54321;
+  const auto random = [&state](double low, double high) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return low + (high - low) * static_cast<double>(state >> 11U) * 0x1p-53;
+  };
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    const double x = random(1, 12), y = random(1, 12);
+    SheetPlan plan = plan_of(x, y, random(0.1, 1) * std::min(x, y));
+    plan.iterations = 20;
+    std::vector<CutLine> lines(static_cast<std::size_t>(random(1, 5)));
+    for (CutLine& line : lines) {
+      for (Point2* end : {&line.from, &line.to}) {
+        *end = {random(-0.6, 0.6) * x, random(-0.6, 0.6) * y};
+        if (random(0, 1) < 0.3) (*end)[0] = std::round((*end)[0]);
+        if (random(0, 1) < 0.3) (*end)[1] = std::round((*end)[1]);
+      }
+      if (line.from == line.to) line.to[0] += 0.1 * x;
+    }
+    const FittedCells result = fitted(plan, lines);
+    double area = 0;
+    for (std::size_t k = 0; k + 1 < result.cells.offset.size(); ++k)
+      area += plan_properties(polygon(result.cells, k)).area;
+    EXPECT_NEAR(area / (x * y), 1, 1e-12);
+    for (std::size_t k = 0; k < lines.size(); ++k)
+      EXPECT_LT(length_in_cells(result.cells, lines[k], inside(plan, lines[k])),
+                result.cuts[k].length - result.cuts[k].followed + 1e-9);
+  }
+}
+
 TEST(FitToCuts, LinesThatAreTooCloseAreLeft) {
   const SheetPlan plan = plan_of(20, 16, 1);
   const std::vector<CutLine> lines{{{-4, 0}, {4, 0}}, {{-4, 0.03}, {4, 0.03}}};
