@@ -63,6 +63,7 @@ struct Scene {
   } forces;
   bool has_sheet = false;  ///< whether a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
+  bool fit_cuts = true;   ///< whether the sheet's cells end on the lines of cuts
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;   ///< of the sheet [m]
   Ice ice;

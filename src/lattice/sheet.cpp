@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -117,7 +118,10 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
   return lattice;
 }
 
-void cut(Lattice& lattice, const Point2& a, const Point2& b) {
+void cut(Lattice& lattice, const Point2& a, const Point2& b,
+         std::span<const std::array<std::int32_t, 2>> on_line) {
+  std::vector<std::array<std::int32_t, 2>> pairs(on_line.begin(), on_line.end());
+  std::sort(pairs.begin(), pairs.end());
   // A body whose centroid lies on the line of the saw counts as being to its right. A path of beams
   // from one side to the other is then cut exactly once, and beams along the line are not cut.
   const auto left_of = [](const Point2& p, const Point2& q, const Point3& x) {
@@ -133,7 +137,8 @@ void cut(Lattice& lattice, const Point2& a, const Point2& b) {
   };
   std::vector<std::int32_t> kept;
   for (std::int32_t m = 0; m < lattice.beams.size(); ++m)
-    if (!crosses(m)) kept.push_back(m);
+    if (!crosses(m) && !std::binary_search(pairs.begin(), pairs.end(), lattice.beams.bodies[m]))
+      kept.push_back(m);
 
   const auto keep = [&kept](auto& column) {
     if (column.empty()) return;  // optional arrays may be absent

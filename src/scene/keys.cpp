@@ -48,14 +48,18 @@ constexpr std::array table{
     OptionSpec{"sheet: mesh_file", text, "(none)", "", "",
                "HDF5 file that keeps the relaxed generators: read if it is there, else written; "
                "scenes that share a sheet mesh it once"},
+    OptionSpec{"sheet: fit_cuts", flag, "true", "", "",
+               "cells end on the lines of cuts; false: the cells stay, and cuts follow them"},
 
     OptionSpec{"region: names", names, "(none)", "", "",
                "further sets of bodies: one section each"},
     OptionSpec{"region: NAME: box", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x0, x1, y0, y1, z0, z1: the set is the bodies with their centroid inside", 6},
     OptionSpec{"cut: names", names, "(none)", "", "", "cuts through the sheet: one section each"},
-    OptionSpec{"cut: NAME: from", numbers, "(required)", "m", ">= -1e9, <= 1e9",
-               "x, y of one end: beams that cross the segment are not made", 2},
+    OptionSpec{
+        "cut: NAME: from", numbers, "(required)", "m", ">= -1e9, <= 1e9",
+        "x, y of one end: beams whose facet lies on the segment, or that cross it, are not made",
+        2},
     OptionSpec{"cut: NAME: to", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x, y of the other end", 2},
 

@@ -111,6 +111,10 @@ void read_regions_and_cuts(Options& options, Scene& scene) {
     if (cut.from == cut.to) throw InputError("cut: " + name + ": from and to are the same point");
     scene.cuts.push_back(cut);
   }
+  if (scene.cuts.empty())
+    options.refuse("sheet: fit_cuts", "would have no effect: the scene has no 'cut'");
+  else if (scene.has_sheet)
+    scene.fit_cuts = options.flag("sheet: fit_cuts");
 }
 
 }  // namespace floe

@@ -9,6 +9,7 @@
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
+#include "floe/mesh/cuts.h"
 #include "forces/gravity.h"
 #include "implicit/implicit.h"
 #include "run/expected_cost.h"
@@ -38,7 +39,34 @@ double mid_plane(const Scene& scene) {
   return scene.thickness * (0.5 - relative_density);
 }
 
-Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
+/// Makes cells end on the scene's cuts. \return what became of each cut
+std::vector<FittedCut> fit_cuts(const Scene& scene, MPI_Comm comm, Tessellation& cells,
+                                MeshReport& report) {
+  std::vector<CutLine> lines;
+  for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
+  FittedCells fitted = fit_to_cuts(scene.sheet, std::move(cells), lines, comm);
+  cells = std::move(fitted.cells);
+  double length = 0, followed = 0;
+  std::vector<std::string> apart;
+  for (std::size_t k = 0; k < fitted.cuts.size(); ++k) {
+    const FittedCut& cut = fitted.cuts[k];
+    length += cut.length, followed += cut.followed;
+    if (std::abs(cut.followed - cut.length) > 1e-6 * cut.length)
+      apart.push_back(scene.cuts[k].name);
+  }
+  if (!apart.empty())
+    report.cuts = "cut: " + apart.front() +
+                  (apart.size() > 1 ? " and " + std::to_string(apart.size() - 1) + " more" : "") +
+                  ": the cells do not end on " + (apart.size() > 1 ? "them" : "it") +
+                  " everywhere (" + text_of(followed) + " of " + text_of(length) +
+                  " m of all cuts), but the cuts follow the cells: they are short, or near each "
+                  "other or the outline, for sheet: element_size: " +
+                  text_of(scene.sheet.element_size);
+  return std::move(fitted.cuts);
+}
+
+Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
+                   std::vector<FittedCut>& cuts) {
   const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor,
                              scene.torsion};
   check_size(scene, free_memory(comm), size(comm));
@@ -56,9 +84,13 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report) {
                 ? tessellate(scene.sheet, comm, show)
                 : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show, report.keep);
   }
-  report.energy_ratio = cells.energy_ratio;
-  report.largest_move = cells.largest_move;
+  report.largest_move = cells.largest_move;  // of the relaxation, as are the iterations
   report.iterations = cells.iterations;
+  if (!scene.cuts.empty() && scene.fit_cuts) {
+    const Timed timed(Event::mesh);
+    cuts = fit_cuts(scene, comm, cells, report);
+  }
+  report.energy_ratio = cells.energy_ratio;
   report.degenerate = cells.degenerate;
   const Timed timed(Event::lattice);
   return make_sheet(cells, section);
@@ -87,8 +119,9 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
 
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.has_sheet) require_lattice_file(scene, comm);
+  std::vector<FittedCut> fitted(scene.cuts.size());
   Lattice lattice =
-      scene.has_sheet ? mesh_sheet(scene, comm, report) : read_lattice(scene.lattice_file);
+      scene.has_sheet ? mesh_sheet(scene, comm, report, fitted) : read_lattice(scene.lattice_file);
   const Timed timed(Event::lattice);
   if (scene.forces.beam && lattice.beams.size() == 0)
     throw InputError(scene.has_sheet
@@ -99,9 +132,10 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
     report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
   if (scene.forces.fracture && scene.fracture.calibrate)
     report.strength = calibrate_strength(scene, lattice, comm);
-  for (const Cut& c : scene.cuts) {
+  for (std::size_t k = 0; k < scene.cuts.size(); ++k) {
+    const Cut& c = scene.cuts[k];
     const std::int32_t before = lattice.beams.size();
-    cut(lattice, c.from, c.to);
+    cut(lattice, c.from, c.to, fitted[k].pairs);
     if (lattice.beams.size() == before && !c.may_miss)
       throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
   }

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "floe/base/petsc.h"
+#include "floe/mesh/cuts.h"
 #include "floe/mesh/tessellation.h"
 #include "mesh/share.h"
 
@@ -51,6 +52,16 @@ TEST(MeshOnRanks, QuasiNewton) {
   plan.length = 40, plan.width = 60, plan.element_size = 1.3, plan.iterations = 60;
   plan.relaxation = Relaxation::quasi_newton;
   expect_same_on_any_number_of_ranks(plan);
+}
+
+TEST(MeshOnRanks, CellsFittedToCuts) {
+  SheetPlan plan;
+  plan.length = 30, plan.width = 20, plan.element_size = 1, plan.iterations = 40;
+  const std::vector<CutLine> lines{{{-16, 1}, {3, 4}}, {{-4, -6}, {-2, 9}}};
+  const auto fit = [&](MPI_Comm comm) {
+    return hash(fit_to_cuts(plan, tessellate(plan, comm), lines, comm).cells);
+  };
+  EXPECT_EQ(fit(PETSC_COMM_WORLD), fit(MPI_COMM_SELF));
 }
 
 TEST(MeshOnRanks, FewerCellsThanRanks) {

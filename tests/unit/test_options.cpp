@@ -204,6 +204,10 @@ TEST_F(SceneOptions, CrossChecks) {
   EXPECT_NE(error_with("ice: {density: 1010}\n"), "") << "sinks";
   EXPECT_NE(error_with("time: {dt: 2}\n"), "");
   EXPECT_NE(error_with("cut: {names: c, c: {from: [1, 1], to: [1, 1]}}\n"), "");
+  const std::string one_cut = "cut: {names: c, c: {from: [1, 1], to: [1, 2]}}\n";
+  EXPECT_TRUE(scene_of(minimal + one_cut).fit_cuts);
+  EXPECT_FALSE(scene_of(minimal + one_cut + "sheet_fit_cuts: false\n").fit_cuts);
+  EXPECT_TRUE(contains(error_with("sheet_fit_cuts: false\n"), "the scene has no 'cut'"));
   EXPECT_NE(error_with("region: {names: left, left: {box: 0 1 0 1 0 1}}\n"), "");
   EXPECT_NE(scene_error("forces: [beam, buoyancy]\nsheet: {length: 40}\n"), "");
   const auto boundary = [](const std::string& rest) {

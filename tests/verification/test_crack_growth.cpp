@@ -88,8 +88,8 @@ Outcome pull(double element, std::uint64_t seed, double energy, Propagation prop
   return run;
 }
 
-/// Mean peak of meshes of seeds 1 to `seeds` over their mean Griffith load. Peaks scatter by 15 %
-/// at l = 2 m: the saw's cut and the crack follow the cells.
+/// Mean peak of meshes of seeds 1 to `seeds` over their mean Griffith load. Peaks scatter by 8 %
+/// at l = 2 m: the crack follows the cells.
 double mean_over_griffith(double element, double energy, Propagation propagation, int seeds) {
   double peaks = 0, loads = 0;
   for (int seed = 1; seed <= seeds; ++seed) {

@@ -82,7 +82,10 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section);
 std::vector<std::int32_t> reorder(Lattice& lattice);
 
 /// Removes the beams that cross the segment from a to b in plan [m], as a cut with a saw does.
-void cut(Lattice& lattice, const Point2& a, const Point2& b);
+/// \param on_line  the bodies, the smaller first, of further beams to remove: those whose facets
+///   lie on the segment
+void cut(Lattice& lattice, const Point2& a, const Point2& b,
+         std::span<const std::array<std::int32_t, 2>> on_line = {});
 
 /// Adds the set `name` of all bodies with their centroid in the box {x0, x1, y0, y1, z0, z1} [m].
 /// \throws InputError naming `key` if the set exists already or no body is inside

@@ -25,8 +25,8 @@ def check_in_situ_cantilever(test, run):
     test.assertLess(bodies[1], 60)
     root = breaks(output, "place")[:, 0] < -1
     test.assertGreaterEqual(root.sum(), 4)
-    test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 1.2,
-                           delta=0.25)
+    test.assertAlmostEqual(6 * largest(output, "press_force_z") * 4.75 / (2 * 0.5**2) / 6e5, 0.75,
+                           delta=0.1)
 
 
 def check_strength_tension(test, run):
