@@ -66,8 +66,30 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
                                     : 1;
     all.push_back(
         section_strength(w, h, factor * options.tensile_strength, factor * options.shear_strength));
+    all.back().bending_y *= options.bending_factor;
+    all.back().torsion *= options.bending_factor;
   }
   return all;
+}
+
+Criterion needed_criterion(const FractureOptions& options) {
+  return options.bending_factor != 1 || options.compressive_strength > 0 ? Criterion::general
+                                                                         : Criterion::plain;
+}
+
+FurtherStrength<double> further_strength(const FractureOptions& options) {
+  FurtherStrength<double> further{options.bending_factor, 0, 0};
+  if (options.compressive_strength > 0) {
+    further.pressure = options.tensile_strength / (2 * options.shear_strength);
+    further.friction = 1 - 2 * options.shear_strength / options.compressive_strength;
+  }
+  return further;
+}
+
+FurtherStrength<double> further_at_tip(const Strength<double>& tip, const Strength<double>& whole,
+                                       const FurtherStrength<double>& further) {
+  const double twisted = tip.torsion / whole.torsion, sheared = tip.shear / whole.shear;
+  return {further.transverse * twisted / sheared, tip.shear / (2 * tip.axial), 1};
 }
 
 Strength<double> tip_strength(const Part& part, std::int32_t beam, const FractureOptions& options,
@@ -88,11 +110,14 @@ Strength<double> tip_strength(const Part& part, std::int32_t beam, const Fractur
 double overload(const Part& part, const std::vector<BeamSection>& sections,
                 FractureOptions fracture) {
   fracture.weibull_modulus = 0;
+  fracture.compressive_strength = 0;
   const std::vector<Strength<double>> all = strengths(part, fracture);
+  const FurtherStrength<double> further = further_strength(fracture);
   double most = 0;
   for (std::size_t m = 0; m < sections.size(); ++m) {
     const auto& [n, qy, qz, t, my, mz] = sections[m];
-    most = std::max(most, criterion(all[m], BeamStress<double>{n, qy, qz, {t, my, mz}}));
+    const BeamStress<double> stress{n, qy, qz, {t, my, mz}};
+    most = std::max(most, criteria(all[m], further, stress, false).tension);
   }
   return std::sqrt(largest_over_ranks(most, part.comm));
 }

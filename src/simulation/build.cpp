@@ -97,7 +97,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
   if (scene.calibrate != Calibrate::none)
     report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
-  if (scene.forces.fracture && scene.fracture.calibrate)
+  if (scene.forces.fracture && (scene.fracture.calibrate || scene.fracture.flexural_strength > 0))
     report.strength = calibrate_strength(scene, lattice, comm);
   for (const Cut& c : scene.cuts) {
     const std::int32_t before = lattice.beams.size();
