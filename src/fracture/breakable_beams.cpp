@@ -297,7 +297,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         const double s = std::sqrt(s2[lane]);
         if (is_tip(m)) {
           const double s_tip = std::sqrt(at_tips[lane]);
-          if (s_tip > 1 + rounding && s_tip > s) {  // else as elsewhere, by s
+          if (s_tip > 1 + rounding && s_tip > (1 + rounding) * s) {  // else as elsewhere, by s
             growing_.push_back(growth(m, s, state, true));
             if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
             continue;
@@ -598,6 +598,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
                                                          const State<Spatial>& state) {
     const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
+    constexpr double rounding = 1e-9;  // of two s2 by equal strengths
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t at = b * lanes + lane;
@@ -609,7 +610,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       if (options_.dynamic && falls && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state, true));
         c = &growing_.back().crack;
-      } else if (options_.dynamic && at_tips[lane] > 1 && at_tips[lane] > s2[lane] && is_tip(m)) {
+      } else if (options_.dynamic && at_tips[lane] > 1 &&
+                 at_tips[lane] > (1 + rounding) * s2[lane] && is_tip(m)) {
         overloaded_.emplace_back(std::sqrt(at_tips[lane]), m);
       } else if (options_.dynamic && !broken(m) &&
                  (s2[lane] > passed * passed || crushes_damaged(m, state))) {

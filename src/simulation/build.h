@@ -49,8 +49,8 @@ struct MeshReport {
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
 
 /// Measures a sheet's strengths: stretches and bends the whole sheet, its beams without scatter,
-/// along x and along y with small displacements, each time until the first beam away from the
-/// loaded ends reaches its strength (model.md, "Fracture"). Collective.
+/// along x and along y with small displacements, each time until the first beam (in bending away
+/// from the ends) reaches its strength (model.md, "Fracture"). Collective.
 /// \param lattice  with the sets left, right, bottom and top
 StrengthCalibration calibrate_strength(const Scene& scene, const Lattice& lattice, MPI_Comm comm);
 

@@ -62,8 +62,8 @@ double reaction(const Model<Space>& model, const Wrenches<Space>& wrenches, std:
   return std::abs(sum_over_ranks(sum, model.part().comm));
 }
 
-/// Per local beam: whether it is away from the loaded ends, where prescribed motions of cells of
-/// many sizes disturb the uniform load.
+/// Per local beam: whether it is away from the turned ends, where the moments on cells of many
+/// sizes are not uniform.
 std::vector<std::uint8_t> beams_away(const Lattice& lattice, const Part& part,
                                      const std::vector<Boundary>& ends) {
   std::vector<std::uint8_t> at_end(lattice.bodies.position.size(), 0);
@@ -78,7 +78,7 @@ std::vector<std::uint8_t> beams_away(const Lattice& lattice, const Part& part,
   return away;
 }
 
-/// Largest s of the beams away from the loaded ends; of all, if there are none. Collective.
+/// Largest s of the beams away from the turned ends; of all, if there are none. Collective.
 double worst_away(const Part& part, std::vector<BeamSection> sections,
                   const std::vector<std::uint8_t>& away, const FractureOptions& fracture) {
   const double of_all = overload(part, sections, fracture);
@@ -89,8 +89,8 @@ double worst_away(const Part& part, std::vector<BeamSection> sections,
   return inside > 0 ? inside : of_all;
 }
 
-/// Nominal stress at which the first beam of the sheet, away from its loaded ends, reaches its
-/// strength [Pa]: the mean stress in tension, 6M/(b h^2) in bending. Collective.
+/// Nominal stress at which the first beam of the sheet reaches its strength [Pa]: the mean stress
+/// in tension, 6M/(b h^2) in bending, there of the beams away from the ends. Collective.
 template <class Space>
 double first_break(const Scene& scene, const Lattice& lattice, MPI_Comm comm, Loading loading,
                    std::size_t axis) {
@@ -110,7 +110,9 @@ double first_break(const Scene& scene, const Lattice& lattice, MPI_Comm comm, Lo
   Model<Space> model(lattice, comm, test.boundaries);
   add_forces(test, {}, model);
   hold_free_motions(test, lattice, model);
-  const std::vector<std::uint8_t> away = beams_away(lattice, model.part(), test.boundaries);
+  const std::vector<std::uint8_t> away =
+      pulls ? std::vector<std::uint8_t>(model.part().beams.bodies.size(), 1)
+            : beams_away(lattice, model.part(), test.boundaries);
   const std::size_t component = pulls ? axis : 3 + (1 - axis);
   double stress = 0, worst = 0;
   const RunResult result =

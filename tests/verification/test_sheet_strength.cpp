@@ -29,9 +29,9 @@ double worst_outside(const Scene& scene, const Lattice& lattice, const Model<Spa
   return overload(model.part(), sections, scene.fracture);
 }
 
-/// Nominal stress at which a sheet's first beam away from its ends breaks when the ends are pulled
-/// along an axis or bent against each other, by statics in space; the last state before any break,
-/// extrapolated. [Pa]
+/// Nominal stress at which a sheet's first beam breaks when the ends are pulled along an axis or
+/// bent against each other (there: first beam away from them), by statics in space; the last state
+/// before any break, extrapolated [Pa].
 double first_break(Scene scene, const Lattice& lattice, std::size_t axis, bool bends = false) {
   const bool along_x = axis == 0;
   const std::vector<std::string> ends{along_x ? "left" : "bottom", along_x ? "right" : "top"};
@@ -59,8 +59,9 @@ double first_break(Scene scene, const Lattice& lattice, std::size_t axis, bool b
     double force = 0;
     for (const std::int32_t body : model.boundaries()[0].bodies)
       force += a.wrenches.of(static_cast<std::size_t>(body))[bends ? 4 - axis : axis];
-    stress = std::abs(force) / (across * h * (bends ? h / 6 : 1)) /
-             worst_outside(scene, lattice, model, a.state, ends);
+    stress =
+        std::abs(force) / (across * h * (bends ? h / 6 : 1)) /
+        worst_outside(scene, lattice, model, a.state, bends ? ends : std::vector<std::string>{});
   });
   return stress;
 }
