@@ -5,6 +5,7 @@
 #include "base/collectives.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "floe/lattice/material.h"
 
 namespace floe {
 namespace {
@@ -44,6 +45,18 @@ double weibull_factor(std::uint64_t seed, std::int32_t beam, double modulus, dou
          std::tgamma(1 + 1 / modulus);
 }
 
+namespace {
+
+/// Part of the torsional moment of a beam that its section carries as a free bar. A torsion constant
+/// beyond Saint-Venant's (narrow facets of a calibrated sheet, or Iy + Iz) stands for the plate
+/// around the beam: the section has the stress that its twist makes of it, or narrow facets would
+/// break under next to no load.
+double share_of_section(double torsion, double w, double h) {
+  return std::min(1.0, saint_venant_torsion(w, h) / torsion);
+}
+
+}  // namespace
+
 std::vector<Strength<double>> strengths(const Part& part, const FractureOptions& options) {
   const Beams& beams = part.beams;
   const auto sides = [&](const std::vector<double>& all) {
@@ -67,7 +80,7 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
     all.push_back(
         section_strength(w, h, factor * options.tensile_strength, factor * options.shear_strength));
     all.back().bending_y *= options.bending_factor;
-    all.back().torsion *= options.bending_factor;
+    all.back().torsion *= options.bending_factor * share_of_section(beams.torsion[m], w, h);
   }
   return all;
 }
