@@ -427,13 +427,13 @@ forces: [beam, fracture, contact]
 sheet: {length: 6, width: 4, thickness: 0.5, element_size: 1, iterations: 10}
 beam: {damping_ratio: 0.2}
 fracture: {tensile_strength: 4e6, shear_strength: 1.2e6, compressive_strength: 2.5e6,
-           flexural_strength: 2e6, energy_shear: 1500}
+           flexural_strength: 2e6, energy_shear: 6000}
 contact: {young: 1e9}
 boundary:
   names: [left, right]
   left: {set: left, fix: x y z rx ry rz, velocity: [0.1, 0, 0], ramp: 0.01}
   right: {set: right, fix: x y z rx ry rz}
-time: {end: 0.12}
+time: {end: 0.08}
 checkpoint: {every: 10000}
 """, [0.4, 0.6, 0.8, 0.9])
         self.assertGreater(summary["beams_crushed"], 2)

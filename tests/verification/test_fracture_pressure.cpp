@@ -224,6 +224,20 @@ TEST(FractureUnderPressure, TheWeightOfBendingLowersThreeStrengths) {
   EXPECT_NEAR(at(&Stresses::torsion, 3e5), 1.25 * 3e5 / shear, 1e-9);
 }
 
+/// A torsion constant beyond Saint-Venant's, as narrow facets of a calibrated sheet have, makes no
+/// section weaker against its twist; one below it takes the moment as it is.
+TEST(FractureUnderPressure, TorsionBeyondTheSectionsIsNotItsStress) {
+  for (const double ratio : {0.5, 1.0, 20.0}) {
+    Lattice lattice = test::one_beam(length, w, h);
+    lattice.beams.torsion[0] *= ratio;
+    test::OneBeam beam(lattice, options(0));
+    Stresses s;
+    s.torsion = 3e5;  // by the moment at Saint-Venant's constant
+    beam.go(strain_of(s));
+    EXPECT_NEAR(beam.fracture->overload(beam.state()), std::min(1.0, ratio) * 3e5 / shear, 1e-9);
+  }
+}
+
 /// At a crack's tip no strength is above that of initiation, whatever the weight of bending.
 TEST(FractureUnderPressure, TheWeightBoundsTheStrengthsAtTips) {
   const Part part = partition(test::one_beam(length, w, h), PETSC_COMM_SELF);

