@@ -3,6 +3,8 @@
 import json
 import unittest
 
+import h5py
+
 import launch
 
 BENT = """integrator: quasistatic
@@ -78,6 +80,17 @@ class StrengthKeys(launch.FolderTest):
         self.assertGreater(crushed["contacts"], 0)
         energy = crushed["energy"]
         self.assertLess(abs(energy["balance_error"]), 1e-2 * energy["fracture"])
+
+    def test_ranks_crush_alike(self):
+        """The same beams break at the same times on two ranks."""
+        breaks = []
+        for ranks in (1, 2):
+            self.summary(PRESSED, "-fracture_compressive_strength", "2.5e6", "-time_dt", "1e-4",
+                         ranks=ranks)
+            with h5py.File(self.folder / "out/scene/breaks.h5") as file:
+                breaks.append((list(file["beam"][:]), list(file["time"][:])))
+        self.assertGreater(len(breaks[0][0]), 2)
+        self.assertEqual(*breaks)
 
 
 if __name__ == "__main__":
