@@ -47,10 +47,10 @@ double weibull_factor(std::uint64_t seed, std::int32_t beam, double modulus, dou
 
 namespace {
 
-/// Part of the torsional moment of a beam that its section carries as a free bar. A torsion constant
-/// beyond Saint-Venant's (narrow facets of a calibrated sheet, or Iy + Iz) stands for the plate
-/// around the beam: the section has the stress that its twist makes of it, or narrow facets would
-/// break under next to no load.
+/// Part of the torsional moment of a beam that its section carries as a free bar. A torsion
+/// constant beyond Saint-Venant's (narrow facets of a calibrated sheet, or Iy + Iz) stands for the
+/// plate around the beam: the section has the stress that its twist makes of it, or narrow facets
+/// would break under next to no load.
 double share_of_section(double torsion, double w, double h) {
   return std::min(1.0, saint_venant_torsion(w, h) / torsion);
 }
