@@ -48,6 +48,16 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
+/// Returns x where `of` is not negative, else 0.
+inline Lanes where_not_negative(const Lanes& of, Lanes x) {
+  where(of < 0.0, x) = 0.0;
+  return x;
+}
+template <class T>
+double where_not_negative(const T& of, double x) {
+  return of < 0.0 ? 0.0 : x;
+}
+
 /// Prefetches all cache lines of an object that is read soon.
 template <class T>
 void prefetch(const T& what) {

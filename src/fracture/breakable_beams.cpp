@@ -22,9 +22,10 @@ std::vector<double> packed(const std::vector<Crack>& cracks) {
   std::vector<double> values;
   values.reserve(cracks.size() * crack_size);
   for (const Crack& c : cracks) {
-    values.insert(values.end(), {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate,
-                                 c.mode_mix, c.nominal, c.dissipated, c.time, c.place[0],
-                                 c.place[1], c.place[2], c.at_tip ? 1.0 : 0.0});
+    values.insert(values.end(),
+                  {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate, c.mode_mix,
+                   c.nominal, c.dissipated, c.time, c.place[0], c.place[1], c.place[2],
+                   (c.at_tip ? 1.0 : 0.0) + (c.crushed ? 2.0 : 0.0)});
   }
   return values;
 }
@@ -47,9 +48,10 @@ void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& crac
                       v[4],
                       v[5],
                       v[6],
-                      v[11] != 0,
+                      std::fmod(v[11], 2) == 1,
                       v[7],
-                      {v[8], v[9], v[10]}});
+                      {v[8], v[9], v[10]},
+                      v[11] >= 2});
   }
 }
 
@@ -69,13 +71,21 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       : Base(part, beams),
         beams_(beams),
         options_(options),
+        kind_(needed_criterion(options)),
+        crushes_(options.compressive_strength > 0),
+        whole_further_(further_strength(options)),
         strengths_(blocks_.size(), StrengthBlock{}),
+        further_(kind_ == Criterion::general ? blocks_.size() : 0),
         damaged_(blocks_.size(), 0),
         crack_of_(part.beams.bodies.size(), none),
         viscous_(damped ? blocks_.size() : 0),
         viscous_now_(viscous_) {
     const auto all = strengths(part, options);
-    for (std::size_t m = 0; m < all.size(); ++m) strengths_[m / lanes].set(m % lanes, all[m]);
+    for (std::size_t m = 0; m < all.size(); ++m) {
+      strengths_[m / lanes].set(m % lanes, all[m]);
+      if (!further_.empty()) further_[m / lanes].set(m % lanes, whole_further_);
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) whole_further_block_.set(lane, whole_further_);
     if (options.propagation == Propagation::energy) {
       tips_.emplace(std::move(junctions));
       whole_ = strengths_;
@@ -93,7 +103,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
 
   /// A block with an overloaded or damaged beam is added as a whole, with softened stiffnesses. So
   /// every beam is computed by the same instructions, whatever its neighbours in the block.
-  [[gnu::flatten]] void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
+    kind_ == Criterion::plain ? add_by<Criterion::plain>(state, wrenches)
+                              : add_by<Criterion::general>(state, wrenches);
+  }
+
+  template <Criterion kind>
+  [[gnu::flatten]] void add_by(const State<Spatial>& state, Wrenches<Spatial>& wrenches) {
     growing_.clear();
     overloaded_.clear();
     const double* records = state.records.data();
@@ -110,9 +126,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const BeamBlock<Frame>* block = &blocks_[b];
       const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
       const StrengthBlock* strength = &strengths_[b];
+      const FurtherBlock* further = further_of(kind, further_, b);
       const auto take_softened = [&] {
         soften(b, state);
         block = &soft_block_, dashpots = &soft_dashpots_, strength = &unbreakable_;
+        if constexpr (kind == Criterion::general) further = &unbreakable_further_;
       };
       if (damaged_[b] != 0) take_softened();
       bool again = false;
@@ -125,8 +143,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         };
         lost += add_block<kinematics, damped>(
             *block, dashpots, records, values,
-            BreakableBlock{*strength, give_way, damped ? &viscous_[b] : nullptr,
-                           damped ? &viscous_now_[b] : nullptr, &lost_before});
+            BreakableBlock<kind, decltype(give_way)>{
+                *strength, further, crushes_, give_way, damped ? &viscous_[b] : nullptr,
+                damped ? &viscous_now_[b] : nullptr, &lost_before});
       } while (again);
     }
     if constexpr (damped) {
@@ -178,11 +197,12 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
               Columns& columns) const override {
     Base::report(state, works, columns);
     double fracture = dissipated_;
-    std::array<double, 3> counts{};  // damaged, broken, brittle
+    std::array<double, 4> counts{};  // damaged, broken, brittle, crushed
     const auto count = [&](const Crack& c, double sign) {
       counts[0] += sign;
       if (c.broken()) counts[1] += sign;
       if (c.brittle()) counts[2] += sign;
+      if (c.broken() && c.crushed) counts[3] += sign;
     };
     for (const Crack& c : cracks_) {
       if (counts_here(c.beam)) count(c, 1);
@@ -199,6 +219,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     columns.add("beams_damaged", counts[0]);
     columns.add("beams_broken", counts[1]);
     columns.add("beams_brittle", counts[2]);
+    if (crushes_) columns.add("beams_crushed", counts[3]);
   }
 
   void persist(Archive& archive) override {
@@ -254,7 +275,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   double overload(const State<Spatial>& state) const override {
     double most = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = criterion_of(strengths_, b, state);
+      const Lanes s2 = criterion_of(strengths_, further_, b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t m = b * lanes + lane;
         if (m < crack_of_.size() && crack_of_[m] == none) most = std::max(most, double(s2[lane]));
@@ -268,8 +289,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     growing_.clear();
     RankedValue worst{0, -1};  // largest s/kappa of the beams that would break
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = criterion_of(whole(), b, state);
-      const Lanes at_tips = tips_ ? criterion_of(strengths_, b, state) : Lanes(0.0);
+      const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t at = b * lanes + lane;
         if (at >= crack_of_.size()) continue;
@@ -277,13 +297,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         const double s = std::sqrt(s2[lane]);
         if (is_tip(m)) {
           const double s_tip = std::sqrt(at_tips[lane]);
-          if (s_tip > 1 + rounding && s_tip > s) {  // else as elsewhere, by s
+          if (s_tip > 1 + rounding && s_tip > (1 + rounding) * s) {  // else as elsewhere, by s
             growing_.push_back(growth(m, s, state, true));
             if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
             continue;
           }
         }
-        if (broken(m) || s <= kappa(m) * (1 + rounding)) continue;
+        if (broken(m) || (s <= kappa(m) * (1 + rounding) && !crushes_damaged(m, state))) continue;
         growing_.push_back(growth(m, s, state));
         if (growing_.back().crack.broken() && s / kappa(m) > worst.value)
           worst = {s / kappa(m), part_.global_beam[at]};
@@ -347,11 +367,38 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const Crack* c = crack(m);
     return c != nullptr ? c->kappa : 1.0;
   }
+  static const FurtherBlock* further_of(Criterion kind, const std::vector<FurtherBlock>& all,
+                                        std::size_t b) {
+    return kind == Criterion::plain ? nullptr : &all[b];
+  }
   /// s^2 of the undamaged beams of a block, which decides on damage. The hook in add() only selects
   /// the blocks for which it is computed.
-  Lanes criterion_of(const std::vector<StrengthBlock>& of, std::size_t b,
-                     const State<Spatial>& state) const {
-    return block_criterion<kinematics>(blocks_[b], of[b], state.records.data());
+  Lanes criterion_of(const std::vector<StrengthBlock>& of, const std::vector<FurtherBlock>& further,
+                     std::size_t b, const State<Spatial>& state) const {
+    return block_criterion<kinematics>(blocks_[b], of[b], further_of(kind_, further, b), crushes_,
+                                       state.records.data());
+  }
+  /// The same by the strengths at initiation, and by those at tips where beams are tip beams.
+  Lanes whole_criterion(std::size_t b, const State<Spatial>& state) const {
+    if (!tips_) return criterion_of(strengths_, further_, b, state);
+    if (kind_ == Criterion::plain) return criterion_of(whole_, further_, b, state);
+    return block_criterion<kinematics>(blocks_[b], whole_[b], &whole_further_block_, crushes_,
+                                       state.records.data());
+  }
+  Lanes tip_criterion(std::size_t b, const State<Spatial>& state) const {
+    return tips_ ? criterion_of(strengths_, further_, b, state) : Lanes(0.0);
+  }
+  /// Whether pressure is the worst for beam m, with s > 1, under these elastic section forces.
+  bool crushes(std::int32_t m, const BeamStress<double>& force) const {
+    if (!crushes_) return false;
+    const Criteria<double> s2 = criteria(whole_strength(m), whole_further_, force, true);
+    return s2.pressure > 1 && s2.pressure > s2.tension;
+  }
+  /// Whether pressure breaks beam m, which was damaged otherwise before.
+  bool crushes_damaged(std::int32_t m, const State<Spatial>& state) const {
+    const Crack* c = crack(m);
+    return crushes_ && c != nullptr && !c->broken() && !c->crushed &&
+           crushes(m, elastic_stress(constants(m), strains(m, state)));
   }
   double area(std::int32_t m) const {
     return item(part_.beams.width, m) * item(part_.beams.height, m);
@@ -359,7 +406,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
 
   // -- Tips of cracks; without Propagation::energy there are none.
   /// Strengths at initiation, also of beams at tips.
-  const std::vector<StrengthBlock>& whole() const { return tips_ ? whole_ : strengths_; }
+  Strength<double> whole_strength(std::int32_t m) const {
+    const auto at = static_cast<std::size_t>(m);
+    return (tips_ ? whole_ : strengths_)[at / lanes].get(at % lanes);
+  }
   bool is_tip(std::int32_t m) const {
     return tips_ && !broken(m) && tips_->is_tip(item(part_.global_beam, m));
   }
@@ -367,7 +417,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const std::size_t b = static_cast<std::size_t>(m) / lanes,
                       lane = static_cast<std::size_t>(m) % lanes;
     const Strength<double> initial = whole_[b].get(lane);
-    strengths_[b].set(lane, is_tip(m) ? tip_strength(part_, m, options_, initial) : initial);
+    const bool tip = is_tip(m);
+    strengths_[b].set(lane, tip ? tip_strength(part_, m, options_, initial) : initial);
+    if (kind_ == Criterion::plain) return;
+    further_[b].set(lane, tip ? further_at_tip(strengths_[b].get(lane), initial, whole_further_)
+                              : whole_further_);
   }
   void set_all_strengths() {
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) set_strength(m);
@@ -443,6 +497,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const auto [i, j] = item(part_.beams.bodies, m);
     return Pointwise::strains(constants(m), record(state, i), record(state, j));
   }
+  static Softening softening(const Crack& c, const BeamStrains<double>& s) {
+    return floe::softening(c.damage, s.delta <= 0 && !c.crushed, c.broken());
+  }
   static BeamStress<double> as_stress(const BeamStrains<double>& s) {
     return {s.delta, s.gamma_y, s.gamma_z, s.psi};
   }
@@ -450,7 +507,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   BeamConstants<double> present(std::int32_t m, const State<Spatial>& state) const {
     BeamConstants<double> c = constants(m);
     if (const Crack* k = crack(m)) {
-      const Softening left = softening(k->damage, strains(m, state).delta > 0, k->broken());
+      const Softening left = softening(*k, strains(m, state));
       c.kn *= left.axial;
       for (double* rest : {&c.ksz, &c.ksy, &c.kt, &c.kby, &c.kbz}) *rest *= left.rest;
     }
@@ -475,32 +532,38 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// strains (work by the mean of the forces at the two ends of a step). In statics, on a
   /// proportional path from rest, it is U_1 s kappa (D - D_old) with s at most s_u, exact for any
   /// step: sum_k U_1 k^2 D'(k) dk.
-  /// \param at_once  the beam breaks at a tip, and dissipates what it stores
+  /// \param at_tip  the beam breaks at a tip, and dissipates what it stores
   [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s, const State<Spatial>& state,
-                                             bool at_once = false) const {
+                                             bool at_tip = false) const {
     const auto [i, j] = item(part_.beams.bodies, m);
     const BeamConstants<double> c = constants(m);
     const BeamStrains<double> e = strains(m, state);
     const BeamStress<double> strain = as_stress(e), force = elastic_stress(c, e);
-    const DamageEnergy energy = damage_energy(force, strain);
+    DamageEnergy energy = damage_energy(force, strain);
     const Crack* known = crack(m);
     Growth g{known != nullptr ? *known : Crack{}, 0, 0};
     Crack& next = g.crack;
     const double before = next.damage, passed = next.kappa;
+    const bool crushing = !at_tip && crushes(m, force);
+    // A beam that was damaged otherwise before is too weak to be crushed gradually.
+    const bool at_once = at_tip || (crushing && known != nullptr && !known->crushed);
+    if (known == nullptr) next.crushed = crushing;
+    if (next.crushed) energy.crush();
     if (known == nullptr) {
       next.beam = m;
       initiate(next, energy, s, item(part_.beams.width, m) * item(part_.beams.height, m),
                options_.energy, options_.energy_shear);
     }
-    next.kappa = at_once ? std::max(s, passed) : s;
+    next.kappa = std::max(s, passed);
     next.damage = at_once ? 1 : damage_at(next, s);
-    next.at_tip = at_once;
+    next.at_tip = at_tip;
     DamageEnergy path = energy;
     BeamStress<double> rate{};
     if (options_.dynamic) {
       rate = rates(c, e, record(state, i), record(state, j));
       path = damage_energy(force, {strain.n - dt_ * rate.n, strain.qy - dt_ * rate.qy,
                                    strain.qz - dt_ * rate.qz, strain.c - dt_ * rate.c});
+      if (next.crushed) path.crush();
     } else if (!at_once) {
       // A beam that jumps beyond s_u dissipates what is left of G A; the rest is released.
       const double most = next.brittle() ? s : std::min(s, next.ultimate);
@@ -510,6 +573,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     g.dissipated = std::max(0.0, path.damaged() * (next.damage - before));
     g.released = energy.damaged() * (next.damage - before);
     if (next.broken()) {
+      next.crushed = next.crushed || crushing;
       g.dissipated += path.squeeze;
       g.released += energy.squeeze;
       next.time = state.time;
@@ -533,8 +597,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// this state; notes growths of damage (dynamics).
   [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
                                                          const State<Spatial>& state) {
-    const Lanes s2 = criterion_of(whole(), b, state);
-    const Lanes at_tips = tips_ ? criterion_of(strengths_, b, state) : Lanes(0.0);
+    const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
+    constexpr double rounding = 1e-9;  // of two s2 by equal strengths
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t at = b * lanes + lane;
@@ -546,13 +610,15 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       if (options_.dynamic && falls && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state, true));
         c = &growing_.back().crack;
-      } else if (options_.dynamic && at_tips[lane] > 1 && at_tips[lane] > s2[lane] && is_tip(m)) {
+      } else if (options_.dynamic && at_tips[lane] > 1 &&
+                 at_tips[lane] > (1 + rounding) * s2[lane] && is_tip(m)) {
         overloaded_.emplace_back(std::sqrt(at_tips[lane]), m);
-      } else if (options_.dynamic && s2[lane] > passed * passed && !broken(m)) {
+      } else if (options_.dynamic && !broken(m) &&
+                 (s2[lane] > passed * passed || crushes_damaged(m, state))) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state));
         c = &growing_.back().crack;
       }
-      if (c != nullptr) left[lane] = softening(c->damage, strains(m, state).delta > 0, c->broken());
+      if (c != nullptr) left[lane] = softening(*c, strains(m, state));
     }
     soft_block_ = softened(blocks_[b], left);
     if constexpr (damped) soft_dashpots_ = softened(dashpots_[b], left);
@@ -642,7 +708,12 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
 
   const BeamOptions beams_;
   const FractureOptions options_;
+  const Criterion kind_;
+  const bool crushes_;                           ///< beams have a compressive strength
+  const FurtherStrength<double> whole_further_;  ///< of beams that are not at tips
+  FurtherBlock whole_further_block_;             ///< the same in all lanes
   std::vector<StrengthBlock> strengths_;
+  std::vector<FurtherBlock> further_;   ///< with Criterion::general
   std::vector<std::uint8_t> damaged_;   ///< per block: has a beam that is damaged but not broken
   std::vector<std::int32_t> crack_of_;  ///< per local beam: index in cracks_, or none
   std::vector<Crack> cracks_,
@@ -653,6 +724,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   std::vector<ViscousBlock> viscous_now_;  ///< in the last evaluation, a by-product
   double power_before_ = 0;                ///< of viscous_ at the rates of the last evaluation [W]
   const StrengthBlock unbreakable_{};
+  const FurtherBlock unbreakable_further_{};
   BeamBlock<Frame> soft_block_;  ///< work space of soften()
   DashpotBlock soft_dashpots_;
   std::vector<Growth> growing_;              ///< by-product of the last evaluation, no history

@@ -26,14 +26,38 @@ struct alignas(64) StrengthBlock {
   }
 };
 
-/// s^2 of the beams of a block at the given body records.
+/// FurtherStrength of a block of beams; of Criterion::general only.
+struct alignas(64) FurtherBlock {
+  std::array<std::array<double, lanes>, 3> values{};
+
+  void set(std::size_t lane, const FurtherStrength<double>& s) {
+    values[0][lane] = s.transverse, values[1][lane] = s.pressure, values[2][lane] = s.friction;
+  }
+  FurtherStrength<double> get(std::size_t lane) const {
+    return {values[0][lane], values[1][lane], values[2][lane]};
+  }
+  FurtherStrength<Lanes> get() const {
+    return {load(values[0].data()), load(values[1].data()), load(values[2].data())};
+  }
+};
+
+/// s^2 of the beams of a block. \param further  null for Criterion::plain
+inline Lanes block_criterion(const StrengthBlock& strength, const FurtherBlock* further,
+                             bool crushes, const BeamStress<Lanes>& elastic) {
+  if (further == nullptr) return criterion(strength.get(), elastic);
+  const Criteria<Lanes> s2 = criteria(strength.get(), further->get(), elastic, crushes);
+  return max(s2.tension, s2.pressure);
+}
+
+/// The same at the given body records.
 template <Kinematics kinematics, template <class> class Frame>
 Lanes block_criterion(const BeamBlock<Frame>& block, const StrengthBlock& strength,
-                      const double* records) {
+                      const FurtherBlock* further, bool crushes, const double* records) {
   const LaneBodies i = gather<false>(records, block.i), j = gather<false>(records, block.j);
   const BeamConstants<Lanes, Frame> beam = block.get();
-  return criterion(strength.get(), elastic_stress(beam, BeamKernel<kinematics>::strains(
-                                                            beam, j.u - i.u, i.q, j.q)));
+  return block_criterion(
+      strength, further, crushes,
+      elastic_stress(beam, BeamKernel<kinematics>::strains(beam, j.u - i.u, i.q, j.q)));
 }
 
 /// Section forces of the dashpots of a block [N, N m], in single precision.
@@ -55,10 +79,12 @@ struct alignas(64) ViscousBlock {
 
 /// The strength hook of add_block() for beams that may break. The last three are null without
 /// dashpots.
-template <class Add>
+template <Criterion kind, class Add>
 struct BreakableBlock {
   const StrengthBlock& strength;
-  Add add;  ///< called instead of adding the block; returns the power lost
+  const FurtherBlock* further;  ///< null for Criterion::plain
+  bool crushes;                 ///< beams have a compressive strength
+  Add add;                      ///< called instead of adding the block; returns the power lost
   const ViscousBlock* before = nullptr;  ///< forces of dashpots at the start of the last step
   ViscousBlock* now = nullptr;           ///< receives the present forces of dashpots
   Lanes* lost_before = nullptr;          ///< sum of the power of `before` at the present rates [W]
@@ -70,11 +96,13 @@ struct BreakableBlock {
   }
   bool gives_way(const BeamStress<Lanes>& elastic) const {
     constexpr double nearly = 1 - 1e-9;
-    return any_of(criterion(strength.get(), elastic) > nearly);
+    if constexpr (kind == Criterion::plain) {
+      return any_of(criterion(strength.get(), elastic) > nearly);
+    } else {
+      return any_of(block_criterion(strength, further, crushes, elastic) > nearly);
+    }
   }
 };
-template <class Add, class... Dashpots>
-BreakableBlock(const StrengthBlock&, Add, Dashpots...) -> BreakableBlock<Add>;
 
 /// Copies of a block and of its dashpots, with the values multiplied by the factors of damage.
 template <template <class> class Frame>

@@ -3,6 +3,9 @@
 ///
 ///     sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),  tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2)
 ///     s^2 = (<sigma>/sigma_t)^2 + (tau/tau_c)^2         of the forces in an undamaged beam
+///     M_2, T and Q_3 with the weight chi
+///     with a compressive strength, in a fibre pressed by p, of the extreme ones the worse decides:
+///     s = (sqrt(p^2/4 + tau^2) - p/2 sin phi)/tau_c,  sin phi = 1 - 2 tau_c/sigma_c
 ///     U_d = 1/2 k_n <Delta>^2 + shear, torsion, bending;  U_s its shear and torsion
 ///     at s = 1:  U_1 = U_d/s^2, beta = U_s/U_d, 1/G = (1 - beta)/G_f + beta/G_s, s_u = G A/U_1
 ///     D = s_u/(s_u - 1) (1 - 1/kappa), kappa the largest s so far; s_u <= 1: D = 1 at once
@@ -12,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/simd.h"
 #include "beams/kernel.h"
@@ -23,6 +27,20 @@ template <class T>
 struct Strength {
   T axial, bending_y, bending_z;  ///< 1/(A sigma_t), h/(2 I_y sigma_t), w/(2 I_z sigma_t)
   T shear, torsion;               ///< 1/(A tau_c), (3 + 1.8 b/a)/(a b^2 tau_c)
+};
+
+/// What the criterion needs with weights or with pressure (Criterion::general).
+template <class T>
+struct FurtherStrength {
+  T transverse;  ///< factor of Q_3 in |Q|
+  T pressure;    ///< sigma_t/(2 tau_c)
+  T friction;    ///< sin phi
+};
+
+/// What the criterion of the beams of a lattice looks at. Each costs what it needs only.
+enum class Criterion {
+  plain,    ///< the strengths in tension and shear
+  general,  ///< also FurtherStrength
 };
 
 /// Factors of a rectangular section.
@@ -47,12 +65,53 @@ T criterion(const Strength<T>& c, const BeamStress<T>& e) {
   return sigma * sigma + tau * tau;
 }
 
+/// s^2 in tension and under pressure.
+template <class T>
+struct Criteria {
+  T tension;   ///< <sigma> and tau; under a pressure that friction counts in, 0
+  T pressure;  ///< Mohr and Coulomb's; 0 if nothing is pressed or beams do not crush
+};
+
+/// s^2 of the given elastic section forces, with weights and pressure. With a compressive strength
+/// a fibre in tension has the criterion of the plain law and a pressed one that of Mohr and Coulomb
+/// on the worst of all planes,
+///
+///     (sigma_1 - sigma_3)/2 + (sigma_1 + sigma_3)/2 sin phi = c cos phi = tau_c
+///
+/// (Jaeger, Cook & Zimmerman 2007, Fundamentals of Rock Mechanics, section 4.5), in the stresses -p
+/// and tau of a section. Its value is of degree one in the forces, as s is, tau/tau_c at p = 0 and
+/// p/sigma_c at tau = 0. It is convex in p, so the two extreme fibres decide.
+/// \param crushes  beams have a compressive strength
+template <class T>
+Criteria<T> criteria(const Strength<T>& c, const FurtherStrength<T>& f, const BeamStress<T>& e,
+                     bool crushes) {
+  using std::abs;
+  using std::max;
+  using std::sqrt;
+  const T axial = e.n * c.axial, bent = abs(e.c.y) * c.bending_y + abs(e.c.z) * c.bending_z;
+  const T q3 = e.qz * f.transverse;
+  const T tau = sqrt(T(e.qy * e.qy + q3 * q3)) * c.shear + abs(e.c.x) * c.torsion;
+  const T sigma = max(T(0.0), T(axial + bent));
+  Criteria<T> s2{sigma * sigma + tau * tau, T(0.0)};
+  if (!crushes) return s2;
+  const auto pressed = [&](const T& p) {
+    const T half = p * f.pressure;
+    const T s = sqrt(T(half * half + tau * tau)) - half * f.friction;
+    return T(s * s);
+  };
+  const T least = max(T(0.0), T(-axial - bent)), most = max(T(0.0), T(bent - axial));
+  s2.pressure = max(pressed(least), pressed(most));
+  s2.tension = where_not_negative(T(axial + bent), s2.tension);
+  return s2;
+}
+
 /// Factors of the elastic forces of a damaged beam: axial, and the other five.
 struct Softening {
   double axial = 1, rest = 1;
 };
-inline Softening softening(double damage, bool stretched, bool broken) {
-  return {broken ? 0.0 : stretched ? 1 - damage : 1.0, 1 - damage};
+/// \param whole_axis  not stretched, and pressed beams keep their axial stiffness
+inline Softening softening(double damage, bool whole_axis, bool broken) {
+  return {broken ? 0.0 : whole_axis ? 1.0 : 1 - damage, 1 - damage};
 }
 
 /// Energy 1/2 (elastic forces) . strains [J]. Damage reduces all parts but that in compression.
@@ -61,6 +120,8 @@ struct DamageEnergy {
   double shear, bending;    ///< shear and torsion; bending
   double damaged() const { return stretch + shear + bending; }
   double whole() const { return damaged() + squeeze; }
+  /// Of a beam that is crushed: what it stores in compression counts as shear, on inclined planes.
+  void crush() { shear += std::exchange(squeeze, 0.0); }
 };
 /// Bilinear: the forces of one state on the strains of another. With both of one state it is the
 /// energy of that state.
@@ -84,6 +145,7 @@ struct Crack {
   bool at_tip = false;    ///< it broke at a crack's tip, by the strength of tips
   double time = 0;        ///< when it broke [s]
   Point3 place{};         ///< where it broke [m]
+  bool crushed = false;   ///< it yields to pressure, so its elongation softens in compression too
   bool brittle() const { return ultimate <= 1; }
   bool broken() const { return damage == 1; }
 };

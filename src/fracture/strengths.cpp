@@ -5,6 +5,7 @@
 #include "base/collectives.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "floe/lattice/material.h"
 
 namespace floe {
 namespace {
@@ -44,6 +45,18 @@ double weibull_factor(std::uint64_t seed, std::int32_t beam, double modulus, dou
          std::tgamma(1 + 1 / modulus);
 }
 
+namespace {
+
+/// Part of the torsional moment of a beam that its section carries as a free bar. A torsion
+/// constant beyond Saint-Venant's (narrow facets of a calibrated sheet, or Iy + Iz) stands for the
+/// plate around the beam: the section has the stress that its twist makes of it, or narrow facets
+/// would break under next to no load.
+double share_of_section(double torsion, double w, double h) {
+  return std::min(1.0, saint_venant_torsion(w, h) / torsion);
+}
+
+}  // namespace
+
 std::vector<Strength<double>> strengths(const Part& part, const FractureOptions& options) {
   const Beams& beams = part.beams;
   const auto sides = [&](const std::vector<double>& all) {
@@ -66,8 +79,30 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
                                     : 1;
     all.push_back(
         section_strength(w, h, factor * options.tensile_strength, factor * options.shear_strength));
+    all.back().bending_y *= options.bending_factor;
+    all.back().torsion *= options.bending_factor * share_of_section(beams.torsion[m], w, h);
   }
   return all;
+}
+
+Criterion needed_criterion(const FractureOptions& options) {
+  return options.bending_factor != 1 || options.compressive_strength > 0 ? Criterion::general
+                                                                         : Criterion::plain;
+}
+
+FurtherStrength<double> further_strength(const FractureOptions& options) {
+  FurtherStrength<double> further{options.bending_factor, 0, 0};
+  if (options.compressive_strength > 0) {
+    further.pressure = options.tensile_strength / (2 * options.shear_strength);
+    further.friction = 1 - 2 * options.shear_strength / options.compressive_strength;
+  }
+  return further;
+}
+
+FurtherStrength<double> further_at_tip(const Strength<double>& tip, const Strength<double>& whole,
+                                       const FurtherStrength<double>& further) {
+  const double twisted = tip.torsion / whole.torsion, sheared = tip.shear / whole.shear;
+  return {further.transverse * twisted / sheared, tip.shear / (2 * tip.axial), 1};
 }
 
 Strength<double> tip_strength(const Part& part, std::int32_t beam, const FractureOptions& options,
@@ -88,11 +123,14 @@ Strength<double> tip_strength(const Part& part, std::int32_t beam, const Fractur
 double overload(const Part& part, const std::vector<BeamSection>& sections,
                 FractureOptions fracture) {
   fracture.weibull_modulus = 0;
+  fracture.compressive_strength = 0;
   const std::vector<Strength<double>> all = strengths(part, fracture);
+  const FurtherStrength<double> further = further_strength(fracture);
   double most = 0;
   for (std::size_t m = 0; m < sections.size(); ++m) {
     const auto& [n, qy, qz, t, my, mz] = sections[m];
-    most = std::max(most, criterion(all[m], BeamStress<double>{n, qy, qz, {t, my, mz}}));
+    const BeamStress<double> stress{n, qy, qz, {t, my, mz}};
+    most = std::max(most, criteria(all[m], further, stress, false).tension);
   }
   return std::sqrt(largest_over_ranks(most, part.comm));
 }

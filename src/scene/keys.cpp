@@ -93,9 +93,19 @@ constexpr std::array table{
                "sigma_t: a beam cracks where its largest tensile stress, with shear, reaches it"},
     OptionSpec{"fracture: shear_strength", number, "(tensile_strength)", "Pa", ">= 1e-3, <= 1e15",
                "tau_c, of shear and torsion"},
+    OptionSpec{"fracture: flexural_strength", number,
+               "(as the beams give it; with calibrate: strength tensile_strength)", "Pa",
+               ">= 1e-3, <= 1e15",
+               "of the sheet: under a uniform moment its first beam breaks at this 6M/(b h^2), in "
+               "the mean of x and y"},
+    OptionSpec{"fracture: compressive_strength", number, "(none: beams do not crush)", "Pa",
+               ">= 1e-3, <= 1e15",
+               "sigma_c, at least 2 shear_strength: Mohr and Coulomb's law for beams under "
+               "pressure; pressure then raises the shear that they stand"},
     OptionSpec{"fracture: calibrate", choice, "none", "", "none | strength",
-               "the strengths are those of the beams; or of the sheet: the beams' are such that "
-               "its first beam breaks at a mean stress sigma_t, in the mean of x and y"},
+               "tensile_strength and shear_strength are those of the beams; or of the sheet: the "
+               "beams' are such that its first beam breaks at a mean stress sigma_t, in the mean "
+               "of x and y"},
     OptionSpec{"fracture: energy", number, "15", "J/m^2", ">= 1e-9, <= 1e12",
                "dissipated per area of a section that breaks in tension or bending"},
     OptionSpec{"fracture: energy_shear", number, "(energy)", "J/m^2", ">= 1e-9, <= 1e12",

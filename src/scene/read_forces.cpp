@@ -78,6 +78,16 @@ void read_fracture(Options& options, Scene& scene) {
   fracture.tensile_strength = options.number("fracture: tensile_strength");
   fracture.shear_strength =
       options.number("fracture: shear_strength", {}, fracture.tensile_strength);
+  if (options.given("fracture: compressive_strength")) {
+    fracture.compressive_strength = options.number("fracture: compressive_strength");
+    if (fracture.compressive_strength < 2 * fracture.shear_strength)
+      throw InputError(
+          "fracture: compressive_strength: " + text_of(fracture.compressive_strength) +
+          " must be >= 2 x fracture: shear_strength: " + text_of(fracture.shear_strength) +
+          " [Pa], or friction in Mohr and Coulomb's law is negative");
+  }
+  if (scene.has_sheet && options.given("fracture: flexural_strength"))
+    fracture.flexural_strength = options.number("fracture: flexural_strength");
   enum class Calibrated { none, strength };
   if (scene.has_sheet)
     fracture.calibrate = options.choice<Calibrated>("fracture: calibrate") == Calibrated::strength;

@@ -82,8 +82,8 @@ void read_lattice_source(Options& options, Scene& scene) {
     for (const auto* key : {"ice", "beam: shear_factor", "beam: torsion", "beam: calibrate"})
       options.refuse(key, said_by_file);
     options.refuse("limit: memory", "would have no effect: only a sheet is judged by it");
-    options.refuse("fracture: calibrate",
-                   "needs 'sheet': a lattice file says nothing of a sheet's section");
+    for (const auto* key : {"fracture: calibrate", "fracture: flexural_strength"})
+      options.refuse(key, "needs 'sheet': a lattice file says nothing of a sheet's section");
   }
 }
 

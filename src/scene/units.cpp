@@ -50,6 +50,10 @@ std::vector<std::string> unusual_numbers(const Scene& scene) {
   if (scene.forces.fracture) {
     look("fracture: tensile_strength", scene.fracture.tensile_strength, "Pa", 1e3, 1e8);
     look("fracture: shear_strength", scene.fracture.shear_strength, "Pa", 1e3, 1e8);
+    if (scene.fracture.flexural_strength > 0)
+      look("fracture: flexural_strength", scene.fracture.flexural_strength, "Pa", 1e3, 1e8);
+    if (scene.fracture.compressive_strength > 0)
+      look("fracture: compressive_strength", scene.fracture.compressive_strength, "Pa", 1e3, 1e9);
     look("fracture: energy", scene.fracture.energy, "J/m^2", 1e-2, 1e4);
   }
   if (scene.forces.contact) look("contact: young", scene.contact.young, "Pa", 1e4, 1e11);

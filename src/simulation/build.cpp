@@ -130,7 +130,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
   if (scene.calibrate != Calibrate::none)
     report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
-  if (scene.forces.fracture && scene.fracture.calibrate)
+  if (scene.forces.fracture && (scene.fracture.calibrate || scene.fracture.flexural_strength > 0))
     report.strength = calibrate_strength(scene, lattice, comm);
   for (std::size_t k = 0; k < scene.cuts.size(); ++k) {
     const Cut& c = scene.cuts[k];

@@ -17,12 +17,17 @@
 
 namespace floe {
 
-/// Strength of an uncalibrated sheet, and the factor on its beams' strengths that gives the sheet
-/// the scene's strength (model.md, "Fracture").
+/// Strengths of a sheet before its calibration, and the factors on its beams that give the sheet
+/// the scene's strengths (model.md, "Fracture").
 struct StrengthCalibration {
-  double along_x = 1,
-         along_y = 1;  ///< mean stress at the first break of the uncalibrated sheet, over sigma_t
-  double factor = 1;   ///< of the beams' strengths
+  /// Nominal stress at the first break over the given strength.
+  struct Test {
+    double along_x = 1, along_y = 1;
+  };
+  std::optional<Test> tension;  ///< of the uncalibrated sheet; none: only bending is calibrated
+  double factor = 1;            ///< of the beams' strengths
+  Test bending;                 ///< of the sheet that is calibrated in tension
+  double bending_factor = 1;    ///< FractureOptions::bending_factor
 };
 
 /// Results of mesh and calibration.
@@ -44,13 +49,14 @@ struct MeshReport {
 /// \throws InputError for errors in the file or the scene
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
 
-/// Measures a sheet's strength: stretches the whole sheet, its beams without scatter, along x and
-/// along y in its plane with small displacements, each time until the first beam reaches its
-/// strength (model.md, "Fracture"). Collective.
+/// Measures a sheet's strengths: stretches and bends the whole sheet, its beams without scatter,
+/// along x and along y with small displacements, each time until the first beam (in bending away
+/// from the ends) reaches its strength (model.md, "Fracture"). Collective.
 /// \param lattice  with the sets left, right, bottom and top
 StrengthCalibration calibrate_strength(const Scene& scene, const Lattice& lattice, MPI_Comm comm);
 
-/// Multiplies the strengths in the scene by the factor of the calibration.
+/// Multiplies the strengths in the scene by the factor of the calibration, and sets the weight of
+/// bending.
 void strengthen(Scene& scene, const StrengthCalibration& c);
 /// Describes the calibration in one line for the user.
 std::string text_of(const StrengthCalibration& c);

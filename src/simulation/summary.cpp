@@ -171,6 +171,19 @@ void add_fracture(const Scene& scene, const Model<Space>& model, const Sample& l
         "energy makes them cost G_f\n";
 }
 
+Json as_json(const StrengthCalibration& c) {
+  Json json;
+  json["factor"] = c.factor;
+  if (c.tension) {
+    json["along_x"] = c.tension->along_x;
+    json["along_y"] = c.tension->along_y;
+  }
+  json["bending_factor"] = c.bending_factor;
+  json["bending_along_x"] = c.bending.along_x;
+  json["bending_along_y"] = c.bending.along_y;
+  return json;
+}
+
 /// Adds the expected constants of a large sheet of this lattice less those of the material.
 void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::string& text) {
   const double nu = scene.ice.poisson;
@@ -287,10 +300,7 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     text += line("mesh: CVT energy %.4f of the hexagon's, last largest move %.2g l, %d iterations",
                  mesh.energy_ratio, mesh.largest_move, mesh.iterations);
   if (mesh.calibration) add_calibration(scene, *mesh.calibration, json, text);
-  if (mesh.strength)
-    json["strength_calibration"] = Json{{"factor", mesh.strength->factor},
-                                        {"along_x", mesh.strength->along_x},
-                                        {"along_y", mesh.strength->along_y}};
+  if (mesh.strength) json["strength_calibration"] = as_json(*mesh.strength);
   if (result.done && scene.report.tension) add_tension(scene, model, mesh, last, json, text);
   if (result.done && scene.report.bending) add_bending(scene, first, last, json, text);
   Json energy = Json::object();

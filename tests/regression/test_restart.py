@@ -419,6 +419,26 @@ checkpoint: {every: 1000}
         self.assertGreater(summary["beams_broken"], 10)
         self.assertGreater(summary["contacts"], 3)
 
+    def test_a_sheet_that_crushes(self):
+        """Beams that soften under pressure, since a large fracture energy in shear lets them,
+        and those that are gone."""
+        summary = self.check_parts("""integrator: explicit
+forces: [beam, fracture, contact]
+sheet: {length: 6, width: 4, thickness: 0.5, element_size: 1, iterations: 10}
+beam: {damping_ratio: 0.2}
+fracture: {tensile_strength: 4e6, shear_strength: 1.2e6, compressive_strength: 2.5e6,
+           flexural_strength: 2e6, energy_shear: 6000}
+contact: {young: 1e9}
+boundary:
+  names: [left, right]
+  left: {set: left, fix: x y z rx ry rz, velocity: [0.1, 0, 0], ramp: 0.01}
+  right: {set: right, fix: x y z rx ry rz}
+time: {end: 0.08}
+checkpoint: {every: 10000}
+""", [0.4, 0.6, 0.8, 0.9])
+        self.assertGreater(summary["beams_crushed"], 2)
+        self.assertGreater(summary["beams_damaged"], summary["beams_broken"])
+
 
 class Fracture(Breaking):
     def test_a_sheet_that_breaks(self):
@@ -426,6 +446,9 @@ class Fracture(Breaking):
 
     def test_cracks_that_run_by_energy(self):
         self.check_breaking(1, ", propagation: energy")
+
+    def test_calibrated_strengths_in_bending_and_under_pressure(self):
+        self.check_breaking(1, ", flexural_strength: 4e5, compressive_strength: 1.5e6")
 
 
 class Killing(RestartTest):

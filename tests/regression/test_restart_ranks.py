@@ -53,6 +53,9 @@ class Fracture(Breaking):
     def test_cracks_that_run_by_energy(self):
         self.check_breaking(2, ", propagation: energy")
 
+    def test_calibrated_strengths_in_bending_and_under_pressure(self):
+        self.check_breaking(2, ", flexural_strength: 4e5, compressive_strength: 1.5e6")
+
 
 class Killed(Killing):
     def test_at_random_moments(self):

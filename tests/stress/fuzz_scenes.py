@@ -256,6 +256,7 @@ class Scenes:
             for word in ("calibrate", "shear_factor", "torsion"):
                 scene.pop(("beam", word), None)
             scene.pop(("fracture", "calibrate"), None)
+            scene.pop(("fracture", "flexural_strength"), None)
             if "contact" in forces:
                 scene[("contact", "young")] = "1e7"
         if "buoyancy" in forces or "drag" in forces:
@@ -310,6 +311,10 @@ class Scenes:
         if ("fracture", "weibull_modulus") not in scene:
             for word in ("weibull_area", "seed"):
                 scene.pop(("fracture", word), None)
+        if ("fracture", "compressive_strength") in scene and chance.random() < 0.8:
+            shear = scene.get(("fracture", "shear_strength"),
+                              scene.get(("fracture", "tensile_strength"), "6e5"))
+            scene[("fracture", "compressive_strength")] = repr(5 * float(shear))
         if scene.get(("beam", "calibrate"), "none") == "isotropic":
             scene.pop(("beam", "shear"), None)
         if scene.get(("beam", "shear"), "") == "none":
