@@ -25,5 +25,7 @@ void read_contact(Options& options, Scene& scene);
 /// Reads prescribed motions, and loads.
 void read_boundaries(Options& options, Scene& scene);
 void read_loads(Options& options, Scene& scene);
+/// Reads how statics proceed, after loads, boundaries and time.
+void read_path_control(Options& options, Scene& scene);
 
 }  // namespace floe
