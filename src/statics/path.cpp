@@ -156,6 +156,7 @@ void PathRun<Space>::step() {
         std::sqrt(wanted_tangents / static_cast<double>(std::max<std::int64_t>(1, tangents)));
     arc_ = std::clamp(arc_ * std::clamp(ratio, 1 / most, most), arc_min_, arc_max_);
   }
+  if (end.empty() && equilibrium_->came_apart()) end = equilibrium_->why();
   if (!end.empty()) finish(end);
 }
 

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "base/collectives.h"
+#include "base/union_find.h"
+#include "floe/base/item.h"
 #include "floe/files/log.h"
 #include "model/newton.h"
 #include "session/signals.h"
@@ -58,6 +60,7 @@ void PathEquilibrium<Space>::begin() {
   factor_ = 0;
   fill_residual(f_);
   keep_before();
+  if (model_.fracture() != nullptr) pieces_at_start_ = number_of_pieces();
 }
 
 template <class Space>
@@ -187,7 +190,13 @@ std::optional<double> PathEquilibrium<Space>::change_by_reading(const Reading& r
   const double tolerance = 0.1 * reading.tolerance;
   const auto root =
       reading.far ? far_end(value, unit_, tolerance) : near_root(value, unit_, tolerance);
-  if (!root) return {};
+  if (!root) {
+    came_apart_ = reading.far && value(0) <= 0;
+    why_ = came_apart_   ? "where no load brings another beam to its strength"
+           : reading.far ? "at no load factor do all beams hold"
+                         : "the monitored displacement does not follow the load factor";
+    return {};
+  }
   return reading.far ? sense_ * *root : *root;
 }
 
@@ -349,9 +358,57 @@ bool PathEquilibrium<Space>::move_to_displacement(double displacement) {
   return move({.arc = {}, .factor = {}, .reading = &reading});
 }
 
+/// Lets the beams at their limit change: all that soften, and of those that break the most
+/// overloaded one. Then the load factor goes to where the next beam is at its limit: in a snap-back
+/// it falls. If it would rise after a break, the step ends at the old load factor, and elastic steps
+/// follow.
 template <class Space>
-bool PathEquilibrium<Space>::break_beams(double) {
-  return false;
+bool PathEquilibrium<Space>::break_beams(double step) {
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    Fracture& fracture = *model_.fracture();
+    changed_ = true;
+    unit_ = 0.1 * (factor_ != 0 ? std::abs(factor_) : 1.0);
+    const Reading grown = at_limit(settings_.growth), limit = at_limit(0);
+    const bool softens = grown.value() < -limit_passed + limit_tolerance;
+    if (softens && !go({.arc = {}, .factor = {}, .reading = &grown})) {
+      collapsed_ = !stopped_;
+      return false;
+    }
+    const double time = state_.time;
+    state_.set_time(step);
+    const Advance done = fracture.advance(state_);
+    state_.set_time(time);
+    const bool broke = done == Advance::broke;
+    bool found = go({.arc = {}, .factor = {}, .reading = &limit});
+    const bool rose = found && broke && sense_ * (factor_ - before_.factor) > 0;
+    if (rose || came_apart_) found = go({.arc = {}, .factor = before_.factor});
+    if (found || stopped_) return found;
+    if (const std::int64_t pieces = number_of_pieces(); pieces > pieces_at_start_) {
+      came_apart_ = true;
+      why_ = "where the lattice came apart into " + std::to_string(pieces) + " pieces";
+    }
+    collapsed_ = !came_apart_;
+    return false;
+  }
+  return (void)step, false;
+}
+
+/// Number of pieces that unbroken beams connect. Collective.
+template <class Space>
+std::int64_t PathEquilibrium<Space>::number_of_pieces() const {
+  std::vector<std::int32_t> joined;
+  for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
+    if (item(part_.counts_here, m) == 0) continue;
+    if (model_.fracture() != nullptr && model_.fracture()->damage(m) == 1) continue;
+    for (const std::int32_t b : item(part_.beams.bodies, m))
+      joined.push_back(item(part_.global, b));
+  }
+  const std::vector<std::int32_t> all = all_gathered(joined, part_.comm);
+  UnionFind pieces(static_cast<std::size_t>(part_.global_bodies));
+  for (std::size_t k = 0; k + 2 <= all.size(); k += 2) pieces.unite(all[k], all[k + 1]);
+  std::int64_t count = 0;
+  for (std::int32_t b = 0; b < part_.global_bodies; ++b) count += pieces.find(b) == b ? 1 : 0;
+  return count;
 }
 
 template <class Space>
@@ -387,8 +444,16 @@ template <class Space>
 void PathEquilibrium<Space>::accept() {
   fill_residual(f_);
   audit("a step along the path");
-  boundary_work_ += boundary_work_of_step();
+  const double boundary_work = boundary_work_of_step();
+  boundary_work_ += boundary_work;
   add_works();
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    if (changed_) {
+      const Energies left = energies(), &whole = before_.energies;
+      model_.fracture()->add_released(whole.stored - left.stored + left.external - whole.external +
+                                      boundary_work + whole.dissipated - left.dissipated);
+    }
+  }
   for (const auto& force : model_.forces()) {
     const Roles<Space> roles = force->roles();
     if (roles.commits != nullptr) roles.commits->commit(state_, 0);

@@ -127,6 +127,7 @@ class PathEquilibrium : public Equilibrium<Space> {
   bool elastic_step(double arc);
   bool turns_back();
   bool break_beams(double step);
+  std::int64_t number_of_pieces() const;
   double nearness(double growth) const;
   Reading at_limit(double growth) const;
   double boundary_work_of_step() const;
@@ -135,12 +136,12 @@ class PathEquilibrium : public Equilibrium<Space> {
   double arc_length(Vec v) const;
 
   const PathSettings<Space> settings_;
-  double factor_ = 0, length_ = 0, last_arc_ = 0, boundary_work_ = 0, released_ = 0;
+  double factor_ = 0, length_ = 0, last_arc_ = 0, boundary_work_ = 0;
   double sense_;  ///< of the load factor on the branch where the load of the beams grows
   bool has_direction_ = false;  ///< the last step gives the direction of the next one
   bool moves_boundaries_ = false;
   bool formed_ = false, changed_ = false, came_apart_ = false, snapped_back_ = false;
-  std::int64_t tangents_before_ = 0;
+  std::int64_t tangents_before_ = 0, pieces_at_start_ = 1;
   double unit_ = 1;                 ///< typical change of the load factor in searches
   std::vector<double> per_factor_;  ///< prescribed unknowns per load factor, n per local body
   Before before_;
