@@ -222,5 +222,78 @@ TEST(LeeFrame, TheWorkOfTheLoadIsTheStrainEnergy) {
   EXPECT_NEAR(error[0] / error[1], 4, 1);
 }
 
+// -- the arch of DaDeppo & Schmidt ----------------------------------------------------------------
+
+/// 215 degrees of a circle of R = 100, EI = 1e6, hinged at the left end, clamped at the right one.
+Lattice deep_arch(int elements) {
+  const FrameSection section{100, 0.1, 0.1, 0.1, 1e7, 5e6, 5.0 / 6};
+  std::vector<Point3> points, axis_y;
+  const double half = 215.0 / 360 * pi, step = 2 * half / elements;
+  for (int k = 0; k <= elements; ++k) {
+    const double phi = step * k - half, middle = phi - step / 2;
+    points.push_back({100 * std::sin(phi), 100 * (std::cos(phi) - 1), 0});
+    if (k > 0) axis_y.push_back({std::sin(middle), std::cos(middle), 0});
+  }
+  Lattice lattice = frame(points, section, axis_y);
+  lattice.sets["crown"] = {elements / 2};
+  return lattice;
+}
+
+PathSolution<Planar> arch_path(int elements, double deflection) {
+  Scene scene;
+  scene.forces.beam = true;
+  scene.beam.shear = Shear::none;
+  scene.boundaries = {hinge("root"), clamp("tip")};
+  scene.loads = {dead_load("crown", {0, -100, 0})};  // the load factor is P R^2/EI
+  PathOptions<Planar> options;
+  options.ends_at =
+      at_displacement<Planar>(static_cast<std::size_t>(elements / 2), 1, -deflection);
+  auto path = follow<Planar>(scene, deep_arch(elements), std::move(options));
+  EXPECT_TRUE(path.result.done) << path.result.message;
+  return path;
+}
+
+/// Points of the inextensible rod's boundary-value problem (EA R^2/EI = 1e8, integrated to 1e-10):
+/// before the limit point and after it.
+TEST(DeepArch, FollowsTheRodBeyondItsLimitLoad) {
+  struct Point {
+    double deflection, load, sway;
+  };
+  for (const auto& [deflection, load, sway] :
+       {Point{112.38572732, 8.9576637374, 60.708535354},
+        Point{119.91016655, 7.3856685181, 64.446203909}}) {
+    std::array<double, 3> loads{}, sways{};
+    const std::array<int, 3> elements{40, 80, 160};
+    for (std::size_t k = 0; k < elements.size(); ++k) {
+      const auto path = arch_path(elements[k], deflection);
+      loads[k] = path.last("load_factor");
+      sways[k] = -displacement(path.states.back(), static_cast<std::size_t>(elements[k] / 2)).x;
+      const auto& limits = path.result.path->limit_points;
+      ASSERT_EQ(limits.size(), deflection > 115 ? 1U : 0U);
+      if (k < 2 || limits.empty()) continue;
+      verify({.section = "Paths",
+              .quantity = "arch of DaDeppo & Schmidt: limit load P R^2/EI",
+              .value = limits[0].load_factor,
+              .reference = 8.97,
+              .tolerance = 0.01,
+              .note = "160 beams"});
+    }
+    verify({.section = "Paths",
+            .quantity = text("arch of DaDeppo & Schmidt, deflection %.3f: load P R^2/EI", deflection),
+            .value = loads[2],
+            .reference = load,
+            .tolerance = 0.01 * load,
+            .note = "160 beams"});
+    verify({.section = "Paths",
+            .quantity = text("arch of DaDeppo & Schmidt, deflection %.3f: sway, m", deflection),
+            .value = sways[2],
+            .reference = sway,
+            .tolerance = 1e-3 * sway,
+            .note = "160 beams"});
+    EXPECT_NEAR(std::log2(std::abs((loads[1] - load) / (loads[2] - load))), 2, 0.2);
+    EXPECT_NEAR(std::log2(std::abs((sways[1] - sway) / (sways[2] - sway))), 2, 0.3);
+  }
+}
+
 }  // namespace
 }  // namespace floe::test
