@@ -214,62 +214,85 @@ bool PathEquilibrium<Space>::is_met(const Goal& goal, std::int64_t it) const {
   return std::abs(goal.reading->value()) <= goal.reading->tolerance;
 }
 
+/// Evaluates the present state: true if it is the equilibrium that meets the goal, false if
+/// Newton's method must stop, nothing if it goes on.
+template <class Space>
+std::optional<bool> PathEquilibrium<Space>::is_there(const Goal& goal, std::int64_t it) {
+  PetscReal atol = 0, rtol = 0, norm = 0;
+  PetscInt most = 0;
+  check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, &most, nullptr));
+  take(x_);
+  fill_residual(f_);
+  check(VecNorm(f_, NORM_2, &norm));
+  // The first residual after a prediction says nothing on contraction. On an arc the tangent of
+  // the prediction may be nearly singular, where it leads astray.
+  contraction_ = it > 1 && last_norm_ > 0 ? norm / last_norm_ : goal.arc ? 1.0 : 0.0;
+  last_norm_ = norm;
+  on_iteration_(it);
+  stopped_ = StopSignals::came(part_.comm);
+  if (stopped_) {
+    why_ = "stopped on request";
+  } else if (!std::isfinite(norm)) {
+    why_ = "Newton's method went astray";
+  } else if (norm <= this->scale_of_forces().tolerance(rtol, atol) && is_met(goal, it)) {
+    return true;
+  } else if (it == most) {
+    why_ = "Newton's method did not converge in " + std::to_string(most) + " iterations";
+  } else {
+    return {};
+  }
+  return false;
+}
+
+/// Largest rotation in a vector of unknowns [rad].
+template <class Space>
+double PathEquilibrium<Space>::largest_turn(Vec v) const {
+  double turn = 0;
+  const PetscScalar* values = nullptr;
+  check(VecGetArrayRead(v, &values));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+    if (k % n >= Space::translations) turn = std::max(turn, std::abs(values[k]));
+  }
+  check(VecRestoreArrayRead(v, &values));
+  return largest_over_ranks(turn, part_.comm) / model_.length_scale();
+}
+
+/// Makes a Newton iteration, with the residual of the present state in f_.
+template <class Space>
+bool PathEquilibrium<Space>::iterate(const Goal& goal, std::int64_t it) {
+  const bool keep = formed_ && (constant_ || (it > 0 && this->keeps_factorisation()));
+  if (!keep && !form()) return false;
+  check(VecScale(f_, -1.0));
+  if (!solve_linear(f_, right_)) return false;
+  ++iterations_;
+  PetscScalar* d = nullptr;
+  check(VecGetArray(right_, &d));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
+    if ((model_.held()[k / n] >> (k % n) & 1U) != 0) d[k] = 0;
+  }
+  check(VecRestoreArray(right_, &d));
+  const std::optional<double> change = change_of_factor(goal, it);
+  if (!change) return false;
+  check(VecAXPY(right_, *change, along_));
+  constexpr double small_turn = 0.02;  // [rad]
+  if (it == 0) small_turns_ = largest_turn(right_) < small_turn;
+  check(VecAXPY(x_, 1.0, right_));
+  factor_ = goal.factor ? *goal.factor : factor_ + *change;
+  place();
+  return true;
+}
+
 /// Solves by Newton's method from the present state for the equilibrium that meets the goal. After
 /// a failure the state is undefined.
 template <class Space>
 bool PathEquilibrium<Space>::go(const Goal& goal) {
-  PetscReal atol = 0, rtol = 0;
-  PetscInt most = 0;
-  check(SNESGetTolerances(snes_, &atol, &rtol, nullptr, &most, nullptr));
   check(VecCopy(x_, start_));
   small_turns_ = false;
-  for (std::int64_t it = 0;; ++it) {
-    take(x_);
-    fill_residual(f_);
-    PetscReal norm = 0;
-    check(VecNorm(f_, NORM_2, &norm));
-    // The first residual after a prediction says nothing on contraction. On an arc the tangent of
-    // the prediction may be nearly singular, where it leads astray.
-    contraction_ = it > 1 && last_norm_ > 0 ? norm / last_norm_ : goal.arc ? 1.0 : 0.0;
-    last_norm_ = norm;
-    on_iteration_(it);
-    stopped_ = StopSignals::came(part_.comm);
-    if (stopped_) why_ = "stopped on request";
-    if (!std::isfinite(norm)) why_ = "Newton's method went astray";
-    if (stopped_ || !std::isfinite(norm)) return false;
-    if (norm <= this->scale_of_forces().tolerance(rtol, atol) && is_met(goal, it)) break;
-    if (it == most) {
-      why_ = "Newton's method did not converge in " + std::to_string(most) + " iterations";
-      return false;
-    }
-    const bool keep = formed_ && (constant_ || (it > 0 && this->keeps_factorisation()));
-    if (!keep && !form()) return false;
-    check(VecScale(f_, -1.0));
-    if (!solve_linear(f_, right_)) return false;
-    ++iterations_;
-    PetscScalar* d = nullptr;
-    check(VecGetArray(right_, &d));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k) {
-      if ((model_.held()[k / n] >> (k % n) & 1U) != 0) d[k] = 0;
-    }
-    check(VecRestoreArray(right_, &d));
-    const std::optional<double> change = change_of_factor(goal, it);
-    if (!change) return false;
-    check(VecAXPY(right_, *change, along_));
-    if (it == 0) {
-      double turn = 0;
-      const PetscScalar* r = nullptr;
-      check(VecGetArrayRead(right_, &r));
-      for (std::size_t k = 0; k < static_cast<std::size_t>(part_.owned) * n; ++k)
-        if (k % n >= Space::translations) turn = std::max(turn, std::abs(r[k]));
-      check(VecRestoreArrayRead(right_, &r));
-      constexpr double small_turn = 0.02;  // [rad]
-      small_turns_ = largest_over_ranks(turn, part_.comm) < small_turn * model_.length_scale();
-    }
-    check(VecAXPY(x_, 1.0, right_));
-    factor_ = goal.factor ? *goal.factor : factor_ + *change;
-    place();
+  std::optional<bool> there;
+  for (std::int64_t it = 0; !(there = is_there(goal, it)); ++it) {
+    if (!iterate(goal, it)) return false;
   }
+  if (!*there) return false;
   if (const std::int64_t folded = this->count_folded(); folded > 0) {
     why_ = std::to_string(folded) + " beams folded over";
     return false;
@@ -360,8 +383,8 @@ bool PathEquilibrium<Space>::move_to_displacement(double displacement) {
 
 /// Lets the beams at their limit change: all that soften, and of those that break the most
 /// overloaded one. Then the load factor goes to where the next beam is at its limit: in a snap-back
-/// it falls. If it would rise after a break, the step ends at the old load factor, and elastic steps
-/// follow.
+/// it falls. If it would rise after a break, the step ends at the old load factor, and elastic
+/// steps follow.
 template <class Space>
 bool PathEquilibrium<Space>::break_beams(double step) {
   if constexpr (std::is_same_v<Space, Spatial>) {

@@ -119,6 +119,9 @@ class PathEquilibrium : public Equilibrium<Space> {
   bool form();
   bool solve_linear(Vec right, Vec solution);
   bool go(const Goal& goal);
+  std::optional<bool> is_there(const Goal& goal, std::int64_t it);
+  bool iterate(const Goal& goal, std::int64_t it);
+  double largest_turn(Vec v) const;
   bool is_met(const Goal& goal, std::int64_t it) const;
   std::optional<double> change_of_factor(const Goal& goal, std::int64_t it);
   std::optional<double> change_by_arc(double arc, std::int64_t it);

@@ -28,7 +28,8 @@ TEST(PathOnRanks, SheetThatBreaksAndSoftens) {
   Scene scene;
   scene.forces.beam = scene.forces.fracture = true;
   scene.fracture.weibull_modulus = 6;
-  scene.fracture.energy = scene.fracture.energy_shear = 60;  // some beams soften, some break at once
+  scene.fracture.energy = scene.fracture.energy_shear =
+      60;  // some beams soften, some break at once
   scene.fracture.dynamic = false;
   for (const char* side : {"left", "right"}) {
     Boundary b;

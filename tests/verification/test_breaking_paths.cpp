@@ -84,9 +84,7 @@ struct Chain {
     return kappa < 1 ? k(thin) * elongation
                      : std::max(0.0, most() * (softening - kappa) / (softening - 1));
   }
-  double end(double elongation) const {
-    return elongation + (n - 1) * force(elongation) / k(1);
-  }
+  double end(double elongation) const { return elongation + (n - 1) * force(elongation) / k(1); }
 };
 
 PathSolution<Spatial> chain_path(const Chain& chain, double growth) {
@@ -118,9 +116,9 @@ TEST(SofteningChain, SnapsBackOnTheExactLine) {
     for (std::size_t k = 0; k + 1 < path.states.size(); ++k) {
       const double e = moved(path.states[k], 8) - moved(path.states[k], 7);
       const double force = chain.k(1) * moved(path.states[k], 1);
-      worst = std::max({worst, std::abs(force - chain.force(e)) / chain.most(),
-                        std::abs(path.columns[k].at("load_factor") - chain.end(e)) /
-                            chain.end(chain.e1())});
+      worst = std::max(
+          {worst, std::abs(force - chain.force(e)) / chain.most(),
+           std::abs(path.columns[k].at("load_factor") - chain.end(e)) / chain.end(chain.e1())});
       steps += e > 1.001 * chain.e1() ? 1 : 0;
     }
     EXPECT_GE(steps, r == 0 ? 8 : 18);
@@ -139,10 +137,10 @@ TEST(SofteningChain, SnapsBackOnTheExactLine) {
             .reference = 1.0,
             .tolerance = 1e-4,
             .note = text("growth %g", r == 0 ? 0.1 : 0.05)});
-    EXPECT_NEAR(path.last("energy_boundary"),
-                path.last("energy_strain") + path.last("energy_fracture") +
-                    path.last("energy_released"),
-                1e-9 * nominal);
+    EXPECT_NEAR(
+        path.last("energy_boundary"),
+        path.last("energy_strain") + path.last("energy_fracture") + path.last("energy_released"),
+        1e-9 * nominal);
     released[r] = std::abs(path.last("energy_released")) / nominal;
   }
   // What the steps cannot resolve.
@@ -164,7 +162,8 @@ TEST(BundleOfFibres, BreaksAtTheExactLoads) {
     places.push_back({half, 0, 0});
     all.push_back({0, static_cast<std::int32_t>(3 + f), area, moduli[f]});
   }
-  const double spring_area = 1, spring_young = 0.06e9, ks = spring_young * spring_area / (2 * length);
+  const double spring_area = 1, spring_young = 0.06e9,
+               ks = spring_young * spring_area / (2 * length);
   all.push_back({1, 2, spring_area, spring_young});
   for (std::size_t f = 0; f < moduli.size(); ++f)
     all.push_back({1, static_cast<std::int32_t>(3 + f), area, moduli[f]});
@@ -211,15 +210,16 @@ TEST(BundleOfFibres, BreaksAtTheExactLoads) {
   EXPECT_LT(falls, 4);
   EXPECT_EQ(path.result.path->snap_backs, falls);
   verify({.section = "Paths",
-          .quantity = "bundle of 5 fibres behind a spring: largest error of motion and force at breaks",
+          .quantity =
+              "bundle of 5 fibres behind a spring: largest error of motion and force at breaks",
           .value = worst,
           .reference = 0.0,
           .tolerance = 1e-5,
           .note = text("%d snap-backs", falls)});
-  EXPECT_NEAR(path.last("energy_boundary"),
-              path.last("energy_strain") + path.last("energy_fracture") +
-                  path.last("energy_released"),
-              1e-9 * path.last("energy_boundary"));
+  EXPECT_NEAR(
+      path.last("energy_boundary"),
+      path.last("energy_strain") + path.last("energy_fracture") + path.last("energy_released"),
+      1e-9 * path.last("energy_boundary"));
   EXPECT_GT(path.last("energy_fracture"), 0);
   EXPECT_GT(path.last("energy_released"), 0);
   EXPECT_EQ(path.last("beams_broken"), 5);
