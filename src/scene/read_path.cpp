@@ -1,6 +1,7 @@
 // Reading of the section `static`: load steps, or a path with the load factor as an unknown.
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "reading.h"
 
@@ -73,13 +74,17 @@ void read_monitor(Options& options, Scene& scene) {
 
 }  // namespace
 
+void read_path_choice(Options& options, Scene& scene) {
+  if (scene.integrator == Integrator::quasistatic)
+    scene.path_control.arc = options.choice<Control>("static: path") == Control::arc;
+}
+
 void read_path_control(Options& options, Scene& scene) {
   auto& path = scene.path_control;
   if (scene.integrator != Integrator::quasistatic) {
     options.refuse("static", "would have no effect: 'integrator' is not quasistatic");
     return;
   }
-  path.arc = options.choice<Control>("static: path") == Control::arc;
   if (!path.arc) {
     constexpr std::array keys{"static: load_factor",
                               "static: steps",
@@ -94,13 +99,12 @@ void read_path_control(Options& options, Scene& scene) {
       options.refuse(key, "would have no effect: 'static: path' is load");
     return;
   }
-  options.refuse("time: dt", "would have no effect: 'static: path' is arc, by static: arc_length");
-  scene.time.dt = 0;
   make_linear(scene);
   path.steps = options.integer("static: steps");
-  path.arc_length = options.number("static: arc_length", {}, 0.0);
-  path.arc_length_min = options.number("static: arc_length_min", {}, 0.0);
-  path.arc_length_max = options.number("static: arc_length_max", {}, 0.0);
+  for (const auto& [key, value] : {std::pair("static: arc_length", &path.arc_length),
+                                   std::pair("static: arc_length_min", &path.arc_length_min),
+                                   std::pair("static: arc_length_max", &path.arc_length_max)})
+    if (options.given(key)) *value = options.number(key);
   const double first = path.arc_length, least = path.arc_length_min, most = path.arc_length_max;
   if (most > 0 && std::max(first, least) > most)
     throw InputError("static: arc_length_max: " + text_of(most) + " must be >= " +

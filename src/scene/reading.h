@@ -25,7 +25,9 @@ void read_contact(Options& options, Scene& scene);
 /// Reads prescribed motions, and loads.
 void read_boundaries(Options& options, Scene& scene);
 void read_loads(Options& options, Scene& scene);
-/// Reads how statics proceed, after loads, boundaries and time.
+/// Reads whether statics follow a path.
+void read_path_choice(Options& options, Scene& scene);
+/// Reads how they follow it, after loads, boundaries and time.
 void read_path_control(Options& options, Scene& scene);
 
 }  // namespace floe

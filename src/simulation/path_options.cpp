@@ -43,6 +43,7 @@ PathOptions<Space> path_options(const Scene& scene, const Model<Space>& model,
   options.growth = given.growth;
   options.steps = given.steps;
   options.load_factor = given.load_factor;
+  options.most_steps = scene.limit.steps;
   options.on_plan = hooks.on_plan;
   if (given.monitor.empty()) return options;
   const Part& part = model.part();

@@ -62,6 +62,9 @@ class PathRun final : public Run {
 
 template <class Space>
 bool PathRun<Space>::prepare() {
+  if (static_cast<double>(options_.steps) > options_.most_steps)
+    throw InputError("static: steps: " + std::to_string(options_.steps) + " are more than " +
+                     text(options_.most_steps) + " (limit: steps)");
   RunPlan plan;
   plan.end = static_cast<double>(options_.steps);
   plan.steps = plan.end;

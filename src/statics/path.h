@@ -28,8 +28,9 @@ struct PathOptions {
   double arc_max = 0;         ///< [m]; 0: a twentieth of the lattice's extent
   double growth = 0.05;       ///< of s in a step of softening
   std::int64_t steps = 1000;  ///< most steps
-  std::optional<double> load_factor;      ///< the path ends there
-  std::optional<PathEnd<Space>> ends_at;  ///< or there
+  std::optional<double> load_factor;       ///< the path ends there
+  std::optional<PathEnd<Space>> ends_at;   ///< or there
+  double most_steps = default_most_steps;  ///< a run of more steps is refused
   OnPlan on_plan = nullptr;
 };
 

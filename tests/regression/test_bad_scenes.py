@@ -66,6 +66,9 @@ SCENES = {
                                          "arc_length_min: 2}\n",
                                          "static: arc_length_min: 2 must be <= static: arc_length 1"),
     "no steps": (RAMPED + "static: {path: arc, steps: 0}\n", "static: steps: 0"),
+    "a path of more steps than allowed": (RAMPED + "static: {path: arc, steps: 20}\n"
+                                          "limit: {steps: 10}\n",
+                                          "static: steps: 20 are more than 10 (limit: steps)"),
     "an unknown monitor": (RAMPED + "static: {path: arc, monitor: q, monitor_displacement: 1}\n",
                            "static: monitor: 'q' is neither"),
     "a monitor without displacement": (RAMPED + "static: {path: arc, monitor: p}\n",

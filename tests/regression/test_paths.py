@@ -71,6 +71,14 @@ class Paths(launch.FolderTest):
         output, _ = self.follow("-static_steps", "6", "-output_fields", "2")
         np.testing.assert_array_equal(output.times, [0, 2, 4, 6])
 
+    def test_the_options_of_a_run_make_it_again(self):
+        output, _ = self.follow("-static_load_factor", "10")
+        run = launch.run("out/scene/options.yaml", "-output_dir", "again", cwd=self.folder)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        again = Output(self.folder / "again")
+        for column in ("load_factor", "arc_length", "energy_strain"):
+            np.testing.assert_allclose(again.history(column), output.history(column), rtol=1e-9)
+
     def test_load_steps_agree_below_the_limit(self):
         arc, _ = self.follow("-static_load_factor", "15")
         path = arc.history("load_load_displacement_y")[-1]
