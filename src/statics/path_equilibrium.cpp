@@ -401,6 +401,11 @@ bool PathEquilibrium<Space>::break_beams(double step) {
     state_.set_time(step);
     const Advance done = fracture.advance(state_);
     state_.set_time(time);
+    if (done == Advance::none) {
+      why_ = "no beam gives way at its limit";
+      collapsed_ = true;
+      return false;
+    }
     const bool broke = done == Advance::broke;
     bool found = go({.arc = {}, .factor = {}, .reading = &limit});
     const bool rose = found && broke && sense_ * (factor_ - before_.factor) > 0;
