@@ -240,6 +240,47 @@ TEST(LeeFrame, IsALineWithLinearKinematics) {
               1e-9 * path.last("energy_strain"));
 }
 
+/// In space, with six unknowns per body, the frame takes the same path.
+TEST(LeeFrame, InSpaceItIsAsInThePlane) {
+  PathOptions<Spatial> options;
+  options.arc = options.arc_max = 0.02;
+  options.load_factor = 20;
+  const auto space = follow<Spatial>(lee_scene(), lee_frame(10), std::move(options));
+  ASSERT_TRUE(space.result.done) << space.result.message;
+  const auto plane = lee_path(10, 0.02, 20);
+  const auto &one = space.result.path->limit_points, &other = plane.result.path->limit_points;
+  ASSERT_EQ(one.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(one[k].load_factor, other[k].load_factor, 1e-5);
+  const Vec3<double> d =
+      displacement(space.states.back(), 12) - displacement(plane.states.back(), 12);
+  EXPECT_LT(std::sqrt(dot(d, d)), 1e-8);
+}
+
+/// Large rotations in space: the 45-degree bend under its full load, by load steps and by arcs.
+TEST(PathInSpace, EndsWhereLoadStepsEnd) {
+  FrameSection section;
+  section.torsion = 1.0 / 6;
+  const Lattice lattice = arc_frame(100, pi / 4, 16, section);
+  Scene scene;
+  scene.forces.beam = true;
+  scene.beam.shear = Shear::exact;
+  scene.boundaries = {clamp("root")};
+  scene.loads = {dead_load("tip", {0, 0, 600})};
+  scene.time.dt = 0.1;
+  const StaticSolution steps = solve_static(scene, lattice);
+  PathOptions<Spatial> options;
+  options.load_factor = 1;
+  const auto path = follow<Spatial>(scene, lattice, std::move(options));
+  ASSERT_TRUE(path.result.done) << path.result.message;
+  EXPECT_GT(path.states.size(), 5U);
+  for (std::size_t b = 0; b <= 16; ++b) {
+    const Vec3<double> d = displacement(steps.last(), b) - displacement(path.states.back(), b);
+    EXPECT_LT(std::sqrt(dot(d, d)), 1e-6) << b;
+  }
+  EXPECT_NEAR(path.last("energy_strain"), steps.columns.at("energy_strain"),
+              1e-7 * path.last("energy_strain"));
+}
+
 // -- the arch of DaDeppo & Schmidt ----------------------------------------------------------------
 
 /// 215 degrees of a circle of R = 100, EI = 1e6, hinged at the left end, clamped at the right one.
