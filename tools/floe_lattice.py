@@ -373,6 +373,41 @@ def rollup(elements):
     return straight_frame(10.0, elements, Section(1.0, 1.0, young=1200.0, poisson=0.0))
 
 
+def lee_frame(elements):
+    """The frame of Lee, Manuel & Rossow (1968), EI = 1440 N m^2: a column of 1.2 m from the origin
+    in y and a beam of 1.2 m from its top in x, section 20 x 30 mm.
+
+    elements: beams of each member, a multiple of 5, so that a body is a fifth of the beam from the
+    corner. Sets: root, tip (the hinges), load, corner.
+    """
+    if elements % 5:
+        raise ValueError(f"elements: {elements} must be a multiple of 5")
+    length, steps = 1.2, np.arange(elements + 1) / elements
+    column = np.column_stack([np.zeros(elements + 1), length * steps])
+    beam = np.column_stack([length * steps[1:], np.full(elements, length)])
+    tangents = np.concatenate([np.full(elements + 1, np.pi / 2), np.zeros(elements)])
+    lattice = frame(np.concatenate([column, beam]), tangents,
+                    Section(0.02, 0.03, young=7.2e10, poisson=0.0, density=2700.0))
+    lattice.sets |= {"corner": [elements], "load": [elements + elements // 5]}
+    return lattice
+
+
+def arch(elements):
+    """The arch of DaDeppo & Schmidt (1975): 215 degrees of a circle of R = 100, the crown at the
+    origin, EI = 1e6, as good as inextensible (A R^2/I = 1.2e7).
+
+    elements: number of beams, even. Sets: root (the left end), tip (the right end), crown.
+    """
+    if elements % 2:
+        raise ValueError(f"elements: {elements} must be even")
+    radius, half = 100.0, np.radians(215) / 2
+    phi = half * (2 * np.arange(elements + 1) / elements - 1)
+    points = radius * np.column_stack([np.sin(phi), np.cos(phi) - 1])
+    lattice = frame(points, -phi, Section(0.1, 1.0, young=1.2e10, poisson=0.0))
+    lattice.sets["crown"] = [elements // 2]
+    return lattice
+
+
 def elastica(elements):
     """A spring-steel rod, L = 10 m, section 10 x 10 mm, EI = 175 N m^2: A L^2/I = 1.2e7, as good as
     inextensible."""

@@ -100,6 +100,17 @@ struct Scene {
     double disk = 1000;                 ///< [GB]
     double memory = 0;                  ///< [GB]; 0: by free memory
   } limit;
+  /// Statics along a path, with the load factor as an unknown.
+  struct {
+    bool arc = false;
+    double arc_length = 0, arc_length_min = 0, arc_length_max = 0;  ///< [m]; 0: chosen
+    std::int64_t steps = 1000;
+    std::optional<double> load_factor;  ///< the path ends there
+    std::string monitor;                ///< load or boundary whose displacement may end it
+    int component = 0;                  ///< of this displacement
+    double displacement = 0;            ///< [m]
+    double growth = 0.05;
+  } path_control;
   std::vector<Initial> initials;
   struct {
     bool tension = false, bending = false;

@@ -284,6 +284,26 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     return std::sqrt(largest_over_ranks(most, part_.comm));
   }
 
+  double nearness_to_change(const State<Spatial>& state, double growth) const override {
+    double most = 0;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Lanes s2 = criterion_of(whole(), b, state);
+      const Lanes at_tips = tips_ ? criterion_of(strengths_, b, state) : Lanes(0.0);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t at = b * lanes + lane;
+        if (at >= crack_of_.size()) continue;
+        const auto m = static_cast<std::int32_t>(at);
+        const Crack* c = crack(m);
+        if (c != nullptr && c->broken()) continue;
+        const double limit =
+            c == nullptr ? 1 : c->kappa + growth * std::min(c->kappa, c->ultimate - 1);
+        most = std::max(most, std::sqrt(s2[lane]) / limit);
+        if (is_tip(m)) most = std::max(most, std::sqrt(double(at_tips[lane])));
+      }
+    }
+    return largest_over_ranks(most, part_.comm);
+  }
+
   Advance advance(const State<Spatial>& state) override {
     constexpr double rounding = 1e-6;  // relative growth of s below this counts as none
     growing_.clear();

@@ -55,6 +55,10 @@ class Fracture {
   /// For statics: largest s of the undamaged beams of all ranks; above 1 a beam has reached its
   /// strength. Collective.
   virtual double overload(const State<Spatial>& state) const = 0;
+  /// For statics along a path: s over the s at which a beam next changes, the largest of all beams:
+  /// over 1 for whole beams (at tips by their strengths), over kappa for those that soften, raised
+  /// by `growth` times the lesser of kappa and s_u - 1. Collective.
+  virtual double nearness_to_change(const State<Spatial>& state, double growth) const = 0;
   /// For statics: updates damage after a state in balance. All beams that soften are updated, and
   /// of the beams that would break only the most overloaded one. Collective.
   virtual Advance advance(const State<Spatial>& state) = 0;

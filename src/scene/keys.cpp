@@ -268,6 +268,32 @@ constexpr std::array table{
     OptionSpec{"time: allow_unstable", flag, "false", "", "",
                "explicit: take a dt above the stable step all the same"},
 
+    OptionSpec{"static: path", choice, "load", "", "load | arc",
+               "quasistatic: load steps up to the full load; or arc-length control, which follows "
+               "the equilibrium path past limit points, with the load factor as an unknown"},
+    OptionSpec{"static: load_factor", number, "(1, or none with monitor)", "", ">= -1e12, <= 1e12",
+               "arc: the path ends there; 1 is the full load and motion of all that has a ramp, or "
+               "a velocity until time: end"},
+    OptionSpec{"static: steps", integer, "1000", "", ">= 1, <= 100000000",
+               "arc: the path ends after so many steps"},
+    OptionSpec{"static: arc_length", number, "(auto)", "m", ">= 1e-15, <= 1e9",
+               "arc: of the first step, the root mean square over bodies of displacements and of "
+               "rotations times the mean beam length; it adapts to Newton's iterations; auto: a "
+               "tenth of load_factor, at most a hundredth of the lattice's extent"},
+    OptionSpec{"static: arc_length_min", number, "(arc_length/4096)", "m", ">= 1e-15, <= 1e9",
+               "arc: a run that needs shorter steps ends"},
+    OptionSpec{"static: arc_length_max", number, "(a twentieth of the lattice's extent)", "m",
+               ">= 1e-15, <= 1e9", "arc: of the longest step"},
+    OptionSpec{"static: monitor", text, "(none)", "", "",
+               "arc: name of a load or boundary at whose displacement the path may end"},
+    OptionSpec{"static: monitor_component", choice, "x", "", "x | y | z",
+               "arc: of this displacement"},
+    OptionSpec{"static: monitor_displacement", number, "(required)", "m", ">= -1e9, <= 1e9",
+               "arc: the path ends there"},
+    OptionSpec{"static: growth", number, "0.05", "", ">= 1e-6, <= 1",
+               "arc, fracture: of s in a step of the softening beam that grows most, over s and "
+               "over s_u - 1"},
+
     OptionSpec{"limit: velocity", number, "1000", "m/s", ">= 1e-9, <= 1e300",
                "dynamics: a body faster than this stops the run"},
     OptionSpec{

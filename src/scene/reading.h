@@ -25,5 +25,9 @@ void read_contact(Options& options, Scene& scene);
 /// Reads prescribed motions, and loads.
 void read_boundaries(Options& options, Scene& scene);
 void read_loads(Options& options, Scene& scene);
+/// Reads whether statics follow a path.
+void read_path_choice(Options& options, Scene& scene);
+/// Reads how they follow it, after loads, boundaries and time.
+void read_path_control(Options& options, Scene& scene);
 
 }  // namespace floe

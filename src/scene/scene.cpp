@@ -34,6 +34,11 @@ void read_time(Options& options, Scene& scene) {
   scene.limit.frames = options.number("limit: frames");
   scene.limit.disk = options.number("limit: disk");
   scene.time.end = options.number("time: end");
+  if (scene.path_control.arc) {
+    options.refuse("time: dt",
+                   "would have no effect: 'static: path' is arc, by static: arc_length");
+    return;
+  }
   scene.time.dt = options.number("time: dt", {}, 0.0);
   if (scene.time.dt > scene.time.end)
     throw InputError("time: dt: " + text_of(scene.time.dt) + " must be <= time: end " +
@@ -158,7 +163,9 @@ Scene read_all(Options& options, const std::string& path) {
   check_floats(scene);
   read_boundaries(options, scene);
   read_loads(options, scene);
+  read_path_choice(options, scene);
   read_time(options, scene);
+  read_path_control(options, scene);
   read_dynamics(options, scene);
   read_report(options, scene);
   read_output(options, scene);

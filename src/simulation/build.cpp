@@ -17,6 +17,7 @@
 #include "session/signals.h"
 #include "simulation/lattice_command.h"
 #include "simulation/mesh_file.h"
+#include "simulation/path_options.h"
 #include "simulation/plan.h"
 #include "water/added_mass.h"
 #include "water/buoyancy.h"
@@ -173,6 +174,9 @@ template <class Space>
 std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
                               const OutOfPlane* out_of_plane, const RunHooks& hooks,
                               ObserverOf<Space> observer) {
+  if (scene.path_control.arc)
+    return make_path_run(model, path_options(scene, model, hooks), std::move(observer),
+                         out_of_plane);
   if (scene.integrator == Integrator::quasistatic)
     return make_quasistatic_run(model,
                                 {.end = scene.time.end,

@@ -83,6 +83,7 @@ struct RunHooks {
   OnPlan on_plan;          ///< receives the plan before the first step; false: no run is made
   std::function<void(const std::vector<std::string>&)> prepare;  ///< CheckpointOptions::prepare
   std::function<void(Archive&)> others;                          ///< CheckpointOptions::others
+  const std::vector<PlacedLoad>* loads = nullptr;                ///< for static: monitor
 };
 
 /// Makes the run of the scene's integrator. Collective.

@@ -47,6 +47,7 @@ std::string duration(double seconds) {
 std::string steps_text(const Scene& scene, const RunPlan& plan) {
   const bool is_static = scene.integrator == Integrator::quasistatic;
   const std::string step = is_static ? "load step" : "step";
+  if (scene.path_control.arc) return "at most " + counted(plan.end, "step") + " along the path";
   if (plan.adaptive)
     return "steps as long as their error allows, the first " + text("%.4g s", plan.dt);
   std::string line = step + text(" %.4g", plan.dt) + (is_static ? "" : " s");

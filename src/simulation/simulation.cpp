@@ -162,7 +162,8 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
                          prepare_output(columns);
                          output_->sync();
                        },
-                   .others = [this](Archive& archive) { persist(archive); }},
+                   .others = [this](Archive& archive) { persist(archive); },
+                   .loads = &loads_},
                   [this](const Accepted<Space>& accepted) { observe(accepted); });
 }
 

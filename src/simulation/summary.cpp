@@ -184,6 +184,24 @@ Json as_json(const StrengthCalibration& c) {
   return json;
 }
 
+/// Adds where a path ended, and its limit points.
+void add_path(const PathResult& path, Json& json, std::string& text) {
+  Json points = Json::array();
+  for (const LimitPoint& p : path.limit_points)
+    points.push_back({{"kind", p.is_maximum ? "maximum" : "minimum"},
+                      {"load_factor", p.load_factor},
+                      {"step", p.step}});
+  json["path"] = {{"end", path.end},
+                  {"load_factor", path.load_factor},
+                  {"arc_length", path.length},
+                  {"snap_backs", path.snap_backs},
+                  {"limit_points", points}};
+  text += line("path: ended %s; load factor %.6g, %lld limit points, %lld steps of snap-back",
+               path.end.empty() ? "early" : path.end.c_str(), path.load_factor,
+               static_cast<long long>(path.limit_points.size()),
+               static_cast<long long>(path.snap_backs));
+}
+
 /// Adds the expected constants of a large sheet of this lattice less those of the material.
 void add_calibration(const Scene& scene, const Calibration& c, Json& json, std::string& text) {
   const double nu = scene.ice.poisson;
@@ -230,6 +248,8 @@ std::string bending_problem(const Scene& scene) {
   const Load* load = point_load(scene);
   if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)
     return "report: bending needs a floating sheet (buoyancy) and a vertical load at a point";
+  if (scene.path_control.arc)
+    return "report: bending compares the full load with theory; 'static: path' is arc";
   if (scene.loads.size() > 1)
     return "report: bending compares one load with theory; load: names: has " +
            std::to_string(scene.loads.size());
@@ -283,6 +303,7 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     json["newton_iterations"] = result.newton_iterations;
     if (scene.integrator == Integrator::quasistatic) json["factorisations"] = result.factorisations;
     if (result.unstable_modes >= 0) json["stable"] = result.unstable_modes == 0;
+    if (result.path) add_path(*result.path, json, text);
   }
   if (scene.has_sheet) {
     json["seed"] = scene.sheet.seed;

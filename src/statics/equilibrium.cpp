@@ -54,7 +54,7 @@ Equilibrium<Space>::Equilibrium(Model<Space>& model)
     }
     stiffness_.push_back(sum);
   }
-  extent_ = extent(part_);
+  extent_ = floe::extent(part_);
   check(MatCreateVecs(tangent_.matrix(), x_.put(), f_.put()));
   check(VecDuplicate(x_, step_.put()));
   attach_rigid_modes(model, model.held(), tangent_.matrix());

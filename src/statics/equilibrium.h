@@ -60,6 +60,8 @@ class Equilibrium {
   const std::string& why() const { return why_; }
   /// Whether the last failure came after beams had broken, so that only dynamics can go on.
   bool collapsed() const { return collapsed_; }
+  /// Diagonal of the box around all bodies, at least a body's own size [m].
+  double extent() const { return extent_; }
   /// Whether the last failure was a request to stop.
   bool stopped() const { return stopped_; }
   /// Largest reaction of a pin relative to the forces in equilibrium. Above rounding, a load pushes
@@ -77,7 +79,7 @@ class Equilibrium {
   /// leaves out. To be called last, since it replaces the tangent. Collective.
   std::int64_t unstable_modes(const OutOfPlane* rest);
 
- private:
+ protected:  // PathEquilibrium moves the state along a path
   struct Saved {
     State<Space> state;
     StaticRotations<Space> rotations;

@@ -7,6 +7,7 @@ from bad_input import (BREAKABLE, FILE, FLOATING, FLOOR, GOOD, HELD, MOVING, SHE
                        loaded, obstacle, scene_file)
 
 ADRIFT = "integrator: explicit\n" + FLOATING + "time: {end: 1}\n"
+RAMPED = loaded("set: right, force: [1, 0, 0], ramp: 1")
 
 SCENES = {
     "broken YAML": ("forces: [beam\nsheet: 3\n", "line 2"),
@@ -61,6 +62,40 @@ SCENES = {
     "strength that does not scatter": (BREAKABLE + "fracture: {seed: 3}\n", "weibull_modulus"),
     "no strength": (BREAKABLE + "fracture: {tensile_strength: 0}\n",
                     "fracture: tensile_strength: 0"),
+    "a path in dynamics": (MOVING + "static: {path: arc}\n", "static: path: would have no effect"),
+    "settings of a path without one": (GOOD + "static: {steps: 5}\n", "'static: path' is load"),
+    "a path without a load": (GOOD + "static: {path: arc}\n", "no load to scale"),
+    "a path with a constant load": (loaded("set: right, force: [1, 0, 0]") + "static: {path: arc}\n",
+                                    "no load to scale"),
+    "a path with a longer ramp": (loaded("set: right, force: [1, 0, 0], ramp: 2")
+                                  + "static: {path: arc}\n", "load: p: ramp: 2 must be time: end 1"),
+    "a path with a ramp of a velocity": (held("fix: x, velocity: [1, 0, 0], ramp: 1")
+                                         + "static: {path: arc}\n", "boundary: a: ramp: 1 must be 0"),
+    "a path with load steps": (RAMPED + "static: {path: arc}\ntime: {dt: 0.1}\n",
+                               "time: dt: would have no effect"),
+    "an arc longer than the longest": (RAMPED + "static: {path: arc, arc_length: 2, "
+                                       "arc_length_max: 1}\n",
+                                       "static: arc_length_max: 1 must be >= static: arc_length 2"),
+    "an arc shorter than the shortest": (RAMPED + "static: {path: arc, arc_length: 1, "
+                                         "arc_length_min: 2}\n",
+                                         "static: arc_length_min: 2 must be <= static: arc_length 1"),
+    "no steps": (RAMPED + "static: {path: arc, steps: 0}\n", "static: steps: 0"),
+    "a path of more steps than allowed": (RAMPED + "static: {path: arc, steps: 20}\n"
+                                          "limit: {steps: 10}\n",
+                                          "static: steps: 20 are more than 10 (limit: steps)"),
+    "an unknown monitor": (RAMPED + "static: {path: arc, monitor: q, monitor_displacement: 1}\n",
+                           "static: monitor: 'q' is neither"),
+    "a monitor without displacement": (RAMPED + "static: {path: arc, monitor: p}\n",
+                                       "static: monitor_displacement"),
+    "a displacement without monitor": (RAMPED + "static: {path: arc, monitor_displacement: 1}\n",
+                                       "without 'static: monitor'"),
+    "growth without fracture": (RAMPED + "static: {path: arc, growth: 0.1}\n",
+                                "without 'forces: fracture'"),
+    "a path with a report of bending": (RAMPED.replace("[beam]", "[beam, gravity, buoyancy]")
+                                        .replace("set: right, force: [1, 0, 0]",
+                                                 "point: [0, 0], force: [0, 0, -1]")
+                                        + "static: {path: arc}\nreport: bending\n",
+                                        "'static: path' is arc"),
     "form drag without faces": (ADRIFT.replace("buoyancy", "buoyancy, drag")
                                 + "water: {drag_linear: 1, drag_form: 1}\n", "water: drag: faces"),
     "plan drag on faces": (ADRIFT.replace("buoyancy", "buoyancy, drag")

@@ -19,6 +19,8 @@ KINDS = {
     "bend45": ["bend45", "--elements", "8"],
     "rollup": ["rollup"],
     "elastica": ["elastica"],
+    "lee_frame": ["lee_frame", "--elements", "5"],
+    "arch": ["arch", "--elements", "8"],
     "cantilever": ["cantilever", "--elements", "5", "--young", "2e9"],
     "triangles": ["triangles", "--columns", "5", "--rows", "7", "--spacing", "2", "--thickness",
                   "0.5"],

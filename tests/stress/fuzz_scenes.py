@@ -113,6 +113,8 @@ def bound(scene, chance):
                            default="1"), number(scene, "time", "dt", default="1e300")
         if end is not None and step is not None and step > 0 and end / step > MOST_LOAD_STEPS:
             scene[("time", "dt")] = repr(end / chance.randint(1, MOST_LOAD_STEPS))
+        if scene.get(("static", "path")) == "arc":
+            scene[("static", "steps")] = str(chance.randint(1, MOST_LOAD_STEPS))
         return []
     explicit = scene[("integrator",)] == "explicit"
     if chance.random() < 0.3:
@@ -329,6 +331,16 @@ class Scenes:
             scene.pop(("model", "planar"))
         if scene.get(("integrator",)) != "explicit":
             scene.pop(("time", "safety"), None)
+        if scene.get(("static", "path")) != "arc" or chance.random() < 0.8:
+            for path in [path for path in scene if path[0] == "static" and path[1] != "path"]:
+                scene.pop(path)
+        if scene.get(("integrator",)) != "quasistatic":
+            scene.pop(("static", "path"), None)
+        if scene.get(("static", "path")) == "arc":
+            scene.pop(("time", "dt"), None)
+            scene.pop(("time", "end"), None)
+            for path in [path for path in scene if path[-1] == "ramp"]:
+                scene[path] = "1"
         if scene.get(("integrator",)) == "quasistatic":
             scene.pop(("limit", "velocity"), None)
             scene.pop(("water", "added_mass"), None)

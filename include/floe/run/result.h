@@ -4,10 +4,27 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace floe {
+
+/// A largest or smallest load factor on a path.
+struct LimitPoint {
+  std::int64_t step;  ///< nearest
+  double load_factor;
+  bool is_maximum;
+};
+
+/// Result of a static run along a path.
+struct PathResult {
+  double load_factor = 0;  ///< of the last state
+  double length = 0;       ///< of the path [m]
+  std::vector<LimitPoint> limit_points;
+  std::int64_t snap_backs = 0;  ///< steps in which load and displacement went back
+  std::string end;              ///< why the path ended
+};
 
 /// Result of a run, for summary.json and the exit code.
 struct RunResult {
@@ -24,6 +41,7 @@ struct RunResult {
   std::string limited_by;           ///< explicit: what limits the stable step
   std::int64_t unstable_modes =
       -1;  ///< negative eigenvalues at the last equilibrium; -1: not known
+  std::optional<PathResult> path;  ///< static runs along a path
   std::vector<std::string> warnings;  ///< remarks of forces in order of time; on rank 0
 };
 

@@ -42,6 +42,32 @@ def check_elastica(test, run):
         np.testing.assert_allclose([-moved[0], moved[1]], [x, y], rtol=5e-4, err_msg=f"time {time}")
 
 
+def check_lee_frame(test, run):
+    output = run()
+    path = output.summary["path"]
+    kinds = [(p["kind"], p["load_factor"]) for p in path["limit_points"]]
+    test.assertEqual([kind for kind, _ in kinds], ["maximum", "minimum"])
+    test.assertLess(abs(kinds[0][1] - 18.557), 0.02)
+    test.assertLess(abs(kinds[1][1] + 9.414), 0.02)
+    test.assertEqual(path["load_factor"], 30)
+    test.assertGreater(path["snap_backs"], 3)
+    factor, back = output.history("load_factor"), output.history("snap_back")
+    way = -output.history("load_load_displacement_y")
+    test.assertTrue(np.all(np.diff(factor)[back[1:] == 1] < 0))
+    test.assertTrue(np.all(np.diff(way)[back[1:] == 1] < 0))
+    test.assertTrue(np.all(np.diff(output.history("arc_length")) > 0))
+    np.testing.assert_array_equal(output.history("time"), np.arange(len(factor)))
+
+
+def check_arch(test, run):
+    output = run()
+    path = output.summary["path"]
+    test.assertEqual([p["kind"] for p in path["limit_points"]], ["maximum"])
+    test.assertLess(abs(path["limit_points"][0]["load_factor"] - 8.97), 0.01)
+    test.assertLess(abs(output.history("crown_load_displacement_y")[-1] + 120), 1e-6)
+    test.assertLess(output.history("load_factor")[-1], 8)
+
+
 def check_free_top(test, run):
     output = run()
     turned = [output.field("bodies_rotation", t)[0] for t in output.times[1:]]

@@ -87,6 +87,21 @@ def check_point_breakthrough(test, run):
     test.assertTrue(0.7 < np.median(around) / 8.245 < 1.5, np.median(around))
 
 
+def check_notch_snap_back(test, run):
+    output = run()
+    path = output.summary["path"]
+    test.assertEqual(output.summary["fragments"], 2)
+    test.assertGreater(path["snap_backs"], 10)
+    names = ("boundary", "strain", "fracture", "released")
+    work, *rest = (output.history("energy_" + name) for name in names)
+    np.testing.assert_allclose(work, np.sum(rest, axis=0), rtol=2e-5, atol=1e-6)
+    force, factor = output.history("right_force_x"), output.history("load_factor")
+    back = output.history("snap_back")[1:] == 1
+    test.assertTrue(np.all(np.diff(force)[back] < 0))
+    test.assertTrue(np.all(np.diff(factor)[back] < 0))
+    test.assertTrue(np.all(np.diff(output.history("beams_broken")) <= 1))
+
+
 def check_notch(test, run):
     output = run()
     test.assertEqual(output.summary["fragments"], 2)

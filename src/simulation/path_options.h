@@ -1,0 +1,15 @@
+/// \file
+/// Settings of a static run along a path, from the scene.
+#pragma once
+
+#include "simulation/build.h"
+#include "statics/path.h"
+
+namespace floe {
+
+/// \param model  must outlive the options
+template <class Space>
+PathOptions<Space> path_options(const Scene& scene, const Model<Space>& model,
+                                const RunHooks& hooks);
+
+}  // namespace floe
