@@ -287,8 +287,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   double nearness_to_change(const State<Spatial>& state, double growth) const override {
     double most = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = criterion_of(whole(), b, state);
-      const Lanes at_tips = tips_ ? criterion_of(strengths_, b, state) : Lanes(0.0);
+      const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t at = b * lanes + lane;
         if (at >= crack_of_.size()) continue;
