@@ -23,7 +23,7 @@ struct Heap {
     scene.forces.contact = scene.forces.gravity = true;
     scene.contact.young = 1e7;
     scene.contact.friction = 0.3;
-    scene.contact.plastic_limit = 5e5;
+    scene.contact.plastic_limit.pressure = 5e5;
     scene.contact.initial_overlap = InitialOverlap::stress_free;  // of a stone and the pier
     scene.contact.damping_ratio = damping_ratio_of(0.4);
     scene.obstacles = {half_space({0, 0, 0}, {0, 0, 1}), box({4, 4, 0}, {2, 2, 3}, {10, 20, 30})};
