@@ -27,8 +27,8 @@ TEST_F(ContactKeys, PlasticLimit) {
   EXPECT_EQ(plain.contact.plastic_limit.fast, 1);
   EXPECT_TRUE(plain.contact.wear);
   const Scene all = scene_of(
-      with("plastic_limit: 7.4 MPa, plastic_exponent: 0.7, plastic_area: 2, plastic_least: 1.48 "
-           "MPa, plastic_most: 20 MPa, plastic_fast: 0.5, plastic_speed: 0.05, wear: false"));
+      with("plastic_limit: 7.4e6, plastic_exponent: 0.7, plastic_area: 2, plastic_least: 1.48e6, "
+           "plastic_most: 20e6, plastic_fast: 0.5, plastic_speed: 0.05, wear: false"));
   const PlasticLimit& limit = all.contact.plastic_limit;
   EXPECT_EQ(limit.exponent, 0.7);
   EXPECT_EQ(limit.area, 2);
@@ -66,7 +66,7 @@ TEST_F(ContactKeys, FrictionBelowWater) {
 
 TEST_F(ContactKeys, NewFaces) {
   EXPECT_FALSE(scene_of(with("")).contact.young_broken.has_value());
-  EXPECT_EQ(scene_of(with("young: 1e8, young_broken: 4 GPa")).contact.young_broken.value(), 4e9);
+  EXPECT_EQ(scene_of(with("young: 1e8, young_broken: 4e9")).contact.young_broken.value(), 4e9);
 }
 
 }  // namespace
