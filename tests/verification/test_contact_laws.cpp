@@ -36,49 +36,98 @@ double start_resolved(test::Dynamics& d, double part = 1) {
   return part * dt;
 }
 
-/// 100 pairs of random polyhedra that meet without friction or damping.
-struct Impacts {
+/// 216 elastic cubes that fly about in a box: some thousand impacts.
+struct Gas {
   Lattice lattice;
   Scene scene = contact_scene(1e7, 0, 1, false);
-  explicit Impacts(ContactLaw law, std::uint64_t seed = 3) {
+  explicit Gas(ContactLaw law) {
+    constexpr int across = 6;
+    constexpr double apart = 1.8, wall = 0.5 * apart * across;
     scene.contact.law = law;
-    test::Random random(seed);
-    for (int k = 0; k < 100; ++k) {
-      const Vec3<double> centre{8.0 * (k % 10), 8.0 * (k / 10), 0};
-      const Vec3<double> way = random.direction();
-      for (const double side : {1.0, -1.0}) {
-        const Quat<double> q = random.rotation(random.uniform(0, 3));
-        test::append_stone(lattice, random, centre + (1.9 * side) * way, q,
-                           (-0.5 * side) * way + random.vector(0.1), random.vector(0.5));
+    for (const double side : {1.0, -1.0}) {
+      for (int k = 0; k < 3; ++k) {
+        Vec3<double> normal{};
+        normal[static_cast<std::size_t>(k)] = side;
+        append_obstacle(scene, "wall" + std::to_string(k) + (side > 0 ? "_low" : "_high"),
+                        half_space((-wall) * normal, normal));
       }
     }
+    test::Random random(3);
+    for (int k = 0; k < across * across * across; ++k) {
+      const auto at = [&](int i) { return apart * (i - 0.5 * (across - 1)); };
+      append_block(lattice, {1, 1, 1},
+                   {at(k % across), at(k / across % across), at(k / across / across)},
+                   random.rotation(random.uniform(0, 3)), random.vector(1), random.vector(1));
+    }
   }
-  /// Returns the gain of kinetic energy, in parts of it, at a part of the step of dt: auto.
-  double gain(double part) const {
+  /// Returns the gain of energy over a time, in parts of it, at a part of the step of dt: auto.
+  double gain(double part, double seconds) const {
     test::Dynamics d(scene, lattice);
-    const double dt = start_resolved(d, part), before = d.kinetic();
-    while (d.state().time < 6 || d.reported("contacts") > 0) d.steps(static_cast<long>(0.5 / dt));
-    return d.kinetic() / before - 1;
+    (void)start_resolved(d, part);
+    const double before = d.kinetic();
+    double touches = 0, contacts = 0;
+    while (d.state().time < seconds) {
+      (void)d.step();
+      const double now = d.reported("contacts");
+      touches += std::max(now - contacts, 0.0);
+      contacts = now;
+    }
+    impacts = touches;
+    return (d.kinetic() + d.reported("energy_contact")) / before - 1;
   }
+  mutable double impacts = 0;  ///< of the last gain(), at least
 };
 
-/// The step of `dt: auto` has 11 steps in half a period of a touch by the largest face.
+/// The step of `dt: auto` has 11 steps in half a period of a touch by the largest face. `potential`
+/// gains what the step does, in second order; `overlap` gains at any step.
 TEST(ContactLaws, GainOfUndampedBodies) {
   for (const ContactLaw law : laws) {
-    const Impacts impacts(law);
+    const Gas gas(law);
     std::vector<double> gains;
     for (const double part : {1.0, 0.5, 0.25}) {
-      gains.push_back(impacts.gain(part));
-      test::report({"contact laws", "gain of 200 bodies, " + name_of(law) + ", part of dt auto " +
-                                        test::text("%.2f", part),
+      if (part < 0.5 && !test::full_form()) continue;
+      gains.push_back(gas.gain(part, 10));
+      std::printf("%s, %.2f of dt auto: gain %.3e in %.0f impacts\n", name_of(law).c_str(), part,
+                  gains.back(), gas.impacts);
+      test::report({"contact laws", "gain of 216 cubes in 10 s, " + name_of(law) +
+                                        ", part of dt auto " + test::text("%.2f", part),
                     gains.back()});
-      RecordProperty(name_of(law) + test::text("_%.2f", part), test::text("%.3e", gains.back()));
     }
     if (law == ContactLaw::potential) {
       EXPECT_LT(std::abs(gains[0]), 1e-3);
-      EXPECT_LT(std::abs(gains[2]), 0.15 * std::abs(gains[0]));
     } else {
-      EXPECT_LT(std::abs(gains[0]), 0.02);
+      EXPECT_LT(std::abs(gains[0]), 0.1);
+    }
+  }
+}
+
+/// How far stacks of ten cubes of 1 m that are pushed a little lean after 60 s, and whether a cube
+/// on a floor stands upright.
+TEST(ContactLaws, StackOfTenThatIsPushed) {
+  if (!test::full_form()) GTEST_SKIP() << "in the full form only (FLOE_FULL=1)";
+  for (const ContactLaw law : laws) {
+    for (const double young : {1e8, 4e9}) {
+      Scene scene = contact_scene(young, 0.5, 0.45);
+      scene.contact.law = law;
+      append_obstacle(scene, "floor", half_space({0, 0, 0}, {0, 0, 1}));
+      Lattice lattice;
+      for (int k = 0; k < 10; ++k)
+        append_block(lattice, {1, 1, 1}, {0, 0, 0.5 + k}, {1, 0, 0, 0}, {1e-4 * k, 0, 0});
+      test::Dynamics d(scene, lattice);
+      (void)start_resolved(d);
+      double tilt = 0;
+      for (const double end : {20.0, 60.0}) {
+        while (d.state().time < end) (void)d.step();
+        const double* top = d.state().record(9);
+        tilt = 2 * std::hypot(d.state().record(0)[4], d.state().record(0)[5]);
+        std::printf("%s, E_c %.0e, %2.0f s: top %.2e m aside, lowest cube tilted by %.2e rad, "
+                    "kinetic %.1e J\n",
+                    name_of(law).c_str(), young, end, std::hypot(top[0], top[1]), tilt,
+                    d.kinetic());
+      }
+      test::report({"contact laws", "stack of ten, E_c " + test::text("%.0e", young) +
+                                        ", tilt of the lowest cube, " + name_of(law),
+                    tilt, {}, {}, "rad"});
     }
   }
 }
@@ -157,9 +206,9 @@ struct Cubes {
     append_obstacle(scene, "floor", half_space({0, 0, 0}, {0, 0, 1}));
     test::Random random(5);
     for (int k = 0; k < across * across * high; ++k) {
-      const Vec3<double> at{1.3 * (k % across - 0.5 * (across - 1)),
-                            1.3 * (k / across % across - 0.5 * (across - 1)),
-                            0.9 + 1.5 * (k / across / across)};
+      const Vec3<double> at{1.75 * (k % across - 0.5 * (across - 1)),
+                            1.75 * (k / across % across - 0.5 * (across - 1)),
+                            0.9 + 1.75 * (k / across / across)};
       append_block(lattice, {size, size, size}, size * at, random.rotation(random.uniform(0, 3)));
     }
   }
