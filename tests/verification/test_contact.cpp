@@ -7,6 +7,8 @@
 
 #include "contact_laws/laws.h"
 #include "contact_laws/restitution.h"
+#include "files/hdf5.h"
+#include "lattice/archive.h"
 #include "support/contact_scene.h"
 #include "support/record.h"
 #include "support/roles.h"
@@ -289,21 +291,31 @@ TEST(Contact, OfOtherPairsIsNotBornWhenABeamBreaks) {
   for (const double x : {0.0, 0.95, 5.0, 6.01}) test::append_block(lattice, {1, 1, 1}, {x, 0, 0});
   lattice.beams.bodies = {{0, 1}};
   const Part part = partition(lattice, PETSC_COMM_SELF);
-  const auto contact = make_contact(part, lattice, {.young = young}, {});
+  const auto run = make_contact(part, lattice, {.young = young}, {});
   State<Spatial> state(4);
-  const auto force = [&](std::size_t body) {
+  const auto force = [&](Contact& contact, std::size_t body) {
     Wrenches<Spatial> w(4);
-    contact->add(state, w);
+    contact.add(state, w);
     return w.of(body)[0];
   };
-  EXPECT_EQ(force(0), 0);
-  EXPECT_EQ(force(2), 0);
-  commit(*contact, state, 1e-3);
+  EXPECT_EQ(force(*run, 0), 0);
+  EXPECT_EQ(force(*run, 2), 0);
+  commit(*run, state, 1e-3);
   const std::array<std::int32_t, 2> pair{0, 1};
-  contact->roles().broken_pairs->release({&pair, 1});
+  run->roles().broken_pairs->release({&pair, 1});
+  const auto restarted = make_contact(part, lattice, {.young = young}, {});
+  for (const Transfer way : {Transfer::save, Transfer::load}) {
+    Hdf5File file = way == Transfer::save ? Hdf5File::create("contact.h5")
+                                          : Hdf5File::open("contact.h5");
+    Archive memory(part, &file, way);
+    (way == Transfer::save ? run : restarted)->roles().persists->persist(memory);
+    if (way == Transfer::save) file.close();
+  }
   state.record(3)[0] = -0.02;  // this pair touches for the first time
-  EXPECT_EQ(force(0), 0);
-  EXPECT_NEAR(force(2), -young * 0.01, 1e-6 * young);
+  for (Contact* contact : {run.get(), restarted.get()}) {
+    EXPECT_EQ(force(*contact, 0), 0);
+    EXPECT_NEAR(force(*contact, 2), -young * 0.01, 1e-6 * young);
+  }
 }
 
 /// New faces press with their own modulus; other pairs do not.
