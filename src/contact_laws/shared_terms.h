@@ -60,7 +60,8 @@ inline RockingMoments rocking_moments(const Patch& patch, const Vec3<double>& n)
   const Vec3<double> across = cross(n, other), u = (1 / length(across)) * across, v = cross(n, u);
   const Vec3<double> tu = rocking(patch, n, u), tv = rocking(patch, n, v);
   const double uu = dot(u, tu), vv = dot(v, tv), uv = dot(u, tv);
-  return {.trace = uu + vv, .largest = 0.5 * (uu + vv) + std::hypot(0.5 * (uu - vv), uv)};
+  const double apart = 0.5 * (uu - vv);
+  return {.trace = uu + vv, .largest = 0.5 * (uu + vv) + std::sqrt(apart * apart + uv * uv)};
 }
 
 /// Returns the part of the last step in which the dashpot acts: in the first step of a touch the

@@ -31,24 +31,32 @@ std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   return HalfSpace{normal, offset};
 }
 
+/// A corner of a facet as seen along a normal, and its distance from the origin there.
+struct SeenCorner {
+  Vec3<double> at;
+  double distance = 0;  ///< [m]
+};
+SeenCorner seen_along(const Vec3<double>& normal, const Vec3<double>& r) {
+  const Vec3<double> p = r - dot(r, normal) * normal;
+  return {.at = p, .distance = length(p)};
+}
+
 /// Returns int rho dA over the triangle between the origin and an edge from a to b, both seen along
 /// a unit normal; below 0 where the edge runs clockwise [m^3]. With the edge at the distance d from
 /// the origin it is (d^3/6) [sec t tan t + asinh(tan t)] between the directions t of its ends.
-double reach_of_edge(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& normal) {
-  const Vec3<double> p = a - dot(a, normal) * normal, way = b - a;
-  const Vec3<double> along = way - dot(way, normal) * normal;
+double reach_of_edge(const SeenCorner& a, const SeenCorner& b, const Vec3<double>& normal) {
+  const Vec3<double> along = b.at - a.at;
   const double size = length(along);
   if (size == 0) return 0;
-  const double twice = dot(normal, cross(p, along)), d = std::abs(twice) / size;
+  const double twice = dot(normal, cross(a.at, along)), d = std::abs(twice) / size;
   if (d <= 1e-14 * size) return 0;  // the integral is of the order of d size^2
-  const double from = dot(p, along) / size, to = from + size;
-  const double far_from = std::hypot(d, from), far_to = std::hypot(d, to);
+  const double from = dot(a.at, along) / size, to = from + size;
   // asinh(to/d) - asinh(from/d), by the end that is farther from the foot of the perpendicular.
-  const double turn =
+  const double turn = std::log(
       from + to >= 0
-          ? std::log((to + far_to) / (from >= 0 ? from + far_from : d * d / (far_from - from)))
-          : std::log((far_from - from) / (to <= 0 ? far_to - to : d * d / (far_to + to)));
-  const double sum = (d / 6) * (to * far_to - from * far_from + d * d * turn);
+          ? (to + b.distance) / (from >= 0 ? from + a.distance : d * d / (a.distance - from))
+          : (a.distance - from) / (to <= 0 ? b.distance - to : d * d / (to + b.distance)));
+  const double sum = (d / 6) * (to * b.distance - from * a.distance + d * d * turn);
   return twice > 0 ? sum : -sum;
 }
 
@@ -273,9 +281,31 @@ Overlap Clipper::integrals() const {
   return o;
 }
 
+/// Lists the edges around the facets on B. Edges between two of them run once each way.
+void Clipper::find_rim() {
+  rim_.clear(now_.corners.size());
+  for (std::size_t f = 0; f < now_.faces.size(); ++f) {
+    const Face& face = now_.faces[f];
+    if (!face.on_b) continue;
+    std::int32_t from = item(now_.corners, face.end - 1);
+    for (std::int32_t c = face.begin; c < face.end; ++c) {
+      const std::int32_t to = item(now_.corners, c);
+      std::size_t k = 0;
+      while (k < rim_.size() && (rim_[k].from != to || rim_[k].to != from)) ++k;
+      if (k < rim_.size()) {
+        rim_[k] = rim_[rim_.size() - 1];
+        rim_.cut_back(rim_.size() - 1);
+      } else {
+        rim_.push({.from = from, .to = to});
+      }
+      from = to;
+    }
+  }
+}
+
 /// Sums over the triangles of the facets on B. A triangle with corners p_k, s their sum, has
 /// int r r^T dA = (A/12) (sum p_k p_k^T + s s^T).
-Patch Clipper::patch(const Vec3<double>& normal) const {
+Patch Clipper::patch(const Vec3<double>& normal) {
   const Vec3<double> apex = now_.points[0];
   const auto corner = [&](std::int32_t c) {
     return item(now_.points, item(now_.corners, c)) - apex;
@@ -292,10 +322,14 @@ Patch Clipper::patch(const Vec3<double>& normal) const {
       const double area = 0.5 * length(cross(q - p, r - p)), part = area / 12;
       sum.area += area;
       first = first + (area / 3) * s;
-      for (const Vec3<double>& a : {p, q, r, s}) {
-        sum.squares = sum.squares + part * Vec3<double>{a.x * a.x, a.y * a.y, a.z * a.z};
-        sum.products = sum.products + part * Vec3<double>{a.y * a.z, a.z * a.x, a.x * a.y};
-      }
+      const auto products = [&](double Vec3<double>::*u, double Vec3<double>::*v) {
+        return part * (p.*u * p.*v + q.*u * q.*v + r.*u * r.*v + s.*u * s.*v);
+      };
+      using V = Vec3<double>;
+      sum.squares = sum.squares +
+                    V{products(&V::x, &V::x), products(&V::y, &V::y), products(&V::z, &V::z)};
+      sum.products = sum.products +
+                     V{products(&V::y, &V::z), products(&V::z, &V::x), products(&V::x, &V::y)};
       q = r;
     }
   }
@@ -304,15 +338,12 @@ Patch Clipper::patch(const Vec3<double>& normal) const {
   sum.squares = sum.squares - sum.area * Vec3<double>{m.x * m.x, m.y * m.y, m.z * m.z};
   sum.products = sum.products - sum.area * Vec3<double>{m.y * m.z, m.z * m.x, m.x * m.y};
   sum.middle = apex + m;
-  for (std::size_t f = 0; f < now_.faces.size(); ++f) {
-    const Face& face = now_.faces[f];
-    if (!face.on_b) continue;
-    Vec3<double> a = corner(face.end - 1) - m;
-    for (std::int32_t c = face.begin; c < face.end; ++c) {
-      const Vec3<double> b = corner(c) - m;
-      sum.reach += reach_of_edge(a, b, normal);
-      a = b;
-    }
+  find_rim();
+  for (std::size_t k = 0; k < rim_.size(); ++k) {
+    const auto seen = [&](std::int32_t point) {
+      return seen_along(normal, item(now_.points, point) - apex - m);
+    };
+    sum.reach += reach_of_edge(seen(rim_[k].from), seen(rim_[k].to), normal);
   }
   return sum;
 }

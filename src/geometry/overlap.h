@@ -88,6 +88,9 @@ class Clipper {
     std::int32_t next;             ///< next crossing along the cap
     bool done;
   };
+  struct Edge {
+    std::int32_t from, to;  ///< points
+  };
   /// A stack whose room is reserved in advance, so that push() makes no check.
   template <class T>
   class Stack {
@@ -123,12 +126,14 @@ class Clipper {
   std::int32_t crossing(std::int32_t inside, std::int32_t outside);
   std::int32_t place(std::int32_t corner) const { return item(place_, item(now_.corners, corner)); }
   Overlap integrals() const;
-  Patch patch(const Vec3<double>& normal) const;
+  void find_rim();
+  Patch patch(const Vec3<double>& normal);
 
   Mesh now_, next_;
   std::vector<double> distance_;
   std::vector<std::int32_t> place_;  ///< index of a vertex among the kept ones, or -1
   Stack<Crossing> crossings_;
+  Stack<Edge> rim_;
 };
 
 }  // namespace floe
