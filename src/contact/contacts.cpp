@@ -136,8 +136,8 @@ void Contacts::respond(const Law& law, const Touch& touch, const RelativeMotion*
   const bool wet = a.x.z + overlap.centroid.z < 0;
   const LastStep last{.dt = last_dt_, .touched = touch.known || pair.newly_eligible};
   const ContactResponse response = contact_response(
-      law, pair_constants(solids_, options_, pair, wet), overlap, touch.met.depth, motion, predicted,
-      mobility, last, 0.5 * (a.spin + b.spin), touch.memory, pair.newly_eligible);
+      law, pair_constants(solids_, options_, pair, wet), overlap, touch.met.depth, motion,
+      predicted, mobility, last, 0.5 * (a.spin + b.spin), touch.memory, pair.newly_eligible);
   const double plastic = response.contact.memory.plastic;
   active_.add({.pair = touch.pair,
                .deep = is_deep(solids_, pair, overlap, plastic),

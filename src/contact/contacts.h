@@ -139,8 +139,7 @@ class Contacts {
   /// \param rows      of the pairs of all ranks, sorted by pair
   /// \param released  pairs whose beam broke, in the order of release()
   /// \param known     number of these that the last build knew
-  void restore(std::span<const double> rows, std::span<const BodyPair> released,
-               std::size_t known);
+  void restore(std::span<const double> rows, std::span<const BodyPair> released, std::size_t known);
   /// Sets what contacts have crushed and what bodies have lost.
   /// \param crushed  rows of Crushing, of the pairs of all ranks
   /// \param worn     rows of Wear

@@ -8,8 +8,16 @@
 namespace floe {
 
 std::array<double, Crush::numbers> Crush::as_numbers() const {
-  return {static_cast<double>(a), static_cast<double>(b), normal_a.x, normal_a.y, normal_a.z,
-          normal_b.x,             normal_b.y,             normal_b.z, before,     plastic};
+  return {static_cast<double>(a),
+          static_cast<double>(b),
+          normal_a.x,
+          normal_a.y,
+          normal_a.z,
+          normal_b.x,
+          normal_b.y,
+          normal_b.z,
+          before,
+          plastic};
 }
 
 Crush Crush::from(std::span<const double, numbers> n) {

@@ -6,9 +6,14 @@
 namespace floe {
 
 std::array<double, WearCut::numbers> WearCut::as_numbers() const {
-  return {static_cast<double>(a), static_cast<double>(b), static_cast<double>(body),
-          left.normal.x,          left.normal.y,          left.normal.z,
-          left.offset,            volume};
+  return {static_cast<double>(a),
+          static_cast<double>(b),
+          static_cast<double>(body),
+          left.normal.x,
+          left.normal.y,
+          left.normal.z,
+          left.offset,
+          volume};
 }
 
 WearCut WearCut::from(std::span<const double, numbers> n) {

@@ -313,8 +313,7 @@ void DistributedContact::persist(Archive& archive) {
   auto known = static_cast<std::int64_t>(contacts_.list().eligibility().known());
   archive.common("known", known);
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
-  if (archive.loading())
-    restore(rows, as_pairs(released), static_cast<std::size_t>(known), expiry);
+  if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known), expiry);
 }
 
 /// Goes on from a checkpoint.

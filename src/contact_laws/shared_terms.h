@@ -12,7 +12,7 @@ namespace floe {
 
 /// Constants of the terms that laws share.
 struct SharedConstants {
-  double damping_ratio = 0;  ///< zeta of the viscous term
+  double damping_ratio = 0;    ///< zeta of the viscous term
   PlasticLimit plastic_limit;  ///< sigma_p
 
   explicit SharedConstants(const ContactOptions& options)

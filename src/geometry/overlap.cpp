@@ -326,10 +326,10 @@ Patch Clipper::patch(const Vec3<double>& normal) {
         return part * (p.*u * p.*v + q.*u * q.*v + r.*u * r.*v + s.*u * s.*v);
       };
       using V = Vec3<double>;
-      sum.squares = sum.squares +
-                    V{products(&V::x, &V::x), products(&V::y, &V::y), products(&V::z, &V::z)};
-      sum.products = sum.products +
-                     V{products(&V::y, &V::z), products(&V::z, &V::x), products(&V::x, &V::y)};
+      sum.squares =
+          sum.squares + V{products(&V::x, &V::x), products(&V::y, &V::y), products(&V::z, &V::z)};
+      sum.products =
+          sum.products + V{products(&V::y, &V::z), products(&V::z, &V::x), products(&V::x, &V::y)};
       q = r;
     }
   }

@@ -182,9 +182,10 @@ constexpr std::array table{
                "is f + (1 - f) exp(-v/plastic_speed) times as high"},
     OptionSpec{"contact: plastic_speed", number, "(required)", "m/s", ">= 1e-9, <= 1e6",
                "with plastic_fast: speed v_r over which plastic_limit falls"},
-    OptionSpec{"contact: wear", flag, "true", "", "",
-               "with plastic_limit: bodies lose what a contact has crushed when it parts; else they "
-               "heal"},
+    OptionSpec{
+        "contact: wear", flag, "true", "", "",
+        "with plastic_limit: bodies lose what a contact has crushed when it parts; else they "
+        "heal"},
     OptionSpec{"contact: initial_overlap", choice, "press", "", "press | stress_free",
                "what overlaps at the start presses apart (refused above a tenth of the smaller "
                "one's size), or is taken as rest"},

@@ -77,8 +77,8 @@ void read_plastic_limit(Options& options, ContactOptions& contact) {
     if (options.given("contact: plastic_most"))
       limit.most = options.number("contact: plastic_most");
     if (limit.least > limit.most)
-      throw InputError("contact: plastic_least: " + text_of(limit.least) + " must be <= " +
-                       text_of(limit.most) + " [Pa], the plastic_most");
+      throw InputError("contact: plastic_least: " + text_of(limit.least) +
+                       " must be <= " + text_of(limit.most) + " [Pa], the plastic_most");
   }
   limit.fast = options.number("contact: plastic_fast");
   if (limit.fast != 1) limit.speed = options.number("contact: plastic_speed");

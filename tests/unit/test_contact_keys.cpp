@@ -44,7 +44,8 @@ TEST_F(ContactKeys, PlasticLimitRefusesWhatHasNoEffect) {
     const std::string said = scene_error(with(contact));
     EXPECT_TRUE(contains(said, words)) << contact << ": " << said;
   };
-  refuses("plastic_limit: 2e6, plastic_exponent: 1", "contact: plastic_exponent: 1 must be a number >= 0, <= 0.99");
+  refuses("plastic_limit: 2e6, plastic_exponent: 1",
+          "contact: plastic_exponent: 1 must be a number >= 0, <= 0.99");
   refuses("plastic_limit: 2e6, plastic_exponent: 0.5, plastic_least: 3e6, plastic_most: 1e6",
           "contact: plastic_least: 3e+06 must be <= 1e+06 [Pa]");
   refuses("plastic_limit: 2e6, plastic_fast: 0.5", "contact: plastic_speed");

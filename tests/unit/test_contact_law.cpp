@@ -235,9 +235,7 @@ TEST(ContactLaw, PlasticLimitFallsWithTheArea) {
   PlasticLimit& limit = law.options.plastic_limit;
   limit = {.pressure = 7.4e6, .exponent = 0.7, .least = 1.48e6, .most = 30e6};
   for (const double area : {0.01, 0.3, 1.0, 2.0, 9.0, 20.0}) {
-    const double expected = area < 0.1   ? 30e6
-                            : area < 9.5 ? 7.4e6 * std::pow(area, -0.7)
-                                         : 1.48e6;
+    const double expected = area < 0.1 ? 30e6 : area < 9.5 ? 7.4e6 * std::pow(area, -0.7) : 1.48e6;
     EXPECT_NEAR(law(overlap_of(0.01, {0, 0, area})).elastic, expected * area,
                 1e-9 * expected * area)
         << area;
@@ -264,8 +262,8 @@ TEST(ContactLaw, PlasticLimitFallsWithTheSpeedOfApproach) {
 }
 
 /// The energy of `overlap` on a half-space is the integral of k_v (V - V_p) over the depth: for
-/// V = b x^p from x_p to x, k_v b [(x^(p+1) - x_p^(p+1))/(p + 1) - x_p^p (x - x_p)]. It does not jump
-/// when crushing begins.
+/// V = b x^p from x_p to x, k_v b [(x^(p+1) - x_p^(p+1))/(p + 1) - x_p^p (x - x_p)]. It does not
+/// jump when crushing begins.
 TEST(ContactLaw, StoredEnergyIsTheWorkThatComesBack) {
   constexpr double k = 1e6, b = 0.7, x = 0.02;
   for (const int p : {1, 2, 3}) {
@@ -280,8 +278,8 @@ TEST(ContactLaw, StoredEnergyIsTheWorkThatComesBack) {
                        .area = length(o.area)};
     for (const double share : {0.0, 1e-12, 0.3, 0.9, 1.0}) {
       const double from = share * x;
-      const double expected =
-          b * ((std::pow(x, p + 1) - std::pow(from, p + 1)) / (p + 1) - std::pow(from, p) * (x - from));
+      const double expected = b * ((std::pow(x, p + 1) - std::pow(from, p + 1)) / (p + 1) -
+                                   std::pow(from, p) * (x - from));
       EXPECT_NEAR(OverlapLaw::stored_volume(state, b * std::pow(from, p)), expected,
                   1e-10 * b * std::pow(x, p + 1))
           << p << " " << share;

@@ -82,10 +82,8 @@ TEST(Wear, CrushedPartsFeelNothingUntilTheyAreAsDeepAgain) {
   constexpr double k = young / 0.5, deep = 0.05, limit = 1e3;
   for (const ContactLaw law : {ContactLaw::overlap, ContactLaw::potential}) {
     for (const Attitude& attitude : attitudes) {
-      const ContactOptions options{.law = law,
-                                   .young = young,
-                                   .friction = 0,
-                                   .plastic_limit = {.pressure = limit}};
+      const ContactOptions options{
+          .law = law, .young = young, .friction = 0, .plastic_limit = {.pressure = limit}};
       const Lattice lattice = one_cube();
       Press press(lattice, options, {floor_plane});
       const auto force = [&](double depth) {
@@ -184,8 +182,7 @@ TEST(Wear, KeepsFewPlanes) {
   const Solids solids(lattice.shapes, lattice.bodies.mass, {});
   Wear wear;
   const auto cut = [&](const Vec3<double>& out, double offset, double volume) {
-    wear.add(solids,
-             {.body = 0, .left = {(1 / length(out)) * out, offset}, .volume = volume});
+    wear.add(solids, {.body = 0, .left = {(1 / length(out)) * out, offset}, .volume = volume});
   };
   cut({0, 0, -1}, 0.45, 1e-3);
   cut({0, 0.01, -1}, 0.4, 1e-3);  // deeper everywhere
@@ -213,8 +210,8 @@ TEST(Wear, CapsHaveTheirVolume) {
   EXPECT_NEAR(corner.left.offset, std::sqrt(0.75) - 0.1, 1e-12);
   EXPECT_NEAR(corner.height, 0.1, 1e-4);
   wear.add(solids, {.body = 0, .left = corner.left, .volume = attitudes[2].volume(0.1)});
-  const auto more = caps.find(solids, wear, 0, diagonal,
-                              attitudes[2].volume(0.2) - attitudes[2].volume(0.1));
+  const auto more =
+      caps.find(solids, wear, 0, diagonal, attitudes[2].volume(0.2) - attitudes[2].volume(0.1));
   EXPECT_NEAR(more.left.offset, std::sqrt(0.75) - 0.2, 1e-12);
   EXPECT_NEAR(more.height, 0.1, 1e-6);
   // At most half of a body.

@@ -305,8 +305,8 @@ TEST(Contact, OfOtherPairsIsNotBornWhenABeamBreaks) {
   run->roles().broken_pairs->release({&pair, 1});
   const auto restarted = make_contact(part, lattice, {.young = young}, {});
   for (const Transfer way : {Transfer::save, Transfer::load}) {
-    Hdf5File file = way == Transfer::save ? Hdf5File::create("contact.h5")
-                                          : Hdf5File::open("contact.h5");
+    Hdf5File file =
+        way == Transfer::save ? Hdf5File::create("contact.h5") : Hdf5File::open("contact.h5");
     Archive memory(part, &file, way);
     (way == Transfer::save ? run : restarted)->roles().persists->persist(memory);
     if (way == Transfer::save) file.close();

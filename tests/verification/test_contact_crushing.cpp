@@ -92,8 +92,9 @@ TEST(Friction, MayBeAnotherBelowTheWater) {
     scene.contact.friction_wet = 0.1;
     append_obstacle(scene, "floor", half_space({0, 0, level}, {0, 0, 1})).friction_wet = 0.1;
     Lattice lattice;
-    append_block(lattice, {1, 1, 0.2}, {0, 0, level + 0.1 - 920 * 0.2 * g * 0.5 * std::cbrt(0.2) / 1e8},
-                 {1, 0, 0, 0}, {2, 0, 0});
+    append_block(lattice, {1, 1, 0.2},
+                 {0, 0, level + 0.1 - 920 * 0.2 * g * 0.5 * std::cbrt(0.2) / 1e8}, {1, 0, 0, 0},
+                 {2, 0, 0});
     test::Dynamics d(scene, lattice);
     const double dt = start(d);
     d.steps(static_cast<long>(0.2 / dt));

@@ -21,9 +21,7 @@ using test::contact_scene;
 constexpr double g = 9.81;
 constexpr std::array laws{ContactLaw::overlap, ContactLaw::potential};
 
-std::string name_of(ContactLaw law) {
-  return law == ContactLaw::overlap ? "overlap" : "potential";
-}
+std::string name_of(ContactLaw law) { return law == ContactLaw::overlap ? "overlap" : "potential"; }
 
 /// Sets a part of the step that `dt: auto` takes.
 double start_resolved(test::Dynamics& d, double part = 1) {
@@ -89,8 +87,9 @@ TEST(ContactLaws, GainOfUndampedBodies) {
       gains.push_back(gas.gain(part, 10));
       std::printf("%s, %.2f of dt auto: gain %.3e in %.0f impacts\n", name_of(law).c_str(), part,
                   gains.back(), gas.impacts);
-      test::report({"contact laws", "gain of 216 cubes in 10 s, " + name_of(law) +
-                                        ", part of dt auto " + test::text("%.2f", part),
+      test::report({"contact laws",
+                    "gain of 216 cubes in 10 s, " + name_of(law) + ", part of dt auto " +
+                        test::text("%.2f", part),
                     gains.back()});
     }
     if (law == ContactLaw::potential) {
@@ -115,8 +114,13 @@ TEST(ContactLaws, GainOverSeeds) {
     }
     std::printf("%s: mean gain %.2e, rms %.2e, largest %.2e\n", name_of(law).c_str(), mean,
                 std::sqrt(squares), most);
-    test::report({"contact laws", "mean gain of 216 cubes in 10 s over 8 seeds, " + name_of(law),
-                  mean, {}, {}, "", test::text("rms %.1e", std::sqrt(squares))});
+    test::report({"contact laws",
+                  "mean gain of 216 cubes in 10 s over 8 seeds, " + name_of(law),
+                  mean,
+                  {},
+                  {},
+                  "",
+                  test::text("rms %.1e", std::sqrt(squares))});
     EXPECT_LT(most, law == ContactLaw::potential ? 1e-3 : 0.05);
   }
 }
@@ -140,14 +144,18 @@ TEST(ContactLaws, StackOfTenThatIsPushed) {
         while (d.state().time < end) (void)d.step();
         const double* top = d.state().record(9);
         tilt = 2 * std::hypot(d.state().record(0)[4], d.state().record(0)[5]);
-        std::printf("%s, E_c %.0e, %2.0f s: top %.2e m aside, lowest cube tilted by %.2e rad, "
-                    "kinetic %.1e J\n",
-                    name_of(law).c_str(), young, end, std::hypot(top[0], top[1]), tilt,
-                    d.kinetic());
+        std::printf(
+            "%s, E_c %.0e, %2.0f s: top %.2e m aside, lowest cube tilted by %.2e rad, "
+            "kinetic %.1e J\n",
+            name_of(law).c_str(), young, end, std::hypot(top[0], top[1]), tilt, d.kinetic());
       }
-      test::report({"contact laws", "stack of ten, E_c " + test::text("%.0e", young) +
-                                        ", tilt of the lowest cube, " + name_of(law),
-                    tilt, {}, {}, "rad"});
+      test::report({"contact laws",
+                    "stack of ten, E_c " + test::text("%.0e", young) +
+                        ", tilt of the lowest cube, " + name_of(law),
+                    tilt,
+                    {},
+                    {},
+                    "rad"});
     }
   }
 }
@@ -179,8 +187,8 @@ TEST(ContactLaws, StackOfFive) {
       RecordProperty(of + "_time", test::text("%.1f", d.state().time));
       RecordProperty(of + "_energy", test::text("%.1e", energy));
       RecordProperty(of + "_aside", test::text("%.2e", aside));
-      test::report({"contact laws", "stack of five, kinetic energy at the end, " + of, energy, {},
-                    {}, "J"});
+      test::report(
+          {"contact laws", "stack of five, kinetic energy at the end, " + of, energy, {}, {}, "J"});
       if (law == ContactLaw::overlap) {
         EXPECT_LT(energy, 1e-10) << degrees;
       }
@@ -207,8 +215,7 @@ TEST(ContactLaws, Incline) {
       const double early = dot(test::velocity(d, 0), downhill), at = d.state().time;
       d.steps(static_cast<long>(1 / dt));
       const double rate = (dot(test::velocity(d, 0), downhill) - early) / (d.state().time - at);
-      const double expected =
-          share > 1 ? g * (std::sin(angle) - mu * std::cos(angle)) : 0.0;
+      const double expected = share > 1 ? g * (std::sin(angle) - mu * std::cos(angle)) : 0.0;
       EXPECT_NEAR(rate, expected, 0.01 * g * mu) << name_of(law) << " " << share;
       RecordProperty(name_of(law) + test::text("_%.2f", share), test::text("%.4f", rate));
     }
@@ -257,8 +264,12 @@ TEST(ContactLaws, PileOfCubesComesToRest) {
     EXPECT_GT(rest, 0) << name_of(law) << " " << share;
     RecordProperty(name_of(law) + "_rest", test::text("%.2f", rest));
     RecordProperty(name_of(law) + "_share", test::text("%.1e", share));
-    test::report({"contact laws", "a pile of 27 cubes has 1e-6 of what it fell, " + name_of(law),
-                  rest, {}, {}, "s"});
+    test::report({"contact laws",
+                  "a pile of 27 cubes has 1e-6 of what it fell, " + name_of(law),
+                  rest,
+                  {},
+                  {},
+                  "s"});
   }
 }
 
@@ -284,9 +295,12 @@ TEST(ContactLaws, AngleOfRepose) {
       const double angle = std::atan(2 * height / distance) * 180 / std::numbers::pi;
       std::printf("%s mu %.2f: %.1f degrees, kinetic %.1e J\n", name_of(law).c_str(), mu, angle,
                   d.kinetic());
-      test::report({"contact laws", "slope of a heap of cubes, " + name_of(law) + ", mu " +
-                                        test::text("%.2f", mu),
-                    angle, {}, {}, "degrees"});
+      test::report({"contact laws",
+                    "slope of a heap of cubes, " + name_of(law) + ", mu " + test::text("%.2f", mu),
+                    angle,
+                    {},
+                    {},
+                    "degrees"});
       EXPECT_GT(angle, last) << mu;
       last = angle;
     }

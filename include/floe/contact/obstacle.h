@@ -20,8 +20,8 @@ struct Obstacle {
   ObstacleMotion motion;
   double friction = 0;                   ///< mu against bodies
   std::optional<double> friction_wet{};  ///< mu against bodies below still water, if another
-  std::vector<HalfSpace> planes;       ///< of its faces, in its frame
-  std::vector<Vec3<double>> vertices;  ///< in its frame [m]; empty for a half-space
+  std::vector<HalfSpace> planes;         ///< of its faces, in its frame
+  std::vector<Vec3<double>> vertices;    ///< in its frame [m]; empty for a half-space
 
   /// Distance of the farthest vertex from the origin of the frame [m].
   double radius() const;
