@@ -51,11 +51,9 @@ double reach_of_edge(const SeenCorner& a, const SeenCorner& b, const Vec3<double
   const double twice = dot(normal, cross(a.at, along)), d = std::abs(twice) / size;
   if (d <= 1e-14 * size) return 0;  // the integral is of the order of d size^2
   const double from = dot(a.at, along) / size, to = from + size;
-  // asinh(to/d) - asinh(from/d), by the end that is farther from the foot of the perpendicular.
-  const double turn = std::log(
-      from + to >= 0
-          ? (to + b.distance) / (from >= 0 ? from + a.distance : d * d / (a.distance - from))
-          : (a.distance - from) / (to <= 0 ? b.distance - to : d * d / (to + b.distance)));
+  // asinh(to/d) - asinh(from/d); where the difference below is rounding, d^3 is nothing.
+  const double ends = a.distance + b.distance;
+  const double turn = ends > size ? std::log((ends + size) / (ends - size)) : 0.0;
   const double sum = (d / 6) * (to * b.distance - from * a.distance + d * d * turn);
   return twice > 0 ? sum : -sum;
 }
