@@ -12,7 +12,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       law_(law_of(options)),
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free),
       places_(solids_.obstacles().size()),
-      narrow_(options.damping_ratio > 0 || solids_.has_friction(options.friction)),
+      narrow_(options.damping_ratio > 0 || solids_.has_friction(options)),
       active_(solids_.obstacles().size()) {}
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
@@ -43,7 +43,7 @@ void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
   const std::span<const Pair> pairs = list_.taken_on();
   for (std::size_t k = 0; k < pairs.size(); ++k)
     overlaps[k] =
-        narrow_.overlap(solids_, pairs[k], places_.of_a(pairs[k]), places_.of_b(pairs[k]));
+        narrow_.overlap(solids_, wear_, pairs[k], places_.of_a(pairs[k]), places_.of_b(pairs[k]));
 }
 
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
@@ -100,7 +100,7 @@ void Contacts::evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
       if (given.empty()) given = offloaded();
       touch(law, index, given[taken++], memory, wrenches);
     } else if (memory != nullptr || !narrow_.is_apart(solids_, pair, a, b)) {
-      touch(law, index, narrow_.overlap(solids_, pair, a, b), memory, wrenches);
+      touch(law, index, narrow_.overlap(solids_, wear_, pair, a, b), memory, wrenches);
     }
     ++index;
   }
@@ -134,10 +134,11 @@ void Contacts::respond(const Law& law, const Touch& touch, const RelativeMotion*
                           .axes_a = a.axes,
                           .axes_b = b.axes,
                           .apart = a.x - b.x};
+  const bool wet = a.x.z + overlap.centroid.z < 0;
   const LastStep last{.dt = last_dt_, .touched = touch.known || pair.newly_eligible};
   const ContactResponse response = contact_response(
-      law, pair_constants(solids_, options_, pair), overlap, touch.met.depth, motion, predicted,
-      mobility, last, 0.5 * (a.spin + b.spin), touch.memory, pair.newly_eligible);
+      law, pair_constants(solids_, options_, pair, wet), overlap, touch.met.depth, motion,
+      predicted, mobility, last, 0.5 * (a.spin + b.spin), touch.memory, pair.newly_eligible);
   const double plastic = response.contact.memory.plastic;
   active_.add({.pair = touch.pair,
                .deep = is_deep(solids_, pair, overlap, plastic),
@@ -147,10 +148,11 @@ void Contacts::respond(const Law& law, const Touch& touch, const RelativeMotion*
 }
 
 void Contacts::commit(std::span<const MovingPose> bodies, double velocity_time) {
-  history_.clear();
+  history_.start();
   places_.set_obstacle_velocities(solids_, velocity_time);
   later_power_ = {};
   for (const ActiveContact& active : active_.contacts()) commit(active, bodies);
+  if (wears()) find_crushed();
   start_.take(active_.stored());
   list_.end_step();
   active_.end_step();
@@ -172,6 +174,51 @@ void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> b
   history_.add({.a = pair.a, .b = pair.b, .pair = active.pair, .memory = contact.memory});
 }
 
+/// Finds what counted contacts have crushed by the last step, and the cuts of those that parted.
+void Contacts::find_crushed() {
+  ContactHistory::Cursor before = history_.before();
+  crushing_.start();
+  for (const ActiveContact& active : active_.contacts()) {
+    const double after = active.contact.memory.plastic;
+    const Pair& pair = list_.pair(active.pair);
+    if (!pair.counted || after == 0) continue;
+    const PairHistory* memory = before.of(active.pair);
+    const double born = pair.newly_eligible ? after : 0.0;
+    crushing_.take(pair, memory != nullptr ? memory->plastic : born, after, active.contact.normal,
+                   places_.of_a(pair).axes, places_.of_b(pair).axes);
+  }
+  crushing_.end();
+  cuts_.clear();
+  for (const Crush& crush : crushing_.parted()) cuts_.push_back(cut_of(crush));
+}
+
+/// The body that loses what was crushed is the sharper one, of which the lost volume is the higher
+/// cap; obstacles lose nothing.
+WearCut Contacts::cut_of(const Crush& crush) {
+  constexpr double clearly = 1 + 1e-6;
+  const double volume = crush.plastic - crush.before;
+  CapFinder::Cap cap = caps_.find(solids_, wear_, crush.a, -1.0 * crush.normal_a, volume);
+  std::int32_t body = crush.a;
+  if (!is_obstacle(crush.b)) {
+    const CapFinder::Cap other = caps_.find(solids_, wear_, crush.b, crush.normal_b, volume);
+    if (other.height > clearly * cap.height) {
+      cap = other;
+      body = crush.b;
+    }
+  }
+  return {.a = crush.a, .b = crush.b, .body = body, .left = cap.left, .volume = volume};
+}
+
+void Contacts::wear(std::span<const WearCut> cuts) {
+  for (const WearCut& cut : cuts) wear_.add(solids_, cut);
+}
+
+void Contacts::restore_wear(std::span<const double> crushed, std::span<const double> worn,
+                            std::span<const std::uint8_t> here) {
+  crushing_.restore(crushed, here);
+  wear_.restore(solids_, worn);
+}
+
 std::vector<BodyPair> Contacts::enclosed() const {
   std::vector<BodyPair> found;
   for (const ActiveContact& active : active_.contacts()) {
@@ -185,8 +232,9 @@ std::vector<Penetration> Contacts::penetrations() const {
   return floe::penetrations(solids_, list_, places_, active_.contacts());
 }
 
-void Contacts::restore(std::span<const double> rows, bool changed) {
-  list_.restore(changed);
+void Contacts::restore(std::span<const double> rows, std::span<const BodyPair> released,
+                       std::size_t known) {
+  list_.restore(solids_, released, known);
   history_.restore(rows);
 }
 

@@ -5,7 +5,8 @@
 /// The parts: Solids (what may touch), PairList with Eligibility and near_pairs() (the pairs that
 /// may touch), Places and NarrowPhase (places, gaps and overlaps of an evaluation), a law of
 /// contact_laws, ActiveContacts (forces and energies of an evaluation), ContactHistory (springs and
-/// crushed volumes from step to step), ContactEvents and penetrations() (checks).
+/// crushed volumes from step to step), Crushing and Wear (what bodies lose by crushing),
+/// ContactEvents and penetrations() (checks).
 ///
 /// Pairs are sorted, and every rank computes a pair by the same instructions. So the wrench of a
 /// body does not depend on how bodies are distributed over ranks.
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "contact/active_contacts.h"
+#include "contact/crushing.h"
 #include "contact/energies.h"
 #include "contact/events.h"
 #include "contact/history.h"
@@ -26,6 +28,7 @@
 #include "contact/places.h"
 #include "contact/solids.h"
 #include "contact/stiffness.h"
+#include "contact/wear.h"
 #include "contact_laws/laws.h"
 
 namespace floe {
@@ -94,6 +97,14 @@ class Contacts {
   /// \param bodies         the involved ones after the step, by slot
   /// \param velocity_time  of their velocities [s]
   void commit(std::span<const MovingPose> bodies, double velocity_time);
+  /// Whether bodies lose what contacts crush.
+  bool wears() const { return options_.wear && options_.plastic_limit.given(); }
+  /// Returns the cuts by the counted contacts that parted in the last commit.
+  std::span<const WearCut> cuts() const { return cuts_; }
+  /// Wears bodies off, on every rank by the cuts of all ranks, sorted by pair.
+  void wear(std::span<const WearCut> cuts);
+  const Wear& worn() const { return wear_; }
+  const Crushing& crushing() const { return crushing_; }
   /// Makes a pair whose beam broke eligible from the next build on; its overlap at that time counts
   /// as stress-free.
   void release(const BodyPair& pair) { list_.release(pair); }
@@ -125,9 +136,16 @@ class Contacts {
   /// Returns rows of ContactHistory::width numbers for the counted pairs with history.
   std::vector<double> history_rows() const { return history_.rows(list_.pairs()); }
   /// Empties the pair list and sets the histories that the next build takes over.
-  /// \param rows     of the pairs of all ranks, sorted by pair
-  /// \param changed  whether pairs had become eligible since the last build
-  void restore(std::span<const double> rows, bool changed);
+  /// \param rows      of the pairs of all ranks, sorted by pair
+  /// \param released  pairs whose beam broke, in the order of release()
+  /// \param known     number of these that the last build knew
+  void restore(std::span<const double> rows, std::span<const BodyPair> released, std::size_t known);
+  /// Sets what contacts have crushed and what bodies have lost.
+  /// \param crushed  rows of Crushing, of the pairs of all ranks
+  /// \param worn     rows of Wear
+  /// \param here     per body: 1 if this rank owns it
+  void restore_wear(std::span<const double> crushed, std::span<const double> worn,
+                    std::span<const std::uint8_t> here);
   /// The energy stored at the start, which a checkpoint keeps.
   StoredAtStart& stored_at_start() { return start_; }
 
@@ -150,6 +168,8 @@ class Contacts {
   void respond(const Law& law, const Touch& touch, const RelativeMotion* predicted,
                std::span<ContactWrench> wrenches);
   void commit(const ActiveContact& active, std::span<const MovingPose> bodies);
+  void find_crushed();
+  WearCut cut_of(const Crush& crush);
 
   Solids solids_;
   ContactOptions options_;
@@ -161,6 +181,10 @@ class Contacts {
   double last_dt_ = 0;          ///< length of the last step [s]
   ActiveContacts active_;
   ContactHistory history_;
+  Crushing crushing_;
+  Wear wear_;
+  CapFinder caps_;
+  std::vector<WearCut> cuts_;  ///< of the last commit
   ContactPower later_power_;
   StoredAtStart start_;
   ContactEvents events_;

@@ -24,6 +24,12 @@ bool Eligibility::release(BodyPair pair) {
 void Eligibility::update(const Solids& solids) {
   const std::int32_t bodies = solids.bodies();
   const auto n = static_cast<std::size_t>(bodies);
+  fresh_.assign(released_.begin() + static_cast<std::ptrdiff_t>(known()), released_.end());
+  broken_ = released_;
+  std::sort(fresh_.begin(), fresh_.end());
+  std::sort(broken_.begin(), broken_.end());
+  piece_before_ = piece_;
+  on_surface_before_ = on_surface_;
   std::vector<std::int32_t> beams(n, 0);
   UnionFind pieces(n);
   for (const auto& [a, b] : joined_) {
@@ -45,6 +51,16 @@ bool Eligibility::may_touch(std::int32_t a, std::int32_t b) const {
   if (item(piece_, a) != item(piece_, b)) return true;
   return on_surface(a) && on_surface(b) &&
          !std::binary_search(joined_.begin(), joined_.end(), BodyPair{a, b});
+}
+
+bool Eligibility::became_eligible(std::int32_t a, std::int32_t b) const {
+  if (piece_before_.empty() || item(piece_before_, a) != item(piece_before_, b)) return false;
+  return item(on_surface_before_, a) == 0 || item(on_surface_before_, b) == 0 ||
+         std::binary_search(fresh_.begin(), fresh_.end(), BodyPair{a, b});
+}
+
+bool Eligibility::beam_broke(const BodyPair& pair) const {
+  return std::binary_search(broken_.begin(), broken_.end(), pair);
 }
 
 }  // namespace floe

@@ -26,16 +26,24 @@ class Eligibility {
   void update(const Solids& solids);
 
   bool may_touch(std::int32_t a, std::int32_t b) const;
+  /// Whether a pair that may touch became eligible by the last update(): before it might not.
+  bool became_eligible(std::int32_t a, std::int32_t b) const;
+  /// Whether a beam between two bodies, the smaller index first, broke before the last update().
+  bool beam_broke(const BodyPair& pair) const;
   bool on_surface(std::int32_t body) const { return item(on_surface_, body) != 0; }
   /// Returns the number of pieces as of the last update().
   std::int32_t pieces() const { return pieces_; }
   /// Returns the pairs whose beam broke, in the order of release().
   const std::vector<BodyPair>& released() const { return released_; }
+  /// Returns the number of these that the last update() knew.
+  std::size_t known() const { return broken_.size(); }
 
  private:
   std::vector<BodyPair> joined_, released_;
-  std::vector<std::int32_t> piece_;       ///< per body: the smallest body of its piece
-  std::vector<std::uint8_t> on_surface_;  ///< per body
+  std::vector<BodyPair> broken_;  ///< released before the last update, sorted
+  std::vector<BodyPair> fresh_;   ///< those of them that the update before did not know, sorted
+  std::vector<std::int32_t> piece_, piece_before_;  ///< per body: the smallest body of its piece
+  std::vector<std::uint8_t> on_surface_, on_surface_before_;  ///< per body
   std::int32_t pieces_ = 0;
 };
 

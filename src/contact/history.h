@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/pair.h"
@@ -24,8 +25,10 @@ class ContactHistory {
   class Cursor {
    public:
     explicit Cursor(const ContactHistory& history) : next_(history.entries_) {}
+    explicit Cursor(std::span<const Entry> entries) : next_(entries) {}
     /// Returns the history of a pair; null: the pair has none.
     const PairHistory* of(std::int32_t pair) {
+      while (!next_.empty() && next_.front().pair < pair) next_ = next_.subspan(1);
       if (next_.empty() || next_.front().pair != pair) return nullptr;
       const PairHistory* memory = &next_.front().memory;
       next_ = next_.subspan(1);
@@ -40,7 +43,13 @@ class ContactHistory {
   /// Returns the last `count` entries, or all if there are fewer.
   std::span<const Entry> last(std::size_t count) const;
 
-  void clear() { entries_.clear(); }
+  /// Begins a commit.
+  void start() {
+    std::swap(entries_, next_);
+    entries_.clear();
+  }
+  /// Finds the histories before the commit that was begun last.
+  Cursor before() const { return Cursor(next_); }
   void add(const Entry& entry) { entries_.push_back(entry); }
   /// Assigns the histories to the pairs of a new list; pairs with history are not newly eligible.
   void take_over(std::span<Pair> pairs);
@@ -56,7 +65,7 @@ class ContactHistory {
 
  private:
   std::vector<Entry> entries_;
-  std::vector<Entry> next_;  ///< work space
+  std::vector<Entry> next_;  ///< work space; during a commit the histories before it
 };
 
 }  // namespace floe

@@ -62,13 +62,20 @@ bool NarrowPhase::has_gap(const Solids& solids, Pair& pair, const Placed& a, con
   return true;
 }
 
-PairOverlap NarrowPhase::overlap(const Solids& solids, const Pair& pair, const Placed& a,
-                                 const Placed& b) {
+PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, const Pair& pair,
+                                 const Placed& a, const Placed& b) {
   const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
                            b.axes.to_local(a.axes.e3)};
-  place(solids.vertices(pair.a), turn, b.axes.to_local(a.x - b.x), vertices_a_);
+  const Vec3<double> x = b.axes.to_local(a.x - b.x);
+  place(solids.vertices(pair.a), turn, x, vertices_a_);
   const std::span<const HalfSpace> planes = solids.planes(pair.b);
-  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_);
+  worn_.clear();
+  for (const HalfSpace& left : wear.of(pair.a)) {
+    const Vec3<double> normal = turn.to_world(left.normal);
+    worn_.push_back({normal, left.offset + dot(normal, x)});
+  }
+  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_,
+                               {.a = worn_, .b = wear.of(pair.b)});
   const double radius = solids.radius(pair.a);
   if (o.volume <= rounding_volume * radius * radius * radius) return {};
   const double depth = planes[0].offset - dot(planes[0].normal, o.centroid);

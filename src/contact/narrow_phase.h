@@ -7,6 +7,7 @@
 #include "contact/pair.h"
 #include "contact/places.h"
 #include "contact/solids.h"
+#include "contact/wear.h"
 #include "geometry/overlap.h"
 
 namespace floe {
@@ -43,8 +44,9 @@ class NarrowPhase {
     return a.travelled + b.travelled < pair.safe || has_gap(solids, pair, a, b);
   }
 
-  /// Returns the overlap of a pair.
-  PairOverlap overlap(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b);
+  /// Returns the overlap of what wear has left of a pair.
+  PairOverlap overlap(const Solids& solids, const Wear& wear, const Pair& pair, const Placed& a,
+                      const Placed& b);
 
  private:
   bool has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b);
@@ -52,6 +54,7 @@ class NarrowPhase {
   bool with_patch_;
   Clipper clipper_;
   std::vector<Vec3<double>> vertices_a_, vertices_b_;  ///< work space: placed vertices
+  std::vector<HalfSpace> worn_;                        ///< work space: placed planes
 };
 
 }  // namespace floe

@@ -30,6 +30,7 @@ struct Pair {
   std::int32_t slot_a = -1, slot_b = -1;  ///< slots of the bodies; -1 for an obstacle
   bool counted = false;         ///< this rank owns A, and so counts the energies of the pair
   bool newly_eligible = false;  ///< the first overlap of the pair counts as stress-free
+  bool broken = false;          ///< a beam between A and B broke: they have new faces
   bool offloaded = false;       ///< another rank computes the overlap of the pair
   Vec3<double> axis{};          ///< of the last gap, a unit vector from B to A
   double safe = 0;  ///< the pair has a gap while the travels of A and B add up to less [m]

@@ -28,7 +28,7 @@ PairList::PairList(const Solids& solids, std::vector<BodyPair> joined, bool stre
 void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const Pose> poses,
                      std::span<const std::uint8_t> here, double time) {
   if (changed_) eligibility_.update(solids);
-  newly_eligible_ = stress_free_ || (changed_ && !first_);
+  newly_eligible_ = stress_free_ || changed_;
   Search search{.solids = solids, .narrow = narrow, .bodies = {}, .here = here, .time = time};
   search.bodies.reserve(poses.size());
   for (const Pose& p : poses) search.bodies.push_back({.x = p.x, .axes = triad(p.q)});
@@ -39,7 +39,7 @@ void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const 
             [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
   taken_on_.clear();
   find_involved();
-  changed_ = first_ = false;
+  changed_ = false;
 }
 
 void PairList::list_bodies(const Search& search) {
@@ -86,7 +86,12 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
   Pair pair{.a = bodies[0],
             .b = bodies[1],
             .counted = search.is_here(bodies[0]),
-            .newly_eligible = newly_eligible_};
+            .newly_eligible = stress_free_};
+  if (!is_obstacle(pair.b)) {
+    pair.newly_eligible =
+        stress_free_ || (changed_ && eligibility_.became_eligible(pair.a, pair.b));
+    pair.broken = eligibility_.beam_broke(bodies);
+  }
   const Vec3<double> apart = a.x - b.x;
   const double distance = length(apart);
   pair.axis = distance > 0 ? (1 / distance) * apart : Vec3<double>{0, 0, 1};
@@ -138,10 +143,13 @@ void PairList::end_step() {
   newly_eligible_ = stress_free_ = false;
 }
 
-void PairList::restore(bool changed) {
+void PairList::restore(const Solids& solids, std::span<const BodyPair> released,
+                       std::size_t known) {
+  for (const BodyPair& pair : released.first(known)) eligibility_.release(pair);
+  eligibility_.update(solids);
+  for (const BodyPair& pair : released.subspan(known)) eligibility_.release(pair);
   pairs_.clear();
   changed_ = true;
-  first_ = !changed;
   stress_free_ = false;
 }
 

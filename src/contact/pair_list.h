@@ -48,8 +48,9 @@ class PairList {
   /// Ends a step: pairs that were newly eligible have their first overlap now.
   void end_step();
   /// Empties the list, for the build after a restart.
-  /// \param changed  whether pairs had become eligible since the last build
-  void restore(bool changed);
+  /// \param released  pairs whose beam broke, in the order of release()
+  /// \param known     number of these that the last build knew
+  void restore(const Solids& solids, std::span<const BodyPair> released, std::size_t known);
 
   std::size_t size() const { return pairs_.size(); }
   std::span<Pair> pairs() { return pairs_; }
@@ -72,7 +73,7 @@ class PairList {
   std::vector<Pair> pairs_, taken_on_;
   std::vector<std::int32_t> involved_;
   double reach_ = 0;  ///< largest gap of a listed pair [m]
-  bool changed_ = true, first_ = true;
+  bool changed_ = true;
   bool stress_free_;             ///< overlaps before the end of the step are stress-free
   bool newly_eligible_ = false;  ///< listed pairs may be newly eligible
 };

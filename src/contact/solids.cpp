@@ -81,9 +81,11 @@ void Solids::add(std::int32_t body, double mass) {
   bodies_.back().width = least_width(vertices(body), planes(body));
 }
 
-bool Solids::has_friction(double between_bodies) const {
-  return between_bodies > 0 || std::any_of(obstacles_.begin(), obstacles_.end(),
-                                           [](const Obstacle& o) { return o.friction > 0; });
+bool Solids::has_friction(const ContactOptions& options) const {
+  const auto rubs = [](const auto& of) {
+    return of.friction > 0 || of.friction_wet.value_or(0) > 0;
+  };
+  return rubs(options) || std::any_of(obstacles_.begin(), obstacles_.end(), rubs);
 }
 
 double Solids::mean_radius() const {

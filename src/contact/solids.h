@@ -10,6 +10,7 @@
 #include "contact_laws/mobility.h"
 #include "floe/base/item.h"
 #include "floe/contact/obstacle.h"
+#include "floe/contact_laws/contact_options.h"
 #include "floe/geometry/half_space.h"
 #include "floe/geometry/polyhedron.h"
 
@@ -55,8 +56,8 @@ class Solids {
   InverseInertia inverse_inertia(std::int32_t index) const {
     return is_obstacle(index) ? InverseInertia{} : item(bodies_, index).inverse;
   }
-  /// Whether any pair rubs: bodies at the coefficient `between_bodies`, or on an obstacle.
-  bool has_friction(double between_bodies) const;
+  /// Whether any pair rubs.
+  bool has_friction(const ContactOptions& options) const;
   /// Returns the distance of the farthest vertex from the centroid of a body or from the origin of
   /// the frame of an obstacle [m].
   double radius(std::int32_t index) const {

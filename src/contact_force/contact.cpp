@@ -33,10 +33,10 @@ std::vector<std::uint8_t> owned_bodies(const Part& part) {
   return here;
 }
 
-/// Returns the rows of the histories of all ranks in list order, independent of the ranks.
-/// Collective.
+/// Returns rows, each of which begins with A and B, of all ranks in list order, independent of the
+/// ranks. Collective.
+template <std::size_t width>
 std::vector<double> rows_of_all(const std::vector<double>& mine, MPI_Comm comm) {
-  constexpr std::size_t width = ContactHistory::width;
   std::vector<double> all = all_gathered(mine, comm);
   std::vector<std::array<double, width>> in_order(all.size() / width);
   for (std::size_t k = 0; k < in_order.size(); ++k)
@@ -52,6 +52,14 @@ std::vector<double> as_numbers(const std::vector<BodyPair>& pairs) {
   for (const auto& [a, b] : pairs)
     numbers.insert(numbers.end(), {static_cast<double>(a), static_cast<double>(b)});
   return numbers;
+}
+
+std::vector<BodyPair> as_pairs(const std::vector<double>& numbers) {
+  std::vector<BodyPair> pairs;
+  for (std::size_t k = 0; k + 1 < numbers.size(); k += 2)
+    pairs.push_back(
+        {static_cast<std::int32_t>(numbers[k]), static_cast<std::int32_t>(numbers[k + 1])});
+  return pairs;
 }
 
 class DistributedContact final : public Contact,
@@ -117,6 +125,10 @@ class DistributedContact final : public Contact,
     if (!possible_) return std::numeric_limits<double>::infinity();
     return std::numbers::pi / (steps_per_touch_ * std::sqrt(rates_.touch));
   }
+  std::string resolved_motion() const override {
+    return "a touch by the largest face of body " + std::to_string(rates_.touching) + " in " +
+           std::to_string(steps_per_touch_) + " steps";
+  }
   const std::string& overlap_at_start() const override { return overlap_at_start_; }
   Limit step_limit(const State<Spatial>& state) const override {
     return travel_limit(contacts_.solids(), part_, state);
@@ -143,6 +155,7 @@ class DistributedContact final : public Contact,
   void commit(const State<Spatial>& state, double dt) override {
     halo_.gather(state, bodies_);
     contacts_.commit(bodies_, state.velocity_time);
+    if (contacts_.wears()) wear_bodies();
     expiry_.after_step(state, dt);
     dt_ = dt;
     obstacle_forces_.take(contacts_, dt, part_.comm);
@@ -187,9 +200,10 @@ class DistributedContact final : public Contact,
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
   void build(const State<Spatial>& state);
+  void wear_bodies();
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
-  void restore(const std::vector<double>& rows, const std::vector<double>& released, bool changed,
-               const PairListExpiry& expiry);
+  void restore(const std::vector<double>& rows, std::span<const BodyPair> released,
+               std::size_t known, const PairListExpiry& expiry);
 
   const Part& part_;
   Contacts contacts_;
@@ -204,7 +218,7 @@ class DistributedContact final : public Contact,
   std::vector<ContactWrench> mine_;               ///< by slot
   std::vector<Acceleration> accelerations_;  ///< by slot, by all forces but dashpots of contacts
   ContactRates rates_;
-  double steps_per_touch_;
+  int steps_per_touch_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
   /// would keep the step short), and once an obstacle is listed or bodies of the one piece overlap.
   bool possible_;
@@ -228,6 +242,26 @@ void DistributedContact::build(const State<Spatial>& state) {
   mine_.resize(bodies_.size());
   accelerations_.resize(bodies_.size());
   expiry_.start(state, part_.owned);
+}
+
+/// Wears bodies off by what contacts that parted in this step have crushed. Collective.
+void DistributedContact::wear_bodies() {
+  const std::span<const WearCut> mine = contacts_.cuts();
+  if (size(part_.comm) == 1) {
+    contacts_.wear(mine);
+    return;
+  }
+  if (!on_any_rank(!mine.empty(), part_.comm)) return;
+  std::vector<double> numbers;
+  for (const WearCut& cut : mine) {
+    const auto row = cut.as_numbers();
+    numbers.insert(numbers.end(), row.begin(), row.end());
+  }
+  const std::vector<double> rows = rows_of_all<WearCut::numbers>(numbers, part_.comm);
+  std::vector<WearCut> all;
+  for (std::size_t k = 0; k < rows.size(); k += WearCut::numbers)
+    all.push_back(WearCut::from(std::span(rows).subspan(k).first<WearCut::numbers>()));
+  contacts_.wear(all);
 }
 
 /// Evaluates the contacts with their dashpots, which act on the velocities to which all other
@@ -265,37 +299,39 @@ void DistributedContact::persist(Archive& archive) {
   archive.common("start_is_known", start.is_known);
   archive.common("dt", dt_);
   obstacle_forces_.persist_time(archive);
-  std::vector<double> rows, released;
+  std::vector<double> rows, released, crushed, worn;
   if (!archive.loading()) {
-    rows = rows_of_all(contacts_.history_rows(), part_.comm);
+    rows = rows_of_all<ContactHistory::width>(contacts_.history_rows(), part_.comm);
+    crushed = rows_of_all<Crush::numbers>(contacts_.crushing().rows(), part_.comm);
+    worn = contacts_.worn().rows();
     released = as_numbers(contacts_.list().eligibility().released());
   }
-  bool changed = contacts_.list().changed();
-  archive.common("changed", changed);
   archive.common("possible", possible_);
   PairListExpiry expiry = expiry_;
   if (!possible_) expiry.persist(archive, part_);  // the list decides when contacts are possible
   archive.common("pairs", rows);
+  archive.common("crushed", crushed);
+  archive.common("worn", worn);
+  if (archive.loading()) contacts_.restore_wear(crushed, worn, here_);
   archive.common("released", released);
+  auto known = static_cast<std::int64_t>(contacts_.list().eligibility().known());
+  archive.common("known", known);
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
-  if (archive.loading()) restore(rows, released, changed, expiry);
+  if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known), expiry);
 }
 
 /// Goes on from a checkpoint.
 /// \param rows      histories of the pairs of all ranks
-/// \param released  pairs whose beam broke, as numbers
-/// \param changed   whether pairs had become eligible since the last build
+/// \param released  pairs whose beam broke, in this order
+/// \param known     number of these that the last build knew
 /// \param expiry    of the list of the run, if contacts are not possible
 void DistributedContact::restore(const std::vector<double>& rows,
-                                 const std::vector<double>& released, bool changed,
+                                 std::span<const BodyPair> released, std::size_t known,
                                  const PairListExpiry& expiry) {
   overlap_told_ = true;  // the run has given this remark at its start
-  for (std::size_t k = 0; k + 1 < released.size(); k += 2)
-    contacts_.release(
-        {static_cast<std::int32_t>(released[k]), static_cast<std::int32_t>(released[k + 1])});
-  contacts_.restore(rows, changed);
+  contacts_.restore(rows, released, known);
   expiry_ = PairListExpiry(contacts_.solids());
-  if (possible_ || changed) return;
+  if (possible_ || known < released.size()) return;
   build(expiry.at_build(part_));  // the same list as before the restart
   expiry_ = expiry;
 }

@@ -17,7 +17,7 @@ namespace floe {
 struct PairConstants {
   double stiffness = 0;     ///< k_v = E_c/(L_a + L_b) [Pa/m]
   double area = 0;          ///< A_r [m^2]
-  double friction = 0;      ///< mu
+  double friction = 0;      ///< mu at the contact's place
   bool half_space = false;  ///< whether B is a half-space
 };
 

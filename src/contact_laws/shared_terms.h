@@ -12,12 +12,25 @@ namespace floe {
 
 /// Constants of the terms that laws share.
 struct SharedConstants {
-  double damping_ratio = 0;  ///< zeta of the viscous term
-  double plastic_limit = 0;  ///< sigma_p [Pa]
+  double damping_ratio = 0;    ///< zeta of the viscous term
+  PlasticLimit plastic_limit;  ///< sigma_p
 
   explicit SharedConstants(const ContactOptions& options)
       : damping_ratio(options.damping_ratio), plastic_limit(options.plastic_limit) {}
 };
+
+/// Returns sigma_p of a contact [Pa].
+/// \param area      of the contact [m^2]
+/// \param approach  speed of approach [m/s]
+inline double plastic_pressure(const PlasticLimit& limit, double area, double approach) {
+  double pressure = limit.pressure;
+  if (limit.exponent != 0)
+    pressure = std::clamp(pressure * std::pow(area / limit.area, -limit.exponent), limit.least,
+                          limit.most);
+  if (limit.fast != 1 && approach > 0)
+    pressure *= limit.fast + (1 - limit.fast) * std::exp(-approach / limit.speed);
+  return pressure;
+}
 
 /// The elastic force of a law, proportional to V - V_p.
 struct ElasticTerm {
@@ -133,12 +146,14 @@ inline Vec3<double> limited_couple(const ContactState& state, const Pressure& el
 /// \param memory  history of the pair
 inline ContactResponse elastic_response(const SharedConstants& constants, const ContactState& state,
                                         const ElasticTerm& term, const PairHistory& memory) {
-  const double yield = constants.plastic_limit * state.area, volume = state.overlap.volume;
+  const double approach = -dot(state.motion.velocity, state.normal);
+  const double yield = plastic_pressure(constants.plastic_limit, state.area, approach) * state.area;
+  const double volume = state.overlap.volume;
   PairHistory now = memory;
   if (term.rate * (volume - now.plastic) > yield) now.plastic = volume - yield / term.rate;
   const double pressed = state.elastic_volume(now.plastic);
   const Pressure elastic{.force = term.rate * pressed, .couple = pressed * term.couple};
-  const double touched = touched_for(state, -dot(state.motion.velocity, state.normal));
+  const double touched = touched_for(state, approach);
   const Pressure viscous = viscous_pressure(constants, state, term.root, touched);
   const double pressing = std::min(std::max(elastic.force + viscous.force, 0.0), yield);
 

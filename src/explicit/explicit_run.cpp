@@ -68,6 +68,20 @@ double ExplicitRun<Space>::automatic(double stable) const {
   return dt;
 }
 
+/// The motion for which `dt: auto` takes a shorter step than for stability; empty if none.
+template <class Space>
+std::string ExplicitRun<Space>::resolved_motion() const {
+  double least = explicit_options_.safety * last_stable_;
+  std::string motion;
+  for (const auto& force : this->model().forces()) {
+    const auto* role = force->roles().step;
+    if (role == nullptr || !(role->resolved_step() < least)) continue;
+    least = role->resolved_step();
+    motion = role->resolved_motion();
+  }
+  return motion;
+}
+
 /// Sum over the forces of their fastest rates [1/s], each the largest over ranks; 0 if no force
 /// gives one. Collective.
 template <class Space>
@@ -161,6 +175,7 @@ bool ExplicitRun<Space>::keep_step_stable() {
 
 template <class Space>
 void ExplicitRun<Space>::add_to(RunPlan& plan) const {
+  if (!(this->options().dt > 0)) plan.resolves = resolved_motion();
   if (!(seconds_an_evaluation_ > 0)) return;  // after a restart no search has been timed
   plan.seconds_a_step = evaluations_a_step() * (1 + moving) * seconds_an_evaluation_;
   plan.measured = std::to_string(evaluations_) + " evaluations of the forces";

@@ -48,6 +48,7 @@ class ExplicitRun : public DynamicRun<Space> {
   typename LimitsStep<Space>::Limit step_limit();
   double own_stiffness();
   double automatic(double stable) const;
+  std::string resolved_motion() const;
   double needed() const;
 
   const ExplicitOptions explicit_options_;

@@ -128,6 +128,8 @@ class LimitsStep {
   /// Longest step that resolves the motion by this force, the same on all ranks [s]. `time: dt:
   /// auto` takes no longer one; a given step may be longer. Default: none.
   virtual double resolved_step() const { return std::numeric_limits<double>::infinity(); }
+  /// The motion that this step resolves, for the plan of a run.
+  virtual std::string resolved_motion() const { return {}; }
 
  protected:
   ~LimitsStep() = default;

@@ -85,7 +85,7 @@ double concavity(const Shapes& shapes, std::int32_t body) {
 
 Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
                          std::span<const Vec3<double>> placed, std::span<const HalfSpace> planes,
-                         bool with_patch) {
+                         bool with_patch, const FurtherPlanes& further) {
   // Clip first by the plane that removes most of A, because the later cuts are then small.
   std::size_t first_plane = 0;
   double shallowest = -std::numeric_limits<double>::infinity();
@@ -103,6 +103,12 @@ Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
   if (!cut(planes[first_plane])) return {};
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (k != first_plane && !cut(planes[k])) return {};
+  }
+  for (const HalfSpace& plane : further.b) {
+    if (!cut(plane)) return {};
+  }
+  for (const HalfSpace& plane : further.a) {
+    if (!cut(plane, false)) return {};
   }
   Overlap found = integrals();
   const double area = length(found.area);
@@ -130,7 +136,8 @@ void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec
 }
 
 /// Clips by one half-space; returns false if the rest is empty.
-bool Clipper::cut(const HalfSpace& plane) {
+/// \param on_b  whether the plane is a face of B
+bool Clipper::cut(const HalfSpace& plane, bool on_b) {
   const std::size_t n = now_.points.size();
   if (distance_.size() < n) {
     distance_.resize(n);
@@ -157,7 +164,7 @@ bool Clipper::cut(const HalfSpace& plane) {
   }
   const auto kept = static_cast<std::int32_t>(inside);
   for (std::size_t f = 0; f < now_.faces.size(); ++f) clip_face(now_.faces[f], kept);
-  close_caps(kept);
+  close_caps(kept, on_b);
   std::swap(now_, next_);
   return true;
 }
@@ -212,7 +219,7 @@ void Clipper::clip_face(const Face& face, std::int32_t kept) {
   next_.faces.push({begin, static_cast<std::int32_t>(next_.corners.size()), face.on_b});
 }
 
-void Clipper::close_caps(std::int32_t kept) {
+void Clipper::close_caps(std::int32_t kept, bool on_b) {
   for (std::size_t start = 0; start < crossings_.size(); ++start) {
     if (crossings_[start].done) continue;
     const auto begin = static_cast<std::int32_t>(next_.corners.size());
@@ -226,7 +233,7 @@ void Clipper::close_caps(std::int32_t kept) {
     // A cap of two corners has no area. Without it the two faces beside it share that edge, so that
     // no edge ever has more than two faces.
     if (end - begin > 2) {
-      next_.faces.push({.begin = begin, .end = end, .on_b = true});
+      next_.faces.push({.begin = begin, .end = end, .on_b = on_b});
     } else {
       next_.corners.cut_back(static_cast<std::size_t>(begin));
     }

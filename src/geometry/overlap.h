@@ -60,6 +60,11 @@ void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<Hal
 /// its faces are plane.
 double concavity(const Shapes& shapes, std::int32_t body);
 
+/// Further planes that bound A and B.
+struct FurtherPlanes {
+  std::span<const HalfSpace> a, b;
+};
+
 /// Clips polyhedra. An object keeps its working memory, so that calls do not allocate once the
 /// memory has grown.
 ///
@@ -74,8 +79,10 @@ class Clipper {
   /// \param placed  vertices of body `body` of `shapes`, in B's frame [m]
   /// \param planes  B's half-spaces
   /// \param with_patch  whether to integrate over the facets on B for Overlap::patch
+  /// \param further     half-spaces that bound A and B too, in B's frame
   Overlap overlap(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed,
-                  std::span<const HalfSpace> planes, bool with_patch = false);
+                  std::span<const HalfSpace> planes, bool with_patch = false,
+                  const FurtherPlanes& further = {});
 
  private:
   struct Face {
@@ -116,13 +123,13 @@ class Clipper {
     }
   };
   void start(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed);
-  bool cut(const HalfSpace& plane);
+  bool cut(const HalfSpace& plane, bool on_b = true);
   void clip_face(const Face& face, std::int32_t kept);
-  void close_caps(std::int32_t kept);
+  void close_caps(std::int32_t kept, bool on_b);
   std::int32_t crossing(std::int32_t inside, std::int32_t outside);
   std::int32_t place(std::int32_t corner) const { return item(place_, item(now_.corners, corner)); }
   Overlap integrals() const;
-  Patch patch(const Vec3<double>& normal) const;
+  Patch patch(const Vec3<double>& n) const;
 
   Mesh now_, next_;
   std::vector<double> distance_;

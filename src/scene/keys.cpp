@@ -174,10 +174,32 @@ constexpr std::array table{
     OptionSpec{"contact: young", number, "(ice: young)", "Pa", ">= 1, <= 1e15",
                "E_c: an overlap V presses with E_c V/(L_a + L_b), L half the cube root of a body's "
                "volume; required with lattice_file"},
+    OptionSpec{"contact: young_broken", number, "(contact: young)", "Pa", ">= 1, <= 1e15",
+               "E_c of pairs whose beam broke: new faces may press with the ice's own modulus"},
     OptionSpec{"contact: friction", number, "0.1", "", ">= 0, <= 1e3",
                "Coulomb's coefficient between bodies"},
+    OptionSpec{"contact: friction_wet", number, "(contact: friction)", "", ">= 0, <= 1e3",
+               "Coulomb's coefficient between bodies where they touch below still water, z < 0"},
     OptionSpec{"contact: plastic_limit", number, "(none)", "Pa", ">= 1e-3, <= 1e15",
                "most normal force over the contact's area; what is crushed is remembered"},
+    OptionSpec{"contact: plastic_exponent", number, "0", "", ">= 0, <= 0.99",
+               "m: plastic_limit is that of the area plastic_area, that of an area A is "
+               "(A/plastic_area)^-m times as high"},
+    OptionSpec{"contact: plastic_area", number, "1", "m^2", ">= 1e-6, <= 1e6",
+               "with plastic_exponent: area for which plastic_limit holds"},
+    OptionSpec{"contact: plastic_least", number, "0", "Pa", ">= 0, <= 1e15",
+               "with plastic_exponent: least limit, of large areas"},
+    OptionSpec{"contact: plastic_most", number, "(none)", "Pa", ">= 1e-3, <= 1e15",
+               "with plastic_exponent: largest limit, of small areas"},
+    OptionSpec{"contact: plastic_fast", number, "1", "", ">= 1e-3, <= 1e3",
+               "part f of plastic_limit that is left when bodies approach fast: at the speed v it "
+               "is f + (1 - f) exp(-v/plastic_speed) times as high"},
+    OptionSpec{"contact: plastic_speed", number, "(required)", "m/s", ">= 1e-9, <= 1e6",
+               "with plastic_fast: speed v_r over which plastic_limit falls"},
+    OptionSpec{
+        "contact: wear", flag, "true", "", "",
+        "with plastic_limit: bodies lose what a contact has crushed when it parts; else they "
+        "heal"},
     OptionSpec{"contact: initial_overlap", choice, "press", "", "press | stress_free",
                "what overlaps at the start presses apart (refused above a tenth of the smaller "
                "one's size), or is taken as rest"},
@@ -189,6 +211,9 @@ constexpr std::array table{
                "halfspace | box | cone | cylinder | file", "what it is"},
     OptionSpec{"obstacle: NAME: friction", number, "(contact: friction)", "", ">= 0, <= 1e3",
                "Coulomb's coefficient against it"},
+    OptionSpec{"obstacle: NAME: friction_wet", number, "(friction)", "", ">= 0, <= 1e3",
+               "Coulomb's coefficient against it below still water, z < 0; without it and without "
+               "friction that of contact"},
     OptionSpec{"obstacle: NAME: velocity", numbers, "0 0 0", "m/s", ">= -1e6, <= 1e6",
                "of its motion; steady without ramp", 3},
     OptionSpec{"obstacle: NAME: angular_velocity", numbers, "0 0 0", "rad/s", ">= -1e6, <= 1e6",

@@ -66,6 +66,25 @@ ObstacleMotion read_motion(Options& options, const std::string& name, bool half_
   return motion;
 }
 
+void read_plastic_limit(Options& options, ContactOptions& contact) {
+  PlasticLimit& limit = contact.plastic_limit;
+  limit.pressure = options.number("contact: plastic_limit");
+  limit.exponent = options.number("contact: plastic_exponent");
+  // Where a key has no effect it is not read, and so it is refused.
+  if (limit.exponent != 0) {
+    limit.area = options.number("contact: plastic_area");
+    limit.least = options.number("contact: plastic_least");
+    if (options.given("contact: plastic_most"))
+      limit.most = options.number("contact: plastic_most");
+    if (limit.least > limit.most)
+      throw InputError("contact: plastic_least: " + text_of(limit.least) +
+                       " must be <= " + text_of(limit.most) + " [Pa], the plastic_most");
+  }
+  limit.fast = options.number("contact: plastic_fast");
+  if (limit.fast != 1) limit.speed = options.number("contact: plastic_speed");
+  contact.wear = options.flag("contact: wear");
+}
+
 }  // namespace
 
 void read_contact(Options& options, Scene& scene) {
@@ -74,15 +93,23 @@ void read_contact(Options& options, Scene& scene) {
   if (!scene.has_sheet && !options.given("contact: young"))
     throw InputError("contact: young: is required with lattice_file [Pa]");
   contact.young = options.number("contact: young", {}, scene.ice.young);
+  if (options.given("contact: young_broken"))
+    contact.young_broken = options.number("contact: young_broken");
   contact.friction = options.number("contact: friction");
-  if (options.given("contact: plastic_limit"))
-    contact.plastic_limit = options.number("contact: plastic_limit");
+  if (options.given("contact: friction_wet"))
+    contact.friction_wet = options.number("contact: friction_wet");
+  if (options.given("contact: plastic_limit")) read_plastic_limit(options, contact);
   contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
   contact.damping_ratio = damping_ratio_of(options.number("contact: restitution"));
   for (const std::string& name : options.names("obstacle")) {
     Obstacle obstacle = read_shape(options, name, scene.inputs);
     obstacle.name = name;
     obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
+    if (options.given("obstacle: NAME: friction_wet", name)) {
+      obstacle.friction_wet = options.number("obstacle: NAME: friction_wet", name);
+    } else if (!options.given("obstacle: NAME: friction", name)) {
+      obstacle.friction_wet = contact.friction_wet;
+    }
     obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
     scene.obstacles.push_back(std::move(obstacle));
   }

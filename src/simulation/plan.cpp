@@ -54,6 +54,7 @@ std::string steps_text(const Scene& scene, const RunPlan& plan) {
   if (plan.stable_dt > 0 && std::isfinite(plan.stable_dt))
     line += text(", %.3g of the stable step, limited by the ", plan.dt / plan.stable_dt) +
             plan.limited_by;
+  if (!plan.resolves.empty()) line += ", so short that it resolves " + plan.resolves;
   line += "; " + counted(plan.steps, step);
   if (plan.done > 0) line += ", " + count(plan.done) + " of them made";
   return line;

@@ -78,6 +78,23 @@ class Said(PlanTest):
                 self.assertLessEqual(abs(int(plan["rows"]) - rows), 2 + 0.1 * rows)
                 self.assertLess(abs(float(plan["size"]) * UNITS[plan["unit"]] - size), 0.3 * size)
 
+    def test_touch(self):
+        """The touch that dt: auto resolves is named; a given step resolves none."""
+        made = launch.run("make_lattice", "stack", "--count", "2", "stack.h5", cwd=self.folder)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        scene = """integrator: explicit
+forces: [gravity, contact]
+lattice_file: stack.h5
+contact: {young: 1e8, restitution: %s}
+obstacle: {names: [floor], floor: {shape: halfspace, point: [0, 0, 0], normal: [0, 0, 1]}}
+time: {end: 0.1}
+"""
+        for restitution, steps in ((0.5, 11), (0.3, 14)):
+            said = self.plan(scene % restitution)["step"]
+            self.assertRegex(said, "so short that it resolves a touch by the largest face of body "
+                                   rf"\d in {steps} steps;")
+        self.assertNotIn("resolves", self.plan(scene % 0.5, "-time_dt", "1e-4")["step"])
+
     def test_implicit(self):
         plan = self.plan(IMPLICIT, "-time_dt", "0.001", "-output_history", "0.002",
                          "-output_fields", "0.005")

@@ -32,6 +32,7 @@ EXPECTED = {
     "floe_in_waves.yaml": moving.check_floe_in_waves,
     "rubble_pile.yaml": contact.check_rubble_pile,
     "verify/stopping.yaml": contact.check_stopping,
+    "verify/local_pressure.yaml": contact.check_local_pressure,
     "break_strip.yaml": fracture.check_break_strip,
     "in_situ_cantilever.yaml": fracture.check_in_situ_cantilever,
     "edge_uplift.yaml": fracture.check_edge_uplift,

@@ -67,7 +67,7 @@ TEST(ContactLaw, PotentialGivesAPressureAndItsCouple) {
   expect_vector(c.couple, {0, 0.3 * pressure, -0.1 * pressure}, pressure);
   EXPECT_NEAR(law.stored.normal, 0.5 * 1e6 / 4 * 0.01 * 0.01, tolerance);
   // Crushed to p |S| = sigma_p |S|: V - V_p = sigma_p A_r/k_v.
-  law.options.plastic_limit = 1000;
+  law.options.plastic_limit.pressure = 1000;
   const ContactForce crushed = law(overlap_of(0.01, {0, -2, 0}));
   expect_vector(crushed.force(), {0, -2000, 0}, 2000);
   EXPECT_NEAR(crushed.memory.plastic, 0.01 - 1000 * 4 / 1e6, tolerance);
@@ -85,7 +85,7 @@ TEST(ContactLaw, ViscousTermResistsApproachAndNeverPulls) {
   law.motion.velocity = {7, 0, 100};
   EXPECT_EQ(law(o).force().z, 0);
   law.motion.velocity = {7, 0, -100};
-  law.options.plastic_limit = 6000;  // of both terms together
+  law.options.plastic_limit.pressure = 6000;  // of both terms together
   EXPECT_NEAR(law(o).force().z, 12000, tolerance * 1e4);
 }
 
@@ -139,7 +139,7 @@ TEST(ContactLaw, FrictionIsCutToTheCoefficientTimesTheNormalForce) {
   law.memory.springs.stiffness = 1;
   const Overlap o = overlap_of(0.01, {0, 0, 2});
   expect_vector(law(o).memory.springs.force, {3000, -4000, 0}, 5e3);
-  law.options.plastic_limit = 1000;  // of the normal force that acts
+  law.options.plastic_limit.pressure = 1000;  // of the normal force that acts
   expect_vector(law(o).memory.springs.force, {600, -800, 0}, 1e3);
   law.pair.friction = 0;
   expect_vector(law(o).memory.springs.force, {0, 0, 0});
@@ -230,6 +230,65 @@ TEST(ContactLaw, EffectiveMassIsThatOfBothBodiesAtThePoint) {
   EXPECT_NEAR(mobility.about({0, 1, 0}), 3 + 7, tolerance);
   EXPECT_NEAR(mobility.along({0.1, 0.2, -2}, {1, 0, 0}),
               0.75 + 3 * 4 + 5 * 0.04 + 7 * 4 + 13 * 0.04, tolerance);
+}
+
+/// ISO 19906: 7.4 A^-0.7 MPa up to 10 m^2, 1.48 MPa above.
+TEST(ContactLaw, PlasticLimitFallsWithTheArea) {
+  Law law;
+  law.pair.stiffness = 1e12;
+  PlasticLimit& limit = law.options.plastic_limit;
+  limit = {.pressure = 7.4e6, .exponent = 0.7, .least = 1.48e6, .most = 30e6};
+  for (const double area : {0.01, 0.3, 1.0, 2.0, 9.0, 20.0}) {
+    const double expected = area < 0.1 ? 30e6 : area < 9.5 ? 7.4e6 * std::pow(area, -0.7) : 1.48e6;
+    EXPECT_NEAR(law(overlap_of(0.01, {0, 0, area})).elastic, expected * area,
+                1e-9 * expected * area)
+        << area;
+  }
+  limit.area = 4;  // p0 holds for this area
+  EXPECT_NEAR(law(overlap_of(0.01, {0, 0, 4})).elastic, 7.4e6 * 4, 1);
+  EXPECT_NEAR(law(overlap_of(0.01, {0, 0, 8})).elastic, 7.4e6 * 8 / std::pow(2, 0.7), 1);
+}
+
+/// s(v) = s_inf + (s_0 - s_inf) exp(-v/v_r) of the speed of approach.
+TEST(ContactLaw, PlasticLimitFallsWithTheSpeedOfApproach) {
+  Law law;
+  law.pair.stiffness = 1e12;
+  law.options.plastic_limit = {.pressure = 2e6, .fast = 0.5, .speed = 0.05};
+  const auto force = [&](double approach) {
+    law.motion.velocity = {3, 0, -approach};
+    return law(overlap_of(0.01, {0, 0, 2})).elastic;
+  };
+  EXPECT_NEAR(force(0), 4e6, 1e-5);
+  EXPECT_NEAR(force(-0.1), 4e6, 1e-5);
+  EXPECT_NEAR(force(0.05), 2e6 * (1 + std::exp(-1)), 1e-5);
+  EXPECT_NEAR(force(0.1), 2e6 * (1 + std::exp(-2)), 1e-5);
+  EXPECT_NEAR(force(10), 2e6, 1e-5);
+}
+
+/// The energy of `overlap` on a half-space is the integral of k_v (V - V_p) over the depth: for
+/// V = b x^p from x_p to x, k_v b [(x^(p+1) - x_p^(p+1))/(p + 1) - x_p^p (x - x_p)]. It does not
+/// jump when crushing begins.
+TEST(ContactLaw, StoredEnergyIsTheWorkThatComesBack) {
+  constexpr double k = 1e6, b = 0.7, x = 0.02;
+  for (const int p : {1, 2, 3}) {
+    Overlap o = overlap_of(b * std::pow(x, p), {0, 0, p * b * std::pow(x, p - 1)});
+    ContactState state{.pair = PairConstants{.stiffness = k, .half_space = true},
+                       .overlap = o,
+                       .depth = x / (p + 1),
+                       .motion = RelativeMotion{},
+                       .predicted = nullptr,
+                       .mobility = Mobility{},
+                       .last = {},
+                       .area = length(o.area)};
+    for (const double share : {0.0, 1e-12, 0.3, 0.9, 1.0}) {
+      const double from = share * x;
+      const double expected = b * ((std::pow(x, p + 1) - std::pow(from, p + 1)) / (p + 1) -
+                                   std::pow(from, p) * (x - from));
+      EXPECT_NEAR(OverlapLaw::stored_volume(state, b * std::pow(from, p)), expected,
+                  1e-10 * b * std::pow(x, p + 1))
+          << p << " " << share;
+    }
+  }
 }
 
 TEST(ContactLaw, HistoryGoesThroughACheckpoint) {

@@ -7,6 +7,8 @@
 
 #include "contact_laws/laws.h"
 #include "contact_laws/restitution.h"
+#include "files/hdf5.h"
+#include "lattice/archive.h"
 #include "support/contact_scene.h"
 #include "support/record.h"
 #include "support/roles.h"
@@ -221,7 +223,7 @@ TEST(Contact, LedgerOfImpactsWithLosses) {
   Impacts impacts(ContactLaw::overlap);
   impacts.scene.contact.friction = 0.3;
   impacts.scene.contact.damping_ratio = 0.1;
-  impacts.scene.contact.plastic_limit = 2e5;
+  impacts.scene.contact.plastic_limit.pressure = 2e5;
   test::Dynamics d(impacts.scene, impacts.lattice);
   const double dt = start(d, 0.5);
   const double before = d.kinetic();
@@ -237,7 +239,7 @@ TEST(Contact, LedgerOfImpactsWithLosses) {
 
 /// A crushed block does not press again before it has sunk deeper than it was.
 TEST(Contact, CrushingIsRemembered) {
-  const OverlapLaw law(ContactOptions{.young = 1e7, .plastic_limit = 1e5});
+  const OverlapLaw law(ContactOptions{.young = 1e7, .plastic_limit = {.pressure = 1e5}});
   const PairConstants pair{.stiffness = 1e7, .area = 1, .friction = 0, .half_space = true};
   const Mobility mobility{.a = {.mass = 1.0 / 920}};
   PairHistory memory;
@@ -280,6 +282,70 @@ TEST(Contact, ThatIsBornWhenABeamBreaksHasNoEnergy) {
   EXPECT_EQ(force(), 0);
   state.record(1)[0] = -0.01;  // nearer than they were born
   EXPECT_NEAR(force(), -young * 0.01, 1e-6 * young);
+}
+
+/// A beam that breaks makes its own pair stress-free, and no pair that might touch before. The same
+/// holds where the run goes on from a checkpoint before the list is built anew.
+TEST(Contact, OfOtherPairsIsNotBornWhenABeamBreaks) {
+  Lattice lattice;
+  for (const double x : {0.0, 0.95, 5.0, 6.01}) test::append_block(lattice, {1, 1, 1}, {x, 0, 0});
+  lattice.beams.bodies = {{0, 1}};
+  const Part part = partition(lattice, PETSC_COMM_SELF);
+  const auto run = make_contact(part, lattice, {.young = young}, {});
+  State<Spatial> state(4);
+  const auto force = [&](Contact& contact, std::size_t body) {
+    Wrenches<Spatial> w(4);
+    contact.add(state, w);
+    return w.of(body)[0];
+  };
+  EXPECT_EQ(force(*run, 0), 0);
+  EXPECT_EQ(force(*run, 2), 0);
+  commit(*run, state, 1e-3);
+  const std::array<std::int32_t, 2> pair{0, 1};
+  run->roles().broken_pairs->release({&pair, 1});
+  const auto restarted = make_contact(part, lattice, {.young = young}, {});
+  for (const Transfer way : {Transfer::save, Transfer::load}) {
+    Hdf5File file =
+        way == Transfer::save ? Hdf5File::create("contact.h5") : Hdf5File::open("contact.h5");
+    Archive memory(part, &file, way);
+    (way == Transfer::save ? run : restarted)->roles().persists->persist(memory);
+    if (way == Transfer::save) file.close();
+  }
+  state.record(3)[0] = -0.02;  // this pair touches for the first time
+  for (Contact* contact : {run.get(), restarted.get()}) {
+    EXPECT_EQ(force(*contact, 0), 0);
+    EXPECT_NEAR(force(*contact, 2), -young * 0.01, 1e-6 * young);
+  }
+}
+
+/// New faces press with their own modulus; other pairs do not.
+TEST(Contact, OfNewFacesHasItsOwnModulus) {
+  Lattice lattice;
+  for (const double x : {0.0, 0.95, 5.0, 5.99}) test::append_block(lattice, {1, 1, 1}, {x, 0, 0});
+  lattice.beams.bodies = {{0, 1}};
+  const Part part = partition(lattice, PETSC_COMM_SELF);
+  const auto contact =
+      make_contact(part, lattice, {.young = young, .young_broken = 40 * young}, {});
+  State<Spatial> state(4);
+  const auto force = [&](std::size_t body) {
+    Wrenches<Spatial> w(4);
+    contact->add(state, w);
+    return w.of(body)[0];
+  };
+  EXPECT_EQ(force(0), 0);
+  const std::array<std::int32_t, 2> pair{0, 1};
+  contact->roles().broken_pairs->release({&pair, 1});
+  EXPECT_EQ(force(0), 0);
+  commit(*contact, state, 1e-3);
+  state.record(1)[0] = -0.001;
+  EXPECT_NEAR(force(0), -40 * young * 0.001, 1e-6 * young);
+  EXPECT_NEAR(force(2), -young * 0.01, 1e-6 * young);
+  // The stable step allows for them.
+  const auto softer = make_contact(part, lattice, {.young = young}, {});
+  EXPECT_NEAR(contact->roles().step->stiffness_bound(0),
+              40 * softer->roles().step->stiffness_bound(0), 1);
+  EXPECT_NEAR(softer->roles().step->resolved_step(),
+              std::sqrt(40) * contact->roles().step->resolved_step(), 1e-9);
 }
 
 /// Weights that stand beside a floor's point turn it: r x F.

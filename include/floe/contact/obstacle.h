@@ -2,6 +2,7 @@
 /// Rigid convex obstacles: half-spaces, boxes, cones, cylinders, polyhedra from a file.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct Obstacle {
   std::string name;
   Vec3<double> point{};  ///< origin of its frame at time 0 [m]
   ObstacleMotion motion;
-  double friction = 0;                 ///< mu against bodies
-  std::vector<HalfSpace> planes;       ///< of its faces, in its frame
-  std::vector<Vec3<double>> vertices;  ///< in its frame [m]; empty for a half-space
+  double friction = 0;                   ///< mu against bodies
+  std::optional<double> friction_wet{};  ///< mu against bodies below still water, if another
+  std::vector<HalfSpace> planes;         ///< of its faces, in its frame
+  std::vector<Vec3<double>> vertices;    ///< in its frame [m]; empty for a half-space
 
   /// Distance of the farthest vertex from the origin of the frame [m].
   double radius() const;

@@ -53,6 +53,7 @@ struct RunPlan {
   bool given = false;         ///< the user gave the step
   double stable_dt = 0;       ///< explicit: stable step [s]; else 0
   std::string limited_by;     ///< explicit: what limits the stable step
+  std::string resolves;       ///< explicit: the motion for which dt: auto takes a shorter step
   double steps = 0;           ///< number of steps of the whole run; 0: not known
   double done = 0;            ///< steps already made, if the run goes on from a checkpoint
   double seconds_a_step = 0;  ///< wall time of a step [s]; 0: not known

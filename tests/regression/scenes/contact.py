@@ -16,6 +16,18 @@ def check_stopping(test, run):
     test.assertAlmostEqual(output.summary["mean_force"]["floor"][2] / -1805.04, 1, delta=0.05)
 
 
+def check_local_pressure(test, run):
+    output = run()
+    for time, force in zip(output.history("time"), output.history("wedge_force_x")):
+        area = 8 * time
+        if area > 0.5:
+            pressure = max(7.4e6 * area**-0.7, 1.48e6)
+            test.assertAlmostEqual(force / (pressure * area), 1, delta=1e-6, msg=f"{area} m^2")
+    last = 8 * (1.5 - output.summary["dt"])  # of the last step that was made
+    test.assertAlmostEqual(output.summary["peak_force"]["wedge"][0] / (1.48e6 * last), 1,
+                           delta=1e-6)
+
+
 def check_floes_collide(test, run):
     output = run()
     row = last_row(output)
