@@ -66,8 +66,8 @@ void Contacts::damp(std::span<const Acceleration> accelerations,
         for (const Touch& touch : touches_) {
           const Pair& pair = list_.pair(touch.pair);
           const Placed a = later(places_.of_a(pair), pair.slot_a);
-          const Placed b =
-              is_obstacle(pair.b) ? places_.of_b(pair) : later(places_.of_b(pair), pair.slot_b);
+          const Placed b = is_obstacle(pair.b) ? places_.obstacle_now(solids_, pair.b)
+                                               : later(places_.of_b(pair), pair.slot_b);
           const RelativeMotion predicted = relative_motion(a, b, touch.met.overlap.centroid);
           respond(law, touch, &predicted, wrenches);
         }

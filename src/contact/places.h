@@ -74,6 +74,15 @@ class Places {
   Placed moving(std::int32_t slot, const MovingPose& later) const {
     return {item(bodies_, slot).x, {}, later.velocity, later.spin};
   }
+  /// Returns an obstacle at its place of the evaluation with its velocities at that time.
+  Placed obstacle_now(const Solids& solids, std::int32_t index) const {
+    Placed now = obstacles_[obstacle_number(index)];
+    const ObstacleMotion& motion = solids.obstacle(index).motion;
+    if (motion.at_rest()) return now;
+    now.velocity = motion.rate(time_);
+    now.spin = motion.spin(time_);
+    return now;
+  }
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }
 

@@ -159,7 +159,8 @@ TEST(MovingObstacle, LedgerClosesForEveryMotion) {
                               .ramp = {0.2}};
   paddle.scene.obstacles[0].motion = motion;
   test::Dynamics d(paddle.scene, paddle.lattice);
-  const double dt = start(d, 0.1), before = d.kinetic();
+  // The sum below errs by the jump of the dashpot at the touch times the step: 1.04e-4 at a tenth.
+  const double dt = start(d, 0.05), before = d.kinetic();
   double work = 0, twist = 0;
   while (d.state().time < 1) {
     const double t = d.state().time;
