@@ -13,10 +13,9 @@ namespace floe {
 /// \throws InputError if the lattice does not give the sides of the sections
 std::vector<Strength<double>> strengths(const Part& part, const FractureOptions& options);
 
-/// Strength of a local beam at a crack's tip: sigma_m = sqrt(2 E G_f/(2.6 l0)) of its elongation
+/// Strength of a local beam at a crack's tip: sigma_m = sqrt(2 E G_f/(2.45 l0)) of its elongation
 /// and bending in the plane, sigma_b = sqrt(6 E G_f/(4 l0)) of bending out of the plane, shear and
-/// torsion, none above that of its initiation (model.md, "Fracture"). \param whole  at initiation
-Strength<double> tip_strength(const Part& part, std::int32_t beam, const FractureOptions& options,
-                              const Strength<double>& whole);
+/// torsion (model.md, "Fracture").
+Strength<double> tip_strength(const Part& part, std::int32_t beam, const FractureOptions& options);
 
 }  // namespace floe
