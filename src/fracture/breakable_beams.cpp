@@ -440,8 +440,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     return at != all.end() && at->first == beam ? at->second : 0.0;
   }
   /// Poses of bodies of the whole lattice. Collective. \param bodies  sorted, alike on all ranks
-  std::vector<Pose> poses_of(const std::vector<std::int32_t>& bodies,
-                             const State<Spatial>& state) const {
+  std::vector<BodyPose> poses_of(const std::vector<std::int32_t>& bodies,
+                                 const State<Spatial>& state) const {
     constexpr std::size_t size = 7;
     std::vector<double> values(size * bodies.size(), 0.0);
     const auto owned = part_.global.begin() + part_.owned;
@@ -453,7 +453,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       std::copy_n(r + Spatial::rotation, 4, &values[size * k + 3]);
     }
     sum_over_ranks(std::span<double>(values), part_.comm);  // all but one are 0: no rounding
-    std::vector<Pose> poses;
+    std::vector<BodyPose> poses;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const double* v = &values[size * k];
       poses.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}});
@@ -486,7 +486,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     std::sort(bodies.begin(), bodies.end());
     bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    const std::vector<Pose> poses = poses_of(bodies, state);
+    const std::vector<BodyPose> poses = poses_of(bodies, state);
     const auto pose_of = [&](std::int32_t body) {
       return item(poses, std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
     };

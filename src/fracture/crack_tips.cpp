@@ -261,8 +261,8 @@ void CrackTips::append_bodies(std::span<const CrackBehind> cracks,
 }
 
 double CrackTips::opening(const CrackBehind& crack, double height, bool linear,
-                          const std::function<Pose(std::int32_t)>& pose_of) const {
-  const auto displaced = [linear](const Pose& p, const Point3& arm) {
+                          const std::function<BodyPose(std::int32_t)>& pose_of) const {
+  const auto displaced = [linear](const BodyPose& p, const Point3& arm) {
     const Vec3<double> v{p.q.x, p.q.y, p.q.z}, t = cross(v, arm);
     return p.u + (linear ? 2.0 * t : 2.0 * (p.q.w * t + cross(v, t)));
   };
@@ -271,7 +271,7 @@ double CrackTips::opening(const CrackBehind& crack, double height, bool linear,
   Point2 nearer = crack.tip;
   for (std::size_t k = 0; k < crack.size; ++k) {
     const CrackFacet& f = item(junctions_.facets, crack.facets[k]);
-    const Pose i = pose_of(f.bodies[0]), j = pose_of(f.bodies[1]);
+    const BodyPose i = pose_of(f.bodies[0]), j = pose_of(f.bodies[1]);
     // The facet is passed towards the tip; its bodies are to the left and to the right.
     const double tx = nearer[0] - f.middle.x, ty = nearer[1] - f.middle.y;
     const Point3 across = f.arm[0] - f.arm[1];

@@ -54,8 +54,8 @@ struct CrackBehind {
   Point2 tip;  ///< [m], at rest
 };
 
-/// Pose of a body: displacement [m] and rotation from rest.
-struct Pose {
+/// BodyPose of a body: displacement [m] and rotation from rest.
+struct BodyPose {
   Vec3<double> u;
   Quat<double> q;
 };
@@ -84,7 +84,7 @@ class CrackTips {
   /// \param linear   rotations are linearised
   /// \param pose_of  of a global body
   double opening(const CrackBehind& crack, double height, bool linear,
-                 const std::function<Pose(std::int32_t)>& pose_of) const;
+                 const std::function<BodyPose(std::int32_t)>& pose_of) const;
   /// Calls `visit` for each beam that shares a junction with a beam, itself included.
   void for_neighbours(std::int32_t beam, auto&& visit) const {
     visit(beam);

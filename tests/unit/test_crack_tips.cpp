@@ -136,7 +136,7 @@ struct CutSheet {
     cracks = tips->behind(*floe::tips(*tips, lattice.beams.size()).begin());
   }
   /// (pi/32) |c|^2 of a motion that depends on the place, x right of the cut or left of it.
-  double opening(const std::function<Pose(const Point3&)>& pose, double h = 1,
+  double opening(const std::function<BodyPose(const Point3&)>& pose, double h = 1,
                  bool linear = false) const {
     return tips->opening(cracks.front(), h, linear, [&](std::int32_t body) {
       return pose(item(lattice.bodies.position, body));
@@ -169,13 +169,13 @@ TEST(CrackTips, OpeningIsFittedByTheRootOfTheDistance) {
     // Bodies beside the cut: their motion at the height of the body, so r is not exact.
     const double fitted = sheet.opening([&](const Point3& x) {
       const double r = std::hypot(x.x - tip[0], x.y - tip[1]);
-      return Pose{(x.x > 0 ? 0.5 : -0.5) * std::sqrt(r) * c, {1, 0, 0, 0}};
+      return BodyPose{(x.x > 0 ? 0.5 : -0.5) * std::sqrt(r) * c, {1, 0, 0, 0}};
     });
     EXPECT_NEAR(fitted / (std::numbers::pi / 32 * 4e-8), 1, 0.15);
   }
   const Quat<double> turn = exp_rotation({0.3, -0.2, 0.7});
   EXPECT_LT(sheet.opening([&](const Point3& x) {
-    return Pose{rotate(turn, x) - x + Vec3<double>{3, 2, 1}, turn};
+    return BodyPose{rotate(turn, x) - x + Vec3<double>{3, 2, 1}, turn};
   }),
             1e-28);
 }
@@ -191,7 +191,7 @@ TEST(CrackTips, FacesThatBendApartOpenInTheMeanOverTheThickness) {
           const Vec3<double> half = (x.x > 0 ? 0.5 : -0.5) * psi;
           const Quat<double> q = linear ? Quat<double>{1, 0.5 * half.x, 0.5 * half.y, 0.5 * half.z}
                                         : exp_rotation(half);
-          return Pose{{0, 0, 0}, q};
+          return BodyPose{{0, 0, 0}, q};
         },
         h, linear);
   };
