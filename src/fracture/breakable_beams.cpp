@@ -435,6 +435,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     return all;
   }
+  /// Square of the opening that counts as much as a unit turn of the faces against each other, with
+  /// Poisson's ratio of the beam [m^2].
+  double bent_opening(std::int32_t m) const {
+    const double nu = item(part_.beams.young, m) / (2 * item(part_.beams.shear_modulus, m)) - 1,
+                 h = item(part_.beams.height, m);
+    return h * h / 12 * (3 + nu) / (1 + nu);
+  }
   static double overload_of(std::int32_t beam, const std::vector<TipOverload>& all) {
     const auto at = std::lower_bound(all.begin(), all.end(), TipOverload(beam, 0));
     return at != all.end() && at->first == beam ? at->second : 0.0;
@@ -469,12 +476,12 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     std::vector<double> rows;
     for (const auto& [s, m] : mine)
       rows.insert(rows.end(), {static_cast<double>(item(part_.global_beam, m)), s,
-                               item(part_.beams.young, m), item(part_.beams.height, m)});
+                               item(part_.beams.young, m), bent_opening(m)});
     rows = all_gathered(rows, part_.comm);
     if (rows.empty()) return {};
     struct Tip {
       std::int32_t beam;
-      double s, young, height;
+      double s, young, bent;
       std::vector<CrackBehind> cracks;
     };
     std::vector<Tip> beams;
@@ -496,7 +503,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       double most = 0;
       for (const CrackBehind& crack : tip.cracks) {
         const double released =
-            tip.young * tips_->opening(crack, tip.height, linear, pose_of) / options_.energy;
+            tip.young * tips_->opening(crack, tip.bent, linear, pose_of) / options_.energy;
         const double s_open = std::sqrt(released);
         most = std::max(most, s_open * std::min(s_open, tip.s));
       }

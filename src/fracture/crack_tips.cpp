@@ -260,7 +260,7 @@ void CrackTips::append_bodies(std::span<const CrackBehind> cracks,
   }
 }
 
-double CrackTips::opening(const CrackBehind& crack, double height, bool linear,
+double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
                           const std::function<BodyPose(std::int32_t)>& pose_of) const {
   const auto displaced = [linear](const BodyPose& p, const Point3& arm) {
     const Vec3<double> v{p.q.x, p.q.y, p.q.z}, t = cross(v, arm);
@@ -295,7 +295,7 @@ double CrackTips::opening(const CrackBehind& crack, double height, bool linear,
         nearer = item(junctions_.places, end);
     }
   }
-  const double square = dot(slides, slides) + height * height / 12 * dot(turns, turns);
+  const double square = dot(slides, slides) + bent * dot(turns, turns);
   return std::numbers::pi / 32 * square / (weight * weight);
 }
 

@@ -80,10 +80,10 @@ class CrackTips {
   /// (pi/32) |c|^2, times E the energy release rate that a crack's opening shows [m]: c is the fit
   /// of c sqrt(r) to the jumps over its facets, r their distance from the tip (model.md,
   /// "Fracture").
-  /// \param height   of the section [m]
+  /// \param bent     weight of the faces' turn against each other, h^2/12 (3 + nu)/(1 + nu) [m^2]
   /// \param linear   rotations are linearised
   /// \param pose_of  of a global body
-  double opening(const CrackBehind& crack, double height, bool linear,
+  double opening(const CrackBehind& crack, double bent, bool linear,
                  const std::function<BodyPose(std::int32_t)>& pose_of) const;
   /// Calls `visit` for each beam that shares a junction with a beam, itself included.
   void for_neighbours(std::int32_t beam, auto&& visit) const {

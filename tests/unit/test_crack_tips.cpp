@@ -136,9 +136,9 @@ struct CutSheet {
     cracks = tips->behind(*floe::tips(*tips, lattice.beams.size()).begin());
   }
   /// (pi/32) |c|^2 of a motion that depends on the place, x right of the cut or left of it.
-  double opening(const std::function<BodyPose(const Point3&)>& pose, double h = 1,
+  double opening(const std::function<BodyPose(const Point3&)>& pose, double bent = 1,
                  bool linear = false) const {
-    return tips->opening(cracks.front(), h, linear, [&](std::int32_t body) {
+    return tips->opening(cracks.front(), bent, linear, [&](std::int32_t body) {
       return pose(item(lattice.bodies.position, body));
     });
   }
@@ -180,29 +180,28 @@ TEST(CrackTips, OpeningIsFittedByTheRootOfTheDistance) {
             1e-28);
 }
 
-/// Faces that turn against each other by psi open by psi z: the mean of their squares over the
-/// thickness is h^2 psi^2/12. A turn about the vertical is no opening of this kind.
-TEST(CrackTips, FacesThatBendApartOpenInTheMeanOverTheThickness) {
+/// Faces that turn against each other count by the given weight. A turn about the vertical is none
+/// of theirs.
+TEST(CrackTips, FacesThatBendApartCountByTheirTurn) {
   const CutSheet sheet;
-  const auto turned = [&](const Vec3<double>& psi, double h, bool linear) {
+  const auto turned = [&](const Vec3<double>& psi, double bent, bool linear) {
     return sheet.opening(
         [&](const Point3& x) {
-          // About the facets' line x = 0: u = -psi x arm keeps the middles of the facets in place.
           const Vec3<double> half = (x.x > 0 ? 0.5 : -0.5) * psi;
           const Quat<double> q = linear ? Quat<double>{1, 0.5 * half.x, 0.5 * half.y, 0.5 * half.z}
                                         : exp_rotation(half);
           return BodyPose{{0, 0, 0}, q};
         },
-        h, linear);
+        bent, linear);
   };
-  const Vec3<double> bend{0, 1e-3, 0};
+  const Vec3<double> bend{0, 1e-3, 0}, yaw{0, 0, 1e-3};
   for (const bool linear : {false, true}) {
-    const double thin = turned(bend, 1, linear), thick = turned(bend, 3, linear),
-                 flat = turned({0, 0, 1e-3}, 1, linear), flat3 = turned({0, 0, 1e-3}, 3, linear);
-    const double grows = turned(bend, 2, linear) - thin;  // by (4 - 1) h^2/12
-    EXPECT_NEAR((thick - thin) / grows, 8.0 / 3.0, 1e-9);
-    EXPECT_GT(grows, 0);
-    EXPECT_EQ(flat, flat3);
+    const double faces = turned(bend, 1, linear) - turned(bend, 0, linear);
+    EXPECT_NEAR((turned(bend, 3, linear) - turned(bend, 0, linear)) / faces, 3, 1e-9);
+    // c = psi sum(w sqrt(r))/sum(w r), and facets lie between 0 and about 5 m from the tip
+    EXPECT_GT(faces, std::numbers::pi / 32 * 1e-6 / 5);
+    EXPECT_LT(faces, std::numbers::pi / 32 * 1e-6);
+    EXPECT_EQ(turned(yaw, 1, linear), turned(yaw, 3, linear));
   }
 }
 
