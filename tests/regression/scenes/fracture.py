@@ -89,6 +89,10 @@ def check_point_breakthrough(test, run):
 
 
 def check_notch(test, run):
+    tough = largest(run("-time_dt", "0.1"), "left_force_x")
+    sharp = run("-time_dt", "0.1", "-fracture_propagation", "energy")
+    test.assertTrue(0.25 < largest(sharp, "left_force_x") / tough < 0.45)  # 1/3.0 of three meshes
+    test.assertGreater(sharp.summary["broken_area_at_tips"], 10)
     output = run()
     test.assertEqual(output.summary["fragments"], 2)
     place = breaks(output, "place")
