@@ -113,6 +113,42 @@ void meet(const Lattice& lattice, std::vector<Corner> corners, Junctions& found,
   }
 }
 
+/// Adds the facets between bodies that meet at two places, one of them a junction at least.
+/// \param meetings  sorted by bodies
+void add_facets(const Lattice& lattice, const std::vector<Meeting>& meetings, Junctions& found) {
+  const auto beams = by_bodies(lattice.beams);
+  std::vector<std::pair<std::int32_t, std::int32_t>> at;  // junction, facet
+  for (std::size_t k = 0; k + 1 < meetings.size(); ++k) {
+    const Meeting &a = meetings[k], &b = meetings[k + 1];
+    if (a.bodies != b.bodies || (a.junction == Junctions::none && b.junction == Junctions::none))
+      continue;
+    const auto [i, j] = a.bodies;
+    const Point3 &xi = item(lattice.bodies.position, i), &xj = item(lattice.bodies.position, j);
+    const Point3 middle{0.5 * (a.place[0] + b.place[0]), 0.5 * (a.place[1] + b.place[1]),
+                        0.5 * (xi.z + xj.z)};
+    const auto beam = std::lower_bound(beams.begin(), beams.end(), std::pair(a.bodies, 0));
+    const bool joined = beam != beams.end() && beam->first == a.bodies;
+    const auto facet = static_cast<std::int32_t>(found.facets.size());
+    found.facets.push_back({.bodies = a.bodies,
+                            .beam = joined ? beam->second : Junctions::none,
+                            .junctions = {a.junction, b.junction},
+                            .middle = middle,
+                            .arm = {middle - xi, middle - xj},
+                            .width = std::hypot(b.place[0] - a.place[0], b.place[1] - a.place[1])});
+    if (joined) item(found.facet_of, beam->second) = facet;
+    for (const std::int32_t junction : {a.junction, b.junction}) {
+      if (junction != Junctions::none) at.emplace_back(junction, facet);
+    }
+  }
+  std::sort(at.begin(), at.end());
+  found.first.assign(found.places.size() + 1, 0);
+  for (const auto& [junction, facet] : at) {
+    found.facets_at.push_back(facet);
+    ++found.first[static_cast<std::size_t>(junction) + 1];
+  }
+  for (std::size_t k = 1; k < found.first.size(); ++k) found.first[k] += found.first[k - 1];
+}
+
 }  // namespace
 
 Junctions find_junctions(const Lattice& lattice) {
@@ -146,37 +182,7 @@ Junctions find_junctions(const Lattice& lattice) {
   std::stable_sort(meetings.begin(), meetings.end(),
                    [](const Meeting& a, const Meeting& b) { return a.bodies < b.bodies; });
 
-  const auto beams = by_bodies(lattice.beams);
-  std::vector<std::pair<std::int32_t, std::int32_t>> at;  // junction, facet
-  for (std::size_t k = 0; k + 1 < meetings.size(); ++k) {
-    const Meeting &a = meetings[k], &b = meetings[k + 1];
-    if (a.bodies != b.bodies || (a.junction == Junctions::none && b.junction == Junctions::none))
-      continue;
-    const auto [i, j] = a.bodies;
-    const Point3 &xi = item(lattice.bodies.position, i), &xj = item(lattice.bodies.position, j);
-    const Point3 middle{0.5 * (a.place[0] + b.place[0]), 0.5 * (a.place[1] + b.place[1]),
-                        0.5 * (xi.z + xj.z)};
-    const auto beam = std::lower_bound(beams.begin(), beams.end(), std::pair(a.bodies, 0));
-    const bool joined = beam != beams.end() && beam->first == a.bodies;
-    const auto facet = static_cast<std::int32_t>(found.facets.size());
-    found.facets.push_back({.bodies = a.bodies,
-                            .beam = joined ? beam->second : Junctions::none,
-                            .junctions = {a.junction, b.junction},
-                            .middle = middle,
-                            .arm = {middle - xi, middle - xj},
-                            .width = std::hypot(b.place[0] - a.place[0], b.place[1] - a.place[1])});
-    if (joined) item(found.facet_of, beam->second) = facet;
-    for (const std::int32_t junction : {a.junction, b.junction}) {
-      if (junction != Junctions::none) at.emplace_back(junction, facet);
-    }
-  }
-  std::sort(at.begin(), at.end());
-  found.first.assign(found.places.size() + 1, 0);
-  for (const auto& [junction, facet] : at) {
-    found.facets_at.push_back(facet);
-    ++found.first[static_cast<std::size_t>(junction) + 1];
-  }
-  for (std::size_t k = 1; k < found.first.size(); ++k) found.first[k] += found.first[k - 1];
+  add_facets(lattice, meetings, found);
   return found;
 }
 
