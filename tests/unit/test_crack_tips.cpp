@@ -215,6 +215,51 @@ TEST(CrackTips, ABlockCutOutHasNoCracksBehindItsTips) {
     EXPECT_TRUE(cracks.behind(m).empty());
 }
 
+/// Unit cubes in a rectangle, a beam per common face but those between rows 0 and 1 of the columns
+/// below `cut`; only what junctions are found from.
+Lattice squares(std::int32_t columns, std::int32_t rows, std::int32_t cut) {
+  Lattice lattice;
+  lattice.shapes.vertex_of = {0};
+  const auto join = [&](std::int32_t a, std::int32_t b) {
+    lattice.beams.bodies.push_back({a, b});
+    lattice.beams.length.push_back(1);
+  };
+  for (std::int32_t k = 0; k < rows * columns; ++k) {
+    const std::int32_t x = k % columns, y = k / columns;
+    lattice.bodies.position.push_back({double(x), double(y), 0});
+    lattice.bodies.orientation.push_back({1, 0, 0, 0});
+    for (const int v : {0, 1, 2, 3, 4, 5, 6, 7})
+      lattice.shapes.vertices.push_back({v % 2 - 0.5, v / 2 % 2 - 0.5, v / 4 - 0.5});
+    lattice.shapes.vertex_of.push_back(static_cast<std::int32_t>(lattice.shapes.vertices.size()));
+    lattice.shapes.face_of.push_back(0);  // no faces are looked at
+    if (x + 1 < columns) join(k, k + 1);
+    if (y + 1 < rows && !(y == 0 && x < cut)) join(k, k + columns);
+  }
+  return lattice;
+}
+
+/// Where cells are mirrored at a cut four facets meet: a straight cut has flanks and one tip.
+TEST(CrackTips, FourFacetsMayMeet) {
+  const Lattice lattice = squares(8, 3, 5);
+  const Junctions found = find_junctions(lattice);
+  ASSERT_EQ(found.size(), 7 * 2);
+  for (std::int32_t k = 0; k < found.size(); ++k) EXPECT_EQ(found.at(k).size(), 4U);
+  const CrackTips cracks(found);
+  const std::set<std::int32_t> at = tips(cracks, lattice.beams.size());
+  EXPECT_EQ(at.size(), 3U);  // ahead of the cut and to both sides of its end
+  for (const std::int32_t beam : at) {
+    const std::vector<CrackBehind> behind = cracks.behind(beam);
+    ASSERT_EQ(behind.size(), 1U);
+    EXPECT_EQ(behind[0].size, 5U);
+    EXPECT_EQ(behind[0].tip, (Point2{4.5, 0.5}));
+    // Faces that open by 2e-4 sqrt(r) along y, at middles r = 0.5, 1.5, ... from the tip
+    const double opening = cracks.opening(behind[0], 0, true, [](std::int32_t body) {
+      return BodyPose{{0, body < 8 ? 0 : 2e-4 * std::sqrt(4.5 - body % 8), 0}, {1, 0, 0, 0}};
+    });
+    EXPECT_NEAR(opening / (std::numbers::pi / 32 * 4e-8), 1, 1e-12);
+  }
+}
+
 TEST(CrackTips, ALatticeWithoutShapesIsRefused) {
   Lattice lattice = test::sheet(6, 6, 1);
   lattice.shapes = {};
