@@ -167,7 +167,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   }
 
   /// Makes the damage of the last evaluation (dynamics) or of advance() (statics) history.
-  void commit(const State<Spatial>&, double dt) override {
+  void commit(const State<Spatial>& state, double dt) override {
     if constexpr (damped) std::swap(viscous_, viscous_now_);
     for (const Growth& g : growing_) take(g);
     growing_.clear();
@@ -177,7 +177,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const auto [i, j] = item(part_.beams.bodies, m);
       released_.push_back({item(part_.global, i), item(part_.global, j)});
     }
-    if (tips_ && options_.dynamic) propagate();
+    if (tips_ && options_.dynamic) propagate(state);
     newly_broken_.clear();
     if (!options_.dynamic) {
       kept_ = cracks_;
@@ -275,19 +275,22 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   double overload(const State<Spatial>& state) const override {
     double most = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = criterion_of(strengths_, further_, b, state);
+      const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t m = b * lanes + lane;
         if (m < crack_of_.size() && crack_of_[m] == none) most = std::max(most, double(s2[lane]));
       }
     }
-    return std::sqrt(largest_over_ranks(most, part_.comm));
+    most = std::sqrt(largest_over_ranks(most, part_.comm));
+    for (const TipOverload& tip : overloads_at_tips(armed(state), state))
+      most = std::max(most, tip.second);
+    return most;
   }
 
   double nearness_to_change(const State<Spatial>& state, double growth) const override {
     double most = 0;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
+      const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t at = b * lanes + lane;
         if (at >= crack_of_.size()) continue;
@@ -297,30 +300,30 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         const double limit =
             c == nullptr ? 1 : c->kappa + growth * std::min(c->kappa, c->ultimate - 1);
         most = std::max(most, std::sqrt(s2[lane]) / limit);
-        if (is_tip(m)) most = std::max(most, std::sqrt(double(at_tips[lane])));
       }
     }
-    return largest_over_ranks(most, part_.comm);
+    most = largest_over_ranks(most, part_.comm);
+    for (const TipOverload& tip : overloads_at_tips(armed(state), state))
+      most = std::max(most, tip.second);
+    return most;
   }
 
   Advance advance(const State<Spatial>& state) override {
     constexpr double rounding = 1e-6;  // relative growth of s below this counts as none
     growing_.clear();
     RankedValue worst{0, -1};  // largest s/kappa of the beams that would break
+    const std::vector<TipOverload> at_tips = overloads_at_tips(armed(state), state);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
+      const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t at = b * lanes + lane;
         if (at >= crack_of_.size()) continue;
         const auto m = static_cast<std::int32_t>(at);
-        const double s = std::sqrt(s2[lane]);
-        if (is_tip(m)) {
-          const double s_tip = std::sqrt(at_tips[lane]);
-          if (s_tip > 1 + rounding && s_tip > (1 + rounding) * s) {  // else as elsewhere, by s
-            growing_.push_back(growth(m, s, state, true));
-            if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
-            continue;
-          }
+        const double s = std::sqrt(s2[lane]), s_tip = overload_of(part_.global_beam[at], at_tips);
+        if (s_tip > 1 + rounding && s_tip > s) {  // else as elsewhere, by s
+          growing_.push_back(growth(m, s, state, true));
+          if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
+          continue;
         }
         if (broken(m) || (s <= kappa(m) * (1 + rounding) && !crushes_damaged(m, state))) continue;
         growing_.push_back(growth(m, s, state));
@@ -435,12 +438,24 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   void set_strength(std::int32_t m) {
     const std::size_t b = static_cast<std::size_t>(m) / lanes,
                       lane = static_cast<std::size_t>(m) % lanes;
-    const Strength<double> initial = whole_[b].get(lane);
-    const bool tip = is_tip(m);
-    strengths_[b].set(lane, tip ? tip_strength(part_, m, options_, initial) : initial);
-    if (kind_ == Criterion::plain) return;
-    further_[b].set(lane, tip ? further_at_tip(strengths_[b].get(lane), initial, whole_further_)
-                              : whole_further_);
+    const Strength<double> whole = whole_[b].get(lane);
+    Strength<double> first = whole;
+    FurtherStrength<double> further = whole_further_;
+    if (is_tip(m) && cracks_early(m)) {
+      const Strength<double> tip = tip_strength(part_, m, options_);
+      const auto earlier = [](double& of, double at_tip) {
+        of = std::max(of, at_tip / armed_from);
+      };
+      earlier(first.axial, tip.axial), earlier(first.bending_y, tip.bending_y);
+      earlier(first.bending_z, tip.bending_z), earlier(first.shear, tip.shear);
+      earlier(first.torsion, tip.torsion);
+      double transverse = whole.shear * further.transverse;
+      earlier(transverse, tip.shear);
+      // Without friction s under pressure is at least that at initiation.
+      further = {transverse / first.shear, further.pressure, 0};
+    }
+    strengths_[b].set(lane, first);
+    if (kind_ != Criterion::plain) further_[b].set(lane, further);
   }
   void set_all_strengths() {
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) set_strength(m);
@@ -468,32 +483,135 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     item(doomed_, m) = 1;
     mark(static_cast<std::size_t>(m) / lanes);
   }
+  /// A beam at a tip and its overload s there.
+  using TipOverload = std::pair<std::int32_t, double>;  // global beam, s
+  /// A tip beam is looked at from this s_t on, however wide the crack is open.
+  static constexpr double armed_from = 0.5;
+
+  /// Whether a beam's strength at a tip can be below that of its initiation.
+  bool cracks_early(std::int32_t m) const {
+    const auto at = static_cast<std::size_t>(m);
+    const Strength<double> whole = whole_[at / lanes].get(at % lanes),
+                           tip = tip_strength(part_, m, options_);
+    return tip.axial > whole.axial || tip.bending_y > whole.bending_y;
+  }
+  /// s_t of a local beam by the strengths of tips, 0 if it is not at one.
+  double stress_at_tip(std::int32_t m, const State<Spatial>& state) const {
+    if (!is_tip(m) || !cracks_early(m)) return 0;
+    return std::sqrt(criterion(tip_strength(part_, m, options_),
+                               elastic_stress(constants(m), strains(m, state))));
+  }
+  /// Statics: tip beams of this rank with s_t > armed_from, and their s_t.
+  std::vector<std::pair<double, std::int32_t>> armed(const State<Spatial>& state) const {
+    std::vector<std::pair<double, std::int32_t>> all;
+    for (std::size_t b = 0; tips_ && b < blocks_.size(); ++b) {
+      const Lanes s2 = tip_criterion(b, state);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const auto m = static_cast<std::int32_t>(b * lanes + lane);
+        if (m >= part_.beams.size() || !(s2[lane] > 1)) continue;
+        if (const double s = stress_at_tip(m, state); s > armed_from) all.emplace_back(s, m);
+      }
+    }
+    return all;
+  }
+  /// Square of the opening that counts as much as a unit turn of the faces against each other, with
+  /// Poisson's ratio of the beam [m^2].
+  double bent_opening(std::int32_t m) const {
+    const double nu = item(part_.beams.young, m) / (2 * item(part_.beams.shear_modulus, m)) - 1,
+                 h = item(part_.beams.height, m);
+    return h * h / 12 * (3 + nu) / (1 + nu);
+  }
+  static double overload_of(std::int32_t beam, const std::vector<TipOverload>& all) {
+    const auto at = std::lower_bound(all.begin(), all.end(), TipOverload(beam, 0));
+    return at != all.end() && at->first == beam ? at->second : 0.0;
+  }
+  /// Poses of bodies of the whole lattice. Collective. \param bodies  sorted, alike on all ranks
+  std::vector<BodyPose> poses_of(const std::vector<std::int32_t>& bodies,
+                                 const State<Spatial>& state) const {
+    constexpr std::size_t size = 7;
+    std::vector<double> values(size * bodies.size(), 0.0);
+    const auto owned = part_.global.begin() + part_.owned;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const auto found = std::lower_bound(part_.global.begin(), owned, bodies[k]);
+      if (found == owned || *found != bodies[k]) continue;
+      const double* r = record(state, static_cast<std::int32_t>(found - part_.global.begin()));
+      std::copy_n(r, 3, &values[size * k]);
+      std::copy_n(r + Spatial::rotation, 4, &values[size * k + 3]);
+    }
+    sum_over_ranks(std::span<double>(values), part_.comm);  // all but one are 0: no rounding
+    std::vector<BodyPose> poses;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const double* v = &values[size * k];
+      poses.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}});
+    }
+    return poses;
+  }
+  /// Overloads of beams at tips, those of all ranks: s^2 = s_o min(s_o, s_t) with s_t by the beam's
+  /// stress and s_o^2 = G/G_f by the opening of the crack behind it, at either end of its facet.
+  /// Collective. \param mine  s_t and local beam. \return sorted by beam
+  std::vector<TipOverload> overloads_at_tips(
+      const std::vector<std::pair<double, std::int32_t>>& mine, const State<Spatial>& state) const {
+    if (!tips_) return {};
+    std::vector<double> rows;
+    for (const auto& [s, m] : mine)
+      rows.insert(rows.end(), {static_cast<double>(item(part_.global_beam, m)), s,
+                               item(part_.beams.young, m), bent_opening(m)});
+    rows = all_gathered(rows, part_.comm);
+    if (rows.empty()) return {};
+    struct Tip {
+      std::int32_t beam;
+      double s, young, bent;
+      std::vector<CrackBehind> cracks;
+    };
+    std::vector<Tip> beams;
+    std::vector<std::int32_t> bodies;
+    for (std::size_t k = 0; k + 4 <= rows.size(); k += 4) {
+      const auto beam = static_cast<std::int32_t>(rows[k]);
+      beams.push_back({beam, rows[k + 1], rows[k + 2], rows[k + 3], tips_->behind(beam)});
+      tips_->append_bodies(beams.back().cracks, bodies);
+    }
+    std::sort(bodies.begin(), bodies.end());
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    const std::vector<BodyPose> poses = poses_of(bodies, state);
+    const auto pose_of = [&](std::int32_t body) {
+      return item(poses, std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
+    };
+    constexpr bool linear = kinematics == Kinematics::linear;
+    std::vector<TipOverload> all;
+    for (const Tip& tip : beams) {
+      double most = 0;
+      for (const CrackBehind& crack : tip.cracks) {
+        const double released =
+            tip.young * tips_->opening(crack, tip.bent, linear, pose_of) / options_.energy;
+        const double s_open = std::sqrt(released);
+        most = std::max(most, s_open * std::min(s_open, tip.s));
+      }
+      if (most > 0) all.emplace_back(tip.beam, std::sqrt(most));
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+  }
   /// Dynamics: the breaks of a step become known to all ranks. Of the overloaded beams at tips
   /// those break that are at a tip when their turn comes, by falling s: they go in the next
   /// evaluation. Collective.
-  void propagate() {
+  void propagate(const State<Spatial>& state) {
     for (const std::int32_t m : all_doomed_) {
       if (const std::int32_t here = local_beam(m); here != none) item(doomed_, here) = 0;
     }
     all_doomed_.clear();
     if (!on_any_rank(!newly_broken_.empty() || !overloaded_.empty(), part_.comm)) return;
-    std::vector<double> mine;  // s, beam; a beam that broke has s = infinity
-    for (const std::int32_t m : newly_broken_)
-      mine.insert(mine.end(), {std::numeric_limits<double>::infinity(),
-                               static_cast<double>(item(part_.global_beam, m))});
-    for (const auto& [s, m] : overloaded_)
-      mine.insert(mine.end(), {s, static_cast<double>(item(part_.global_beam, m))});
-    const std::vector<double> all = all_gathered(mine, part_.comm);
-    std::vector<std::pair<double, std::int32_t>> turns;
-    for (std::size_t k = 0; k + 2 <= all.size(); k += 2)
-      turns.emplace_back(-all[k], static_cast<std::int32_t>(all[k + 1]));
-    std::sort(turns.begin(), turns.end());
-    turns.erase(std::unique(turns.begin(), turns.end()), turns.end());
-    for (const auto& [minus_s, beam] : turns) {
-      const bool gone = std::isinf(minus_s);
-      if (!gone && !tips_->is_tip(beam)) continue;
+    std::vector<std::int32_t> broken_here;
+    for (const std::int32_t m : newly_broken_) broken_here.push_back(item(part_.global_beam, m));
+    for (const std::int32_t beam : all_gathered(broken_here, part_.comm)) lose(beam);
+    std::vector<TipOverload> turns = overloads_at_tips(overloaded_, state);
+    std::sort(turns.begin(), turns.end(), [](const TipOverload& a, const TipOverload& b) {
+      return std::pair(-a.second, a.first) < std::pair(-b.second, b.first);
+    });
+    for (const auto& [beam, s] : turns) {
+      if (s <= 1 || !tips_->is_tip(beam)) continue;
       lose(beam);
-      if (!gone) doom(beam);
+      doom(beam);
     }
     lost_.clear();
   }
@@ -616,8 +734,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// this state; notes growths of damage (dynamics).
   [[gnu::noinline, gnu::cold, gnu::flatten]] void soften(std::size_t b,
                                                          const State<Spatial>& state) {
-    const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);
-    constexpr double rounding = 1e-9;  // of two s2 by equal strengths
+    const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);  // may be armed
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::size_t at = b * lanes + lane;
@@ -626,12 +743,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const Crack* c = crack(m);
       const double passed = kappa(m);
       const bool falls = tips_ && item(doomed_, m) != 0;
+      if (options_.dynamic && at_tips[lane] > 1 && !falls) {
+        if (const double s = stress_at_tip(m, state); s > armed_from)
+          overloaded_.emplace_back(s, m);
+      }
       if (options_.dynamic && falls && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state, true));
         c = &growing_.back().crack;
-      } else if (options_.dynamic && at_tips[lane] > 1 &&
-                 at_tips[lane] > (1 + rounding) * s2[lane] && is_tip(m)) {
-        overloaded_.emplace_back(std::sqrt(at_tips[lane]), m);
       } else if (options_.dynamic && !broken(m) &&
                  (s2[lane] > passed * passed || crushes_damaged(m, state))) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state));
@@ -756,7 +874,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   std::vector<std::int32_t> all_doomed_;  ///< the same of all ranks, global
   std::vector<std::int32_t> lost_,
       broken_before_;  ///< statics: global, since and before the commit
-  /// Dynamics: s and local beam of tip beams that the last evaluation overloaded.
+  /// Dynamics: s_t and local beam of tip beams in the last evaluation, from armed_from on.
   std::vector<std::pair<double, std::int32_t>> overloaded_;
   double dt_ = 0;  ///< length of the last step [s]
 };

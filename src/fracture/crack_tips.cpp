@@ -61,11 +61,100 @@ std::vector<std::pair<std::array<std::int32_t, 2>, std::int32_t>> by_bodies(cons
   return all;
 }
 
+/// A place where bodies meet, with the pairs of bodies that are neighbours around it.
+struct Meeting {
+  std::array<std::int32_t, 2> bodies;
+  Point2 place;
+  std::int32_t junction;  ///< or none
+};
+
+/// Groups of corners at one place. \return place, corner, sorted
+std::vector<std::pair<std::int32_t, std::int32_t>> by_places(const std::vector<Corner>& corners,
+                                                             double tolerance) {
+  UnionFind places(corners.size());
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    for (std::size_t j = k + 1;
+         j < corners.size() && corners[j].place[0] - corners[k].place[0] <= tolerance; ++j) {
+      if (std::abs(corners[j].place[1] - corners[k].place[1]) <= tolerance)
+        places.unite(static_cast<std::int32_t>(k), static_cast<std::int32_t>(j));
+    }
+  }
+  std::vector<std::pair<std::int32_t, std::int32_t>> members;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    members.emplace_back(places.find(static_cast<std::int32_t>(k)), static_cast<std::int32_t>(k));
+  std::sort(members.begin(), members.end());
+  return members;
+}
+
+/// Notes the neighbours around one place; a place that bodies surround becomes a junction.
+/// \param corners  of the bodies at this place
+void meet(const Lattice& lattice, std::vector<Corner> corners, Junctions& found,
+          std::vector<Meeting>& meetings) {
+  constexpr double rounding = 1e-3;  // [rad]; bodies on the outline leave half a turn free
+  if (corners.size() < 2) return;
+  double angle = 0;
+  for (const Corner& c : corners) angle += c.angle;
+  const Point2 place = corners.front().place;
+  std::int32_t junction = Junctions::none;
+  if (corners.size() >= 3 && std::abs(angle - 2 * std::numbers::pi) <= rounding) {
+    junction = found.size();
+    found.places.push_back(place);
+  }
+  const auto direction = [&](const Corner& c) {
+    const Point3& x = item(lattice.bodies.position, c.body);
+    return std::atan2(x.y - place[1], x.x - place[0]);
+  };
+  std::sort(corners.begin(), corners.end(),
+            [&](const Corner& a, const Corner& b) { return direction(a) < direction(b); });
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const std::int32_t a = corners[k].body, b = corners[(k + 1) % corners.size()].body;
+    if (corners.size() == 2 && k == 1) break;
+    meetings.push_back({{std::min(a, b), std::max(a, b)}, place, junction});
+  }
+}
+
+/// Adds the facets between bodies that meet at two places, one of them a junction at least.
+/// \param meetings  sorted by bodies
+void add_facets(const Lattice& lattice, const std::vector<Meeting>& meetings, Junctions& found) {
+  const auto beams = by_bodies(lattice.beams);
+  std::vector<std::pair<std::int32_t, std::int32_t>> at;  // junction, facet
+  for (std::size_t k = 0; k + 1 < meetings.size(); ++k) {
+    const Meeting &a = meetings[k], &b = meetings[k + 1];
+    if (a.bodies != b.bodies || (a.junction == Junctions::none && b.junction == Junctions::none))
+      continue;
+    const auto [i, j] = a.bodies;
+    const Point3 &xi = item(lattice.bodies.position, i), &xj = item(lattice.bodies.position, j);
+    const Point3 middle{0.5 * (a.place[0] + b.place[0]), 0.5 * (a.place[1] + b.place[1]),
+                        0.5 * (xi.z + xj.z)};
+    const auto beam = std::lower_bound(beams.begin(), beams.end(), std::pair(a.bodies, 0));
+    const bool joined = beam != beams.end() && beam->first == a.bodies;
+    const auto facet = static_cast<std::int32_t>(found.facets.size());
+    found.facets.push_back({.bodies = a.bodies,
+                            .beam = joined ? beam->second : Junctions::none,
+                            .junctions = {a.junction, b.junction},
+                            .middle = middle,
+                            .arm = {middle - xi, middle - xj},
+                            .width = std::hypot(b.place[0] - a.place[0], b.place[1] - a.place[1])});
+    if (joined) item(found.facet_of, beam->second) = facet;
+    for (const std::int32_t junction : {a.junction, b.junction}) {
+      if (junction != Junctions::none) at.emplace_back(junction, facet);
+    }
+  }
+  std::sort(at.begin(), at.end());
+  found.first.assign(found.places.size() + 1, 0);
+  for (const auto& [junction, facet] : at) {
+    found.facets_at.push_back(facet);
+    ++found.first[static_cast<std::size_t>(junction) + 1];
+  }
+  for (std::size_t k = 1; k < found.first.size(); ++k) found.first[k] += found.first[k - 1];
+}
+
 }  // namespace
 
 Junctions find_junctions(const Lattice& lattice) {
   Junctions found;
-  found.of_beam.assign(lattice.beams.bodies.size(), {Junctions::none, Junctions::none});
+  found.facet_of.assign(lattice.beams.bodies.size(), Junctions::none);
+  found.first = {0};
   if (lattice.beams.size() == 0) return found;
   if (lattice.shapes.empty())
     throw InputError(
@@ -82,79 +171,138 @@ Junctions find_junctions(const Lattice& lattice) {
   std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
     return std::pair(a.place, a.body) < std::pair(b.place, b.body);
   });
-  UnionFind places(corners.size());
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    for (std::size_t j = k + 1;
-         j < corners.size() && corners[j].place[0] - corners[k].place[0] <= tolerance; ++j) {
-      if (std::abs(corners[j].place[1] - corners[k].place[1]) <= tolerance)
-        places.unite(static_cast<std::int32_t>(k), static_cast<std::int32_t>(j));
-    }
-  }
-  std::vector<std::pair<std::int32_t, std::int32_t>> members;  // place, corner
-  for (std::size_t k = 0; k < corners.size(); ++k)
-    members.emplace_back(places.find(static_cast<std::int32_t>(k)), static_cast<std::int32_t>(k));
-  std::sort(members.begin(), members.end());
-
-  const auto beams = by_bodies(lattice.beams);
-  const auto beam_of = [&](std::int32_t a, std::int32_t b) {
-    const std::array<std::int32_t, 2> pair{std::min(a, b), std::max(a, b)};
-    const auto at = std::lower_bound(beams.begin(), beams.end(), std::pair(pair, std::int32_t{0}));
-    return at != beams.end() && at->first == pair ? at->second : Junctions::none;
-  };
+  const auto members = by_places(corners, tolerance);
+  std::vector<Meeting> meetings;
   for (std::size_t begin = 0, end = 0; begin < members.size(); begin = end) {
-    double angle = 0;
-    std::vector<std::int32_t> bodies;
-    for (end = begin; end < members.size() && members[end].first == members[begin].first; ++end) {
-      const Corner& corner = item(corners, members[end].second);
-      bodies.push_back(corner.body);
-      angle += corner.angle;
-    }
-    constexpr double rounding = 1e-3;  // [rad]; bodies on the outline leave half a turn free
-    if (bodies.size() != 3 || std::abs(angle - 2 * std::numbers::pi) > rounding) continue;
-    const auto junction = static_cast<std::int32_t>(found.beams.size());
-    const std::array<std::int32_t, 3> facets{beam_of(bodies[0], bodies[1]),
-                                             beam_of(bodies[1], bodies[2]),
-                                             beam_of(bodies[2], bodies[0])};
-    found.beams.push_back(facets);
-    for (const std::int32_t m : facets) {
-      if (m == Junctions::none) continue;
-      auto& ends = item(found.of_beam, m);
-      (ends[0] == Junctions::none ? ends[0] : ends[1]) = junction;
-    }
+    std::vector<Corner> here;
+    for (end = begin; end < members.size() && members[end].first == members[begin].first; ++end)
+      here.push_back(item(corners, members[end].second));
+    meet(lattice, std::move(here), found, meetings);
   }
+  std::stable_sort(meetings.begin(), meetings.end(),
+                   [](const Meeting& a, const Meeting& b) { return a.bodies < b.bodies; });
+
+  add_facets(lattice, meetings, found);
   return found;
 }
 
 CrackTips::CrackTips(Junctions junctions)
     : junctions_(std::move(junctions)),
-      gone_(junctions_.of_beam.size(), 0),
-      lost_(junctions_.beams.size(), 0) {
+      gone_(junctions_.facets.size(), 0),
+      lost_(junctions_.places.size(), 0) {
   reset();
 }
 
 void CrackTips::reset() {
-  std::fill(gone_.begin(), gone_.end(), std::uint8_t{0});
-  for (std::size_t k = 0; k < lost_.size(); ++k) {
-    const auto& facets = junctions_.beams[k];
-    lost_[k] = static_cast<std::uint8_t>(std::count(facets.begin(), facets.end(), Junctions::none));
+  for (std::size_t f = 0; f < gone_.size(); ++f)
+    gone_[f] = junctions_.facets[f].beam == Junctions::none ? 1 : 0;
+  for (std::int32_t k = 0; k < junctions_.size(); ++k) {
+    const auto facets = junctions_.at(k);
+    item(lost_, k) = static_cast<std::uint8_t>(std::count_if(
+        facets.begin(), facets.end(), [&](std::int32_t f) { return item(gone_, f) != 0; }));
   }
 }
 
 bool CrackTips::is_tip(std::int32_t beam) const {
-  if (item(gone_, beam) != 0) return false;
-  const auto& ends = item(junctions_.of_beam, beam);
+  const std::int32_t facet = item(junctions_.facet_of, beam);
+  if (facet == Junctions::none || item(gone_, facet) != 0) return false;
+  const auto& ends = item(junctions_.facets, facet).junctions;
   return std::any_of(ends.begin(), ends.end(), [this](std::int32_t junction) {
     return junction != Junctions::none && item(lost_, junction) == 1;
   });
 }
 
 bool CrackTips::lose(std::int32_t beam) {
-  if (item(gone_, beam) != 0) return false;
-  item(gone_, beam) = 1;
-  for (const std::int32_t junction : item(junctions_.of_beam, beam)) {
+  const std::int32_t facet = item(junctions_.facet_of, beam);
+  if (facet == Junctions::none || item(gone_, facet) != 0) return false;
+  item(gone_, facet) = 1;
+  for (const std::int32_t junction : item(junctions_.facets, facet).junctions) {
     if (junction != Junctions::none) ++item(lost_, junction);
   }
   return true;
+}
+
+std::int32_t CrackTips::goes_on(std::int32_t junction, std::int32_t facet) const {
+  std::int32_t other = Junctions::none;
+  for (const std::int32_t f : junctions_.at(junction)) {
+    if (f == facet || item(gone_, f) == 0) continue;
+    if (other != Junctions::none) return Junctions::none;
+    other = f;
+  }
+  return other;
+}
+
+CrackBehind CrackTips::behind_junction(std::int32_t junction) const {
+  CrackBehind crack{.facets = {}, .size = 0, .tip = item(junctions_.places, junction)};
+  std::int32_t facet = goes_on(junction, Junctions::none);
+  while (facet != Junctions::none) {
+    crack.facets[crack.size++] = facet;
+    const auto& ends = item(junctions_.facets, facet).junctions;
+    junction = ends[0] == junction ? ends[1] : ends[0];
+    if (junction == Junctions::none || crack.size == CrackBehind::most) break;
+    facet = goes_on(junction, facet);
+  }
+  return crack;
+}
+
+std::vector<CrackBehind> CrackTips::behind(std::int32_t beam) const {
+  std::vector<CrackBehind> cracks;
+  if (!is_tip(beam)) return cracks;
+  for (const std::int32_t k : item(junctions_.facets, item(junctions_.facet_of, beam)).junctions) {
+    if (k == Junctions::none || item(lost_, k) != 1) continue;
+    const CrackBehind crack = behind_junction(k);
+    if (crack.size >= CrackBehind::least) cracks.push_back(crack);
+  }
+  return cracks;
+}
+
+void CrackTips::append_bodies(std::span<const CrackBehind> cracks,
+                              std::vector<std::int32_t>& bodies) const {
+  for (const CrackBehind& crack : cracks) {
+    for (std::size_t k = 0; k < crack.size; ++k) {
+      const auto& pair = item(junctions_.facets, crack.facets[k]).bodies;
+      bodies.insert(bodies.end(), pair.begin(), pair.end());
+    }
+  }
+}
+
+double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
+                          const std::function<BodyPose(std::int32_t)>& pose_of) const {
+  const auto displaced = [linear](const BodyPose& p, const Point3& arm) {
+    const Vec3<double> v{p.q.x, p.q.y, p.q.z}, t = cross(v, arm);
+    return p.u + (linear ? 2.0 * t : 2.0 * (p.q.w * t + cross(v, t)));
+  };
+  Vec3<double> slides{0, 0, 0}, turns{0, 0, 0};
+  double weight = 0;
+  Point2 nearer = crack.tip;
+  for (std::size_t k = 0; k < crack.size; ++k) {
+    const CrackFacet& f = item(junctions_.facets, crack.facets[k]);
+    const BodyPose i = pose_of(f.bodies[0]), j = pose_of(f.bodies[1]);
+    // The facet is passed towards the tip; its bodies are to the left and to the right.
+    const double tx = nearer[0] - f.middle.x, ty = nearer[1] - f.middle.y;
+    const Point3 across = f.arm[0] - f.arm[1];
+    const double side = tx * across.y - ty * across.x > 0 ? 1.0 : -1.0;
+    const double r = std::hypot(f.middle.x - crack.tip[0], f.middle.y - crack.tip[1]);
+    const Vec3<double> jump = displaced(j, f.arm[1]) - displaced(i, f.arm[0]);
+    const Quat<double> turn = product(j.q, conjugate(i.q));
+    Vec3<double> psi{2 * turn.x, 2 * turn.y, 2 * turn.z};
+    if (linear) psi = {2 * (j.q.x - i.q.x), 2 * (j.q.y - i.q.y), 2 * (j.q.z - i.q.z)};
+    if (!linear && turn.w < 0) psi = -psi;
+    const Vec3<double> up = linear ? Vec3<double>{0, 0, 1} : triad(i.q).e3;
+    psi = psi - dot(psi, up) * up;
+    slides = slides + (side * f.width * std::sqrt(r)) * jump;
+    turns = turns + (side * f.width * std::sqrt(r)) * psi;
+    weight += f.width * r;
+    const std::int32_t next = k + 1 < crack.size ? crack.facets[k + 1] : Junctions::none;
+    if (next == Junctions::none) break;
+    for (const std::int32_t end : f.junctions) {
+      const auto& of_next = item(junctions_.facets, next).junctions;
+      if (end != Junctions::none && (end == of_next[0] || end == of_next[1]))
+        nearer = item(junctions_.places, end);
+    }
+  }
+  const double square = dot(slides, slides) + bent * dot(turns, turns);
+  return std::numbers::pi / 32 * square / (weight * weight);
 }
 
 }  // namespace floe

@@ -99,15 +99,8 @@ FurtherStrength<double> further_strength(const FractureOptions& options) {
   return further;
 }
 
-FurtherStrength<double> further_at_tip(const Strength<double>& tip, const Strength<double>& whole,
-                                       const FurtherStrength<double>& further) {
-  const double twisted = tip.torsion / whole.torsion, sheared = tip.shear / whole.shear;
-  return {further.transverse * twisted / sheared, tip.shear / (2 * tip.axial), 1};
-}
-
-Strength<double> tip_strength(const Part& part, std::int32_t beam, const FractureOptions& options,
-                              const Strength<double>& whole) {
-  constexpr double in_plane = 2.6, out_of_plane = 4.0;  // kappa, measured on notched sheets
+Strength<double> tip_strength(const Part& part, std::int32_t beam, const FractureOptions& options) {
+  constexpr double in_plane = 2.45, out_of_plane = 4.0;  // kappa, measured on notched sheets
   const Beams& beams = part.beams;
   const double w = item(beams.width, beam), h = item(beams.height, beam);
   const double scale = item(beams.young, beam) * options.energy / item(beams.length, beam);
@@ -115,9 +108,7 @@ Strength<double> tip_strength(const Part& part, std::int32_t beam, const Fractur
                bending = std::sqrt(6 / out_of_plane * scale);
   const Strength<double> stretched = section_strength(w, h, membrane, bending),
                          bent = section_strength(w, h, bending, bending);
-  return {std::max(whole.axial, stretched.axial), std::max(whole.bending_y, bent.bending_y),
-          std::max(whole.bending_z, stretched.bending_z), std::max(whole.shear, stretched.shear),
-          std::max(whole.torsion, stretched.torsion)};
+  return {stretched.axial, bent.bending_y, stretched.bending_z, stretched.shear, stretched.torsion};
 }
 
 double overload(const Part& part, const std::vector<BeamSection>& sections,

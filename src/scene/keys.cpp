@@ -112,8 +112,8 @@ constexpr std::array table{
                "the same in shear or torsion"},
     OptionSpec{
         "fracture: propagation", choice, "strength", "", "strength | energy",
-        "at a crack's tip beams break by their strengths, as elsewhere; or by strengths that "
-        "make a crack cost `energy` per area, whatever the size of the elements"},
+        "at a crack's tip beams break by their strengths, as elsewhere; or when the crack releases "
+        "`energy` per area, by their stress and its opening, whatever the size of the elements"},
     OptionSpec{"fracture: weibull_modulus", number, "(none: equal strengths)", "", ">= 0.1, <= 1e6",
                "beams' strengths scatter with this modulus"},
     OptionSpec{"fracture: weibull_area", number, "(mean section of the beams)", "m^2",

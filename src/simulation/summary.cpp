@@ -162,7 +162,7 @@ void add_fracture(const Scene& scene, const Model<Space>& model, const Sample& l
       "cracks: %.6g m^2 broken, %.6g m^2 at tips; G_eff/G_f = %.4g, l/(2 E G_f/sigma_t^2) "
       "= %.4g",
       area, at_tips, toughness, length);
-  constexpr double kappa = 2.6;  // of a beam at a tip
+  constexpr double kappa = 2.45;  // of a beam at a tip
   if (options.propagation == Propagation::strength && kappa * length > 1)
     text +=
         "warning: cracks run at the strength of the beams at their tips, so they cost more than "

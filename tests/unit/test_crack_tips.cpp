@@ -4,8 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
@@ -23,6 +29,16 @@ std::set<std::int32_t> tips(const CrackTips& cracks, std::int32_t beams) {
     if (cracks.is_tip(m)) all.insert(m);
   }
   return all;
+}
+
+/// Beams at a junction.
+std::vector<std::int32_t> beams_at(const Junctions& found, std::int32_t junction) {
+  std::vector<std::int32_t> all;
+  for (const std::int32_t f : found.at(junction)) all.push_back(item(found.facets, f).beam);
+  return all;
+}
+const std::array<std::int32_t, 2>& ends_of(const Junctions& found, std::int32_t beam) {
+  return item(found.facets, item(found.facet_of, beam)).junctions;
 }
 
 /// Beam of a sheet that is farthest from its sides.
@@ -45,13 +61,16 @@ TEST(CrackTips, JunctionsOfASheetAreThoseOfItsPlaneGraph) {
   for (const bool reordered : {false, true}) {
     if (reordered) reorder(lattice);
     const Junctions found = find_junctions(lattice);
-    EXPECT_EQ(found.beams.size(),
-              static_cast<std::size_t>(lattice.beams.size() - lattice.bodies.size() + 1));
-    for (const auto& facets : found.beams) {
+    EXPECT_EQ(found.size(), lattice.beams.size() - lattice.bodies.size() + 1);
+    for (std::int32_t k = 0; k < found.size(); ++k) {
       std::set<std::int32_t> bodies;
-      for (const std::int32_t m : facets) {
-        ASSERT_NE(m, none);
-        const auto [i, j] = item(lattice.beams.bodies, m);
+      for (const std::int32_t f : found.at(k)) {
+        const CrackFacet& facet = item(found.facets, f);
+        ASSERT_NE(facet.beam, none);
+        const auto [i, j] = item(lattice.beams.bodies, facet.beam);
+        EXPECT_EQ(facet.bodies, (std::array{i, j}));
+        EXPECT_NEAR(facet.width, item(lattice.beams.width, facet.beam), 1e-6);
+        EXPECT_EQ(item(found.facet_of, facet.beam), f);
         bodies.insert({i, j});
       }
       EXPECT_EQ(bodies.size(), 3U);
@@ -68,15 +87,15 @@ TEST(CrackTips, ABrokenBeamMakesTipsAtBothEndsAndFlanksMakeNone) {
   EXPECT_TRUE(cracks.lose(inner));
   EXPECT_FALSE(cracks.lose(inner));
   std::set<std::int32_t> expected;
-  for (const std::int32_t junction : item(found.of_beam, inner)) {
+  for (const std::int32_t junction : ends_of(found, inner)) {
     ASSERT_NE(junction, none);
-    expected.insert(item(found.beams, junction).begin(), item(found.beams, junction).end());
+    for (const std::int32_t beam : beams_at(found, junction)) expected.insert(beam);
   }
   expected.erase(inner);
   EXPECT_EQ(expected.size(), 4U);
   EXPECT_EQ(tips(cracks, beams), expected);
   // The crack goes on at one end: the beam that is left there is on its flank.
-  const auto& end = item(found.beams, item(found.of_beam, inner)[0]);
+  const auto end = beams_at(found, ends_of(found, inner)[0]);
   std::int32_t next = end[0] != inner ? end[0] : end[1];
   const std::int32_t left = std::accumulate(end.begin(), end.end(), 0) - inner - next;
   (void)cracks.lose(next);
@@ -103,6 +122,142 @@ TEST(CrackTips, ACutHasATipAtItsEndOnly) {
   // All through the sheet: no tip is left.
   cut(lattice, {0, -9}, {0, 9});
   EXPECT_TRUE(tips(CrackTips(find_junctions(lattice)), lattice.beams.size()).empty());
+}
+
+/// A sheet with a cut from its lower side to the middle, and the crack behind a beam at its tip.
+struct CutSheet {
+  Lattice lattice = test::sheet(12, 9, 1);
+  std::optional<CrackTips> tips;
+  std::vector<CrackBehind> cracks;
+
+  CutSheet() {
+    cut(lattice, {0, -9}, {0, 0});
+    tips.emplace(find_junctions(lattice));
+    cracks = tips->behind(*floe::tips(*tips, lattice.beams.size()).begin());
+  }
+  /// (pi/32) |c|^2 of a motion that depends on the place, x right of the cut or left of it.
+  double opening(const std::function<BodyPose(const Point3&)>& pose, double bent = 1,
+                 bool linear = false) const {
+    return tips->opening(cracks.front(), bent, linear, [&](std::int32_t body) {
+      return pose(item(lattice.bodies.position, body));
+    });
+  }
+};
+
+TEST(CrackTips, ACrackIsFollowedAlongItsFacets) {
+  const CutSheet sheet;
+  ASSERT_EQ(sheet.cracks.size(), 1U);
+  const CrackBehind& crack = sheet.cracks.front();
+  EXPECT_EQ(crack.size, CrackBehind::most);
+  std::vector<std::int32_t> bodies;
+  sheet.tips->append_bodies(sheet.cracks, bodies);
+  ASSERT_EQ(bodies.size(), 2 * crack.size);
+  for (std::size_t k = 0; k < bodies.size(); k += 2) {
+    const double a = item(sheet.lattice.bodies.position, bodies[k]).x,
+                 b = item(sheet.lattice.bodies.position, bodies[k + 1]).x;
+    EXPECT_LT(a * b, 0) << "one to either side of the cut";
+  }
+}
+
+/// Faces that open by c sqrt(r) have (pi/32) c^2, where r is the distance from the tip; so the
+/// energy release rate pi E c^2/32 is K^2/E by the opening 8 K/E sqrt(r/(2 pi)) of Williams' field.
+/// Sliding counts as opening does. Motion of the sheet as a whole counts nothing.
+TEST(CrackTips, OpeningIsFittedByTheRootOfTheDistance) {
+  const CutSheet sheet;
+  const Point2 tip = sheet.cracks.front().tip;
+  for (const Vec3<double>& c : {Vec3<double>{2e-4, 0, 0}, Vec3<double>{0, 2e-4, 0}}) {
+    // Bodies beside the cut: their motion at the height of the body, so r is not exact.
+    const double fitted = sheet.opening([&](const Point3& x) {
+      const double r = std::hypot(x.x - tip[0], x.y - tip[1]);
+      return BodyPose{(x.x > 0 ? 0.5 : -0.5) * std::sqrt(r) * c, {1, 0, 0, 0}};
+    });
+    EXPECT_NEAR(fitted / (std::numbers::pi / 32 * 4e-8), 1, 0.15);
+  }
+  const Quat<double> turn = exp_rotation({0.3, -0.2, 0.7});
+  EXPECT_LT(sheet.opening([&](const Point3& x) {
+    return BodyPose{rotate(turn, x) - x + Vec3<double>{3, 2, 1}, turn};
+  }),
+            1e-28);
+}
+
+/// Faces that turn against each other count by the given weight. A turn about the vertical is none
+/// of theirs.
+TEST(CrackTips, FacesThatBendApartCountByTheirTurn) {
+  const CutSheet sheet;
+  const auto turned = [&](const Vec3<double>& psi, double bent, bool linear) {
+    return sheet.opening(
+        [&](const Point3& x) {
+          const Vec3<double> half = (x.x > 0 ? 0.5 : -0.5) * psi;
+          const Quat<double> q = linear ? Quat<double>{1, 0.5 * half.x, 0.5 * half.y, 0.5 * half.z}
+                                        : exp_rotation(half);
+          return BodyPose{{0, 0, 0}, q};
+        },
+        bent, linear);
+  };
+  const Vec3<double> bend{0, 1e-3, 0}, yaw{0, 0, 1e-3};
+  for (const bool linear : {false, true}) {
+    const double faces = turned(bend, 1, linear) - turned(bend, 0, linear);
+    EXPECT_NEAR((turned(bend, 3, linear) - turned(bend, 0, linear)) / faces, 3, 1e-9);
+    // c = psi sum(w sqrt(r))/sum(w r), and facets lie between 0 and about 5 m from the tip
+    EXPECT_GT(faces, std::numbers::pi / 32 * 1e-6 / 5);
+    EXPECT_LT(faces, std::numbers::pi / 32 * 1e-6);
+    EXPECT_EQ(turned(yaw, 1, linear), turned(yaw, 3, linear));
+  }
+}
+
+/// Short spurs, as a saw leaves them where it turns at a corner, are not followed round the corner.
+TEST(CrackTips, ABlockCutOutHasNoCracksBehindItsTips) {
+  Lattice lattice = test::sheet(20, 20, 1);
+  const std::array<Point2, 5> corners{{{-4, -4}, {4, -4}, {4, 4}, {-4, 4}, {-4, -4}}};
+  for (std::size_t k = 0; k < 4; ++k) cut(lattice, corners[k], corners[k + 1]);
+  const CrackTips cracks(find_junctions(lattice));
+  for (const std::int32_t m : tips(cracks, lattice.beams.size()))
+    EXPECT_TRUE(cracks.behind(m).empty());
+}
+
+/// Unit cubes in a rectangle, a beam per common face but those between rows 0 and 1 of the columns
+/// below `cut`; only what junctions are found from.
+Lattice squares(std::int32_t columns, std::int32_t rows, std::int32_t cut) {
+  Lattice lattice;
+  lattice.shapes.vertex_of = {0};
+  const auto join = [&](std::int32_t a, std::int32_t b) {
+    lattice.beams.bodies.push_back({a, b});
+    lattice.beams.length.push_back(1);
+  };
+  for (std::int32_t k = 0; k < rows * columns; ++k) {
+    const std::int32_t x = k % columns, y = k / columns;
+    lattice.bodies.position.push_back({double(x), double(y), 0});
+    lattice.bodies.orientation.push_back({1, 0, 0, 0});
+    for (const int v : {0, 1, 2, 3, 4, 5, 6, 7})
+      lattice.shapes.vertices.push_back({v % 2 - 0.5, v / 2 % 2 - 0.5, v / 4 - 0.5});
+    lattice.shapes.vertex_of.push_back(static_cast<std::int32_t>(lattice.shapes.vertices.size()));
+    lattice.shapes.face_of.push_back(0);  // no faces are looked at
+    if (x + 1 < columns) join(k, k + 1);
+    if (y + 1 < rows && !(y == 0 && x < cut)) join(k, k + columns);
+  }
+  return lattice;
+}
+
+/// Where cells are mirrored at a cut four facets meet: a straight cut has flanks and one tip.
+TEST(CrackTips, FourFacetsMayMeet) {
+  const Lattice lattice = squares(8, 3, 5);
+  const Junctions found = find_junctions(lattice);
+  ASSERT_EQ(found.size(), 7 * 2);
+  for (std::int32_t k = 0; k < found.size(); ++k) EXPECT_EQ(found.at(k).size(), 4U);
+  const CrackTips cracks(found);
+  const std::set<std::int32_t> at = tips(cracks, lattice.beams.size());
+  EXPECT_EQ(at.size(), 3U);  // ahead of the cut and to both sides of its end
+  for (const std::int32_t beam : at) {
+    const std::vector<CrackBehind> behind = cracks.behind(beam);
+    ASSERT_EQ(behind.size(), 1U);
+    EXPECT_EQ(behind[0].size, 5U);
+    EXPECT_EQ(behind[0].tip, (Point2{4.5, 0.5}));
+    // Faces that open by 2e-4 sqrt(r) along y, at middles r = 0.5, 1.5, ... from the tip
+    const double opening = cracks.opening(behind[0], 0, true, [](std::int32_t body) {
+      return BodyPose{{0, body < 8 ? 0 : 2e-4 * std::sqrt(4.5 - body % 8), 0}, {1, 0, 0, 0}};
+    });
+    EXPECT_NEAR(opening / (std::numbers::pi / 32 * 4e-8), 1, 1e-12);
+  }
 }
 
 TEST(CrackTips, ALatticeWithoutShapesIsRefused) {
