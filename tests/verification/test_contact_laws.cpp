@@ -1,4 +1,4 @@
-// Both contact laws on what they must do (docs/decisions/49-contact-law.md): stack, wall, incline,
+// Both contact laws on what they must do (docs/decisions/51-contact-law.md): stack, wall, incline,
 // rest, piles, gain of undamped bodies. The short form runs what takes seconds.
 
 #include <gtest/gtest.h>
