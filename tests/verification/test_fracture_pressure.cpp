@@ -238,23 +238,5 @@ TEST(FractureUnderPressure, TorsionBeyondTheSectionsIsNotItsStress) {
   }
 }
 
-/// At a crack's tip no strength is above that of initiation, whatever the weight of bending.
-TEST(FractureUnderPressure, TheWeightBoundsTheStrengthsAtTips) {
-  const Part part = partition(test::one_beam(length, w, h), PETSC_COMM_SELF);
-  const double bent_at_tip = std::sqrt(6 * young * g / (4 * length));
-  for (const double weight : {0.5, 1.0, 4.0}) {
-    FractureOptions o = options(0);
-    o.bending_factor = weight;
-    const Strength<double> whole = strengths(part, o).at(0), tip = tip_strength(part, 0, o, whole);
-    const FurtherStrength<double> further = further_at_tip(tip, whole, further_strength(o));
-    const double bending = std::min(bent_at_tip, tension / weight),
-                 transverse = std::min(bent_at_tip, shear / weight);
-    EXPECT_NEAR(6 / (area * h * tip.bending_y), bending, 1e-9 * tension);
-    EXPECT_NEAR(1 / (area * tip.shear * further.transverse), transverse, 1e-9 * shear);
-    EXPECT_NEAR(whole.torsion / tip.torsion, transverse / (shear / weight), 1e-9);
-    EXPECT_NEAR(1 / (area * tip.shear), std::min(bent_at_tip, shear), 1e-9 * shear);
-  }
-}
-
 }  // namespace
 }  // namespace floe
