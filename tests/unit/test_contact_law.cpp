@@ -148,12 +148,8 @@ TEST(ContactLaw, FrictionIsCutToTheCoefficientTimesTheNormalForce) {
 /// A face of 1 m along x and 2 m along y.
 Overlap face_of(double volume) {
   Overlap o = overlap_of(volume, {0, 0, 2});
-  o.patch = {.area = 2,
-             .u = {1, 0, 0},
-             .v = {0, 1, 0},
-             .uu = 2.0 / 12,
-             .vv = 8.0 / 12,
-             .reach = 1.2};
+  o.patch = {
+      .area = 2, .u = {1, 0, 0}, .v = {0, 1, 0}, .uu = 2.0 / 12, .vv = 8.0 / 12, .reach = 1.2};
   return o;
 }
 

@@ -40,7 +40,7 @@ struct RunResult {
   double stable_dt = 0;             ///< explicit: the largest stable step [s]
   std::string limited_by;           ///< explicit: what limits the stable step
   std::int64_t unstable_modes =
-      -1;  ///< negative eigenvalues at the last equilibrium; -1: not known
+      -1;                          ///< negative eigenvalues at the last equilibrium; -1: not known
   std::optional<PathResult> path;  ///< static runs along a path
   std::vector<std::string> warnings;  ///< remarks of forces in order of time; on rank 0
 };
