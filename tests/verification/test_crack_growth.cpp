@@ -171,7 +171,7 @@ Scene bent(std::uint64_t seed, double cut_length, double moment) {
 TEST(CrackGrowth, ANotchedSheetBendsUntilGriffithsMoment) {
   constexpr double moment = 3e5, step = 2, energy = 15, thickness = 0.5;
   double loads = 0, griffiths = 0;
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const auto stored = [&](double a) {
       const Scene scene = bent(seed, a, moment);
       return test::solve_static(scene, test::mesh_of(scene)).columns.at("energy_strain");
@@ -194,7 +194,7 @@ TEST(CrackGrowth, ANotchedSheetBendsUntilGriffithsMoment) {
   }
   test::verify({.section = "Fracture",
                 .quantity =
-                    "notched sheet in bending, propagation: energy, l = 1 m, 3 meshes: mean "
+                    "notched sheet in bending, propagation: energy, l = 1 m, 6 meshes: mean "
                     "moment over Griffith's",
                 .value = loads / griffiths,
                 .reference = 1,
