@@ -56,21 +56,24 @@ SCENES = {
                              "fracture: flexural_strength: 0"),
     "no compressive strength": (BREAKABLE + "fracture: {compressive_strength: -3e6}\n",
                                 "fracture: compressive_strength: -3e6"),
-    "negative friction": (BREAKABLE + "fracture: {shear_strength: 6e5, compressive_strength: 1e6}\n",
-                          "fracture: compressive_strength: 1e+06 must be >= 2 x fracture: "
-                          "shear_strength: 600000 [Pa]"),
+    "weak in compression": (BREAKABLE + "fracture: {shear_strength: 6e5, "
+                            "compressive_strength: 1e6}\n",
+                            "fracture: compressive_strength: 1e+06 must be >= 2 x fracture: "
+                            "shear_strength: 600000 [Pa]"),
     "strength that does not scatter": (BREAKABLE + "fracture: {seed: 3}\n", "weibull_modulus"),
     "no strength": (BREAKABLE + "fracture: {tensile_strength: 0}\n",
                     "fracture: tensile_strength: 0"),
     "a path in dynamics": (MOVING + "static: {path: arc}\n", "static: path: would have no effect"),
     "settings of a path without one": (GOOD + "static: {steps: 5}\n", "'static: path' is load"),
     "a path without a load": (GOOD + "static: {path: arc}\n", "no load to scale"),
-    "a path with a constant load": (loaded("set: right, force: [1, 0, 0]") + "static: {path: arc}\n",
-                                    "no load to scale"),
+    "a path with a constant load": (loaded("set: right, force: [1, 0, 0]")
+                                    + "static: {path: arc}\n", "no load to scale"),
     "a path with a longer ramp": (loaded("set: right, force: [1, 0, 0], ramp: 2")
-                                  + "static: {path: arc}\n", "load: p: ramp: 2 must be time: end 1"),
+                                  + "static: {path: arc}\n",
+                                  "load: p: ramp: 2 must be time: end 1"),
     "a path with a ramp of a velocity": (held("fix: x, velocity: [1, 0, 0], ramp: 1")
-                                         + "static: {path: arc}\n", "boundary: a: ramp: 1 must be 0"),
+                                         + "static: {path: arc}\n",
+                                         "boundary: a: ramp: 1 must be 0"),
     "a path with load steps": (RAMPED + "static: {path: arc}\ntime: {dt: 0.1}\n",
                                "time: dt: would have no effect"),
     "an arc longer than the longest": (RAMPED + "static: {path: arc, arc_length: 2, "
@@ -78,7 +81,8 @@ SCENES = {
                                        "static: arc_length_max: 1 must be >= static: arc_length 2"),
     "an arc shorter than the shortest": (RAMPED + "static: {path: arc, arc_length: 1, "
                                          "arc_length_min: 2}\n",
-                                         "static: arc_length_min: 2 must be <= static: arc_length 1"),
+                                         "static: arc_length_min: 2 must be <= "
+                                         "static: arc_length 1"),
     "no steps": (RAMPED + "static: {path: arc, steps: 0}\n", "static: steps: 0"),
     "a path of more steps than allowed": (RAMPED + "static: {path: arc, steps: 20}\n"
                                           "limit: {steps: 10}\n",

@@ -61,9 +61,11 @@ class Paths(launch.FolderTest):
     def test_a_displacement(self):
         ends = {}
         for component, value in (("x", 0.2), ("y", -0.3)):
-            output, _ = self.follow("-static_monitor", "load", "-static_monitor_component", component,
+            output, _ = self.follow("-static_monitor", "load",
+                                    "-static_monitor_component", component,
                                     "-static_monitor_displacement", str(value))
-            self.assertAlmostEqual(output.history("load_load_displacement_" + component)[-1], value, 9)
+            moved = output.history("load_load_displacement_" + component)[-1]
+            self.assertAlmostEqual(moved, value, 9)
             ends[component] = output.history("load_factor")[-1]
         self.assertNotAlmostEqual(ends["x"], ends["y"], 1)
 
@@ -82,7 +84,8 @@ class Paths(launch.FolderTest):
     def test_load_steps_agree_below_the_limit(self):
         arc, _ = self.follow("-static_load_factor", "15")
         path = arc.history("load_load_displacement_y")[-1]
-        (self.folder / "scene.yaml").write_text(SCENE.split("static:")[0].replace("-1000", "-15000"))
+        steps = SCENE.split("static:")[0].replace("-1000", "-15000")
+        (self.folder / "scene.yaml").write_text(steps)
         steps, _ = self.follow("-time_dt", "0.05")
         self.assertNotIn("load_factor", steps.summary)
         self.assertAlmostEqual(steps.history("load_load_displacement_y")[-1], path, 8)
