@@ -58,7 +58,7 @@ void evaluate(benchmark::State& state, double gap, double turn = 0.02, double dr
     contacts.place(bodies, 0, 0);
     contacts.evaluate(wrenches);
     contacts.damp(accelerations, wrenches);
-    contacts.commit(bodies, 0.5e-4);
+    contacts.commit();
   }
   const auto listed = static_cast<double>(contacts.list().size());
   contacts.place(bodies, 0, 0);

@@ -3,6 +3,14 @@
 #include <utility>
 
 namespace floe {
+namespace {
+
+void write_sums(const ActiveContacts& active, std::span<ContactWrench> wrenches) {
+  for (std::size_t s = 0; s < wrenches.size(); ++s)
+    wrenches[s] = active.on_body(static_cast<std::int32_t>(s)).sum();
+}
+
+}  // namespace
 
 Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
                    std::vector<BodyPair> joined, const ContactOptions& options,
@@ -13,7 +21,8 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free),
       places_(solids_.obstacles().size()),
       narrow_(options.damping_ratio > 0 || solids_.has_friction(options)),
-      active_(solids_.obstacles().size()) {}
+      active_(solids_.obstacles().size()),
+      damping_rate_(rates().damping) {}
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
   list_.build(solids_, narrow_, poses, here, time);
@@ -37,6 +46,7 @@ void Contacts::take_on(std::span<const BodyPair> pairs) {
 void Contacts::place(std::span<const MovingPose> bodies, double time, double velocity_time) {
   places_.place(solids_, list_.involved(), bodies, time, velocity_time);
   last_dt_ = 2 * (time - velocity_time);
+  stages_ = last_dt_ * damping_rate_ > one_stage_holds ? 2 : 1;
 }
 
 void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
@@ -47,48 +57,32 @@ void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
 }
 
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
-  active_.start();
-  touches_.clear();
-  std::visit([&](const auto& law) { evaluate_pairs(law, wrenches, offloaded); }, law_);
+  active_.start(list_.involved().size());
+  std::visit([&](const auto& law) { evaluate_pairs(law, offloaded); }, law_);
+  active_.act(
+      places_, [&](std::int32_t index) -> const Pair& { return list_.pair(index); },
+      [](const ActiveContact& active, const Pair&) { return without_dashpots(active.trial); });
+  write_sums(active_, wrenches);
 }
 
 void Contacts::damp(std::span<const Acceleration> accelerations,
                     std::span<ContactWrench> wrenches) {
-  active_.start();
-  places_.set_obstacles_now(solids_);
-  const auto later = [&](Placed solid, std::int32_t slot) {
-    const Acceleration& change = item(accelerations, slot);
-    solid.velocity = solid.velocity + (0.5 * last_dt_) * change.linear;
-    solid.spin = solid.spin + (0.5 * last_dt_) * change.angular;
-    return solid;
-  };
-  std::visit(
-      [&](const auto& law) {
-        for (const Touch& touch : touches_) {
-          const Pair& pair = list_.pair(touch.pair);
-          const Placed a = later(places_.of_a(pair), pair.slot_a);
-          const Placed b = is_obstacle(pair.b) ? places_.obstacle_now(pair)
-                                               : later(places_.of_b(pair), pair.slot_b);
-          const RelativeMotion predicted = relative_motion(a, b, touch.met.overlap.centroid);
-          respond(law, touch, &predicted, wrenches);
-        }
-      },
-      law_);
+  places_.predict(solids_, 0.5 * last_dt_, accelerations);
+  active_.act(
+      places_, [&](std::int32_t index) -> const Pair& { return list_.pair(index); },
+      [&](const ActiveContact& active, const Pair& pair) {
+        return with_dashpots(active.trial, places_.predicted_motion(pair, active.centre));
+      });
+  write_sums(active_, wrenches);
 }
 
 Acceleration Contacts::acceleration(std::int32_t slot, const ContactWrench& wrench) const {
-  const InverseInertia inverse =
-      solids_.inverse_inertia(list_.involved()[static_cast<std::size_t>(slot)]);
-  const Triad<double>& axes = places_.of_slot(slot).axes;
-  const Vec3<double> m = axes.to_local(wrench.moment);
-  return {.linear = inverse.mass * wrench.force,
-          .angular = axes.to_world(
-              {inverse.moments.x * m.x, inverse.moments.y * m.y, inverse.moments.z * m.z})};
+  const BodyMobility& body = places_.mobility(slot);
+  return {.linear = body.mass * wrench.force, .angular = body.turning * wrench.moment};
 }
 
 template <IsContactLaw Law>
-void Contacts::evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
-                              const OffloadedOverlaps& offloaded) {
+void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded) {
   ContactHistory::Cursor histories(history_);
   std::span<const PairOverlap> given;  // overlaps of the offloaded pairs, in their order
   std::size_t taken = 0;
@@ -98,9 +92,9 @@ void Contacts::evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
     const PairHistory* memory = histories.of(index);
     if (pair.offloaded) {
       if (given.empty()) given = offloaded();
-      touch(law, index, given[taken++], memory, wrenches);
+      touch(law, index, given[taken++], memory);
     } else if (memory != nullptr || !narrow_.is_apart(solids_, pair, a, b)) {
-      touch(law, index, narrow_.overlap(solids_, wear_, pair, a, b), memory, wrenches);
+      touch(law, index, narrow_.overlap(solids_, wear_, pair, a, b), memory);
     }
     ++index;
   }
@@ -110,68 +104,54 @@ void Contacts::evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
 /// \param memory  null: the pair has no history
 template <IsContactLaw Law>
 void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
-                     const PairHistory* memory, std::span<ContactWrench> wrenches) {
-  if (!(met.overlap.volume > 0)) return;
-  const Touch touch{.pair = index,
-                    .met = met,
-                    .memory = memory != nullptr ? *memory : PairHistory{},
-                    .known = memory != nullptr};
-  if (damps()) touches_.push_back(touch);
-  respond(law, touch, nullptr, wrenches);
-}
-
-/// Adds the response of a law to a touch.
-/// \param predicted  motion at t_n but for dashpots; null: dashpots are left out
-template <IsContactLaw Law>
-void Contacts::respond(const Law& law, const Touch& touch, const RelativeMotion* predicted,
-                       std::span<ContactWrench> wrenches) {
-  const Overlap& overlap = touch.met.overlap;
-  const Pair& pair = list_.pair(touch.pair);
+                     const PairHistory* memory) {
+  const Overlap& overlap = met.overlap;
+  if (!(overlap.volume > 0)) return;
+  const Pair& pair = list_.pair(index);
   const Placed &a = places_.of_a(pair), &b = places_.of_b(pair);
-  const RelativeMotion motion = relative_motion(a, b, overlap.centroid);
-  const Mobility mobility{.a = solids_.inverse_inertia(pair.a),
-                          .b = solids_.inverse_inertia(pair.b),
-                          .axes_a = a.axes,
-                          .axes_b = b.axes,
+  const Mobility mobility{.a = places_.mobility(pair.slot_a),
+                          .b = is_obstacle(pair.b) ? BodyMobility{} : places_.mobility(pair.slot_b),
                           .apart = a.x - b.x};
   const bool wet = a.x.z + overlap.centroid.z < 0;
-  const LastStep last{.dt = last_dt_, .touched = touch.known || pair.newly_eligible};
-  const ContactResponse response = contact_response(
-      law, pair_constants(solids_, options_, pair, wet), overlap, touch.met.depth, motion,
-      predicted, mobility, last, 0.5 * (a.spin + b.spin), touch.memory, pair.newly_eligible);
-  const double plastic = response.contact.memory.plastic;
-  active_.add({.pair = touch.pair,
-               .deep = is_deep(solids_, pair, overlap, plastic),
+  const LastStep last{
+      .dt = last_dt_, .touched = memory != nullptr || pair.newly_eligible, .stages = stages_};
+  active_.add({.pair = index,
                .centre = overlap.centroid,
-               .contact = response.contact},
-              pair, a, b, motion, response.stored, wrenches);
+               .trial = contact_trial(
+                   law, pair_constants(solids_, options_, pair, wet), overlap, met.depth,
+                   places_.motion(pair, overlap.centroid), mobility, last, 0.5 * (a.spin + b.spin),
+                   memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible)},
+              pair.counted);
 }
 
-void Contacts::commit(std::span<const MovingPose> bodies, double velocity_time) {
+/// Returns the energy that the counted contacts store.
+StoredEnergy Contacts::stored() const {
+  StoredEnergy sum;
+  std::visit(
+      [&](const auto& law) {
+        for (const ActiveContact& active : active_.contacts()) {
+          if (!list_.pair(active.pair).counted) continue;
+          const StoredEnergy of = stored_energy(law, active.trial, active.springs);
+          sum.normal += of.normal;
+          sum.tangential += of.tangential;
+        }
+      },
+      law_);
+  return sum;
+}
+
+void Contacts::commit() {
   history_.start();
-  places_.set_obstacle_velocities(solids_, velocity_time);
-  later_power_ = {};
-  for (const ActiveContact& active : active_.contacts()) commit(active, bodies);
-  if (wears()) find_crushed();
-  start_.take(active_.stored());
-  list_.end_step();
-  active_.end_step();
-}
-
-/// Commits one contact and adds its power with the velocities after the step.
-void Contacts::commit(const ActiveContact& active, std::span<const MovingPose> bodies) {
-  const Pair& pair = list_.pair(active.pair);
-  const ContactForce& contact = active.contact;
-  const Placed a = places_.moving(pair.slot_a, item(bodies, pair.slot_a));
-  const Placed b = is_obstacle(pair.b) ? places_.of_b(pair)
-                                       : places_.moving(pair.slot_b, item(bodies, pair.slot_b));
-  const RelativeMotion motion = relative_motion(a, b, active.centre);
-  if (pair.counted) {
-    add_power(contact, motion, later_power_);
-    events_.note(active, pair, places_.time());
+  for (const ActiveContact& active : active_.contacts()) {
+    const Pair& pair = list_.pair(active.pair);
+    if (pair.counted)
+      events_.note(active, is_deep(solids_, pair, active.trial), pair, places_.time());
+    history_.add({.a = pair.a, .b = pair.b, .pair = active.pair, .memory = active.memory()});
   }
-  if (is_obstacle(pair.b)) later_power_.obstacles += power_of_obstacle(active, a, b);
-  history_.add({.a = pair.a, .b = pair.b, .pair = active.pair, .memory = contact.memory});
+  if (wears()) find_crushed();
+  if (!start_.is_known) start_.take(stored());
+  list_.end_step();
+  active_.clear();
 }
 
 /// Finds what counted contacts have crushed by the last step, and the cuts of those that parted.
@@ -179,12 +159,12 @@ void Contacts::find_crushed() {
   ContactHistory::Cursor before = history_.before();
   crushing_.start();
   for (const ActiveContact& active : active_.contacts()) {
-    const double after = active.contact.memory.plastic;
+    const double after = active.trial.memory.plastic;
     const Pair& pair = list_.pair(active.pair);
     if (!pair.counted || after == 0) continue;
     const PairHistory* memory = before.of(active.pair);
     const double born = pair.newly_eligible ? after : 0.0;
-    crushing_.take(pair, memory != nullptr ? memory->plastic : born, after, active.contact.normal,
+    crushing_.take(pair, memory != nullptr ? memory->plastic : born, after, active.trial.normal,
                    places_.of_a(pair).axes, places_.of_b(pair).axes);
   }
   crushing_.end();

@@ -33,11 +33,6 @@
 
 namespace floe {
 
-/// Acceleration of a body [m/s^2, rad/s^2].
-struct Acceleration {
-  Vec3<double> linear{}, angular{};
-};
-
 /// The contacts of the bodies of one rank. No function is collective: exchange between ranks is
 /// left to the caller.
 class Contacts {
@@ -79,24 +74,29 @@ class Contacts {
   /// Computes the overlaps of the pairs taken on.
   /// \param overlaps  filled, in the order of take_on()
   void overlaps_taken_on(std::span<PairOverlap> overlaps);
-  /// Adds the wrenches of the contacts at the places set by place(), without dashpots; changes no
+  /// Sets the wrenches of the contacts at the places set by place(), without dashpots; changes no
   /// history.
-  /// \param wrenches   on the involved bodies, by slot
+  /// \param wrenches   on the involved bodies, by slot; overwritten
   /// \param offloaded  called when the first overlap of an offloaded pair is needed
   void evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded = {});
   /// Whether there are dashpots, which damp() adds.
   bool damps() const { return options_.damping_ratio > 0; }
   /// Returns the acceleration of an involved body by a wrench, at the places set by place().
   Acceleration acceleration(std::int32_t slot, const ContactWrench& wrench) const;
-  /// Adds the wrenches of the last evaluate() anew, now with dashpots, which act on the velocities
-  /// at t_n (model.md, "Contact").
-  /// \param accelerations  of the involved bodies at t_n by all forces but dashpots, by slot
-  /// \param wrenches       on the involved bodies, by slot; without those of evaluate()
+  /// Returns how often damp() is to be called after an evaluation (model.md, "Contact"): once where
+  /// an impulse of all dashpots leaves at least the part 1 - dt C > -1 of a velocity, else twice.
+  int stages() const { return stages_; }
+  /// The largest dt C for one stage and for two, which leave the part 1 - z + z^2/8, z = dt C.
+  static constexpr double one_stage_holds = 2, two_stages_hold = 8;
+  /// Sets the wrenches of the last evaluate() anew, now with dashpots, which act on the velocities
+  /// to which accelerations take the bodies at t_n (model.md, "Contact").
+  /// \param accelerations  of the involved bodies, by slot: those by all forces but dashpots; for a
+  ///                       second stage three quarters of these, and a quarter of those with the
+  ///                       wrenches of the first stage
+  /// \param wrenches       on the involved bodies, by slot; overwritten
   void damp(std::span<const Acceleration> accelerations, std::span<ContactWrench> wrenches);
   /// Makes the findings of the last evaluation history: friction, crushing.
-  /// \param bodies         the involved ones after the step, by slot
-  /// \param velocity_time  of their velocities [s]
-  void commit(std::span<const MovingPose> bodies, double velocity_time);
+  void commit();
   /// Whether bodies lose what contacts crush.
   bool wears() const { return options_.wear && options_.plastic_limit.given(); }
   /// Returns the cuts by the counted contacts that parted in the last commit.
@@ -111,17 +111,27 @@ class Contacts {
 
   /// Returns the force [N] and the moment about the origin of its frame [N m] of the bodies of this
   /// rank on obstacle k, in the last evaluation.
-  const ContactWrench& on_obstacle(std::size_t k) const { return active_.on_obstacle(k); }
+  ContactWrench on_obstacle(std::size_t k) const { return active_.on_obstacle(k); }
   /// Returns the number of overlapping counted pairs in the last evaluation.
   std::int64_t touching() const { return active_.touching(); }
-  /// Returns the power of the counted pairs in the last evaluation, until its step is committed.
-  const ContactPower& power() const { return active_.power(); }
-  /// Returns the power of the contacts that commit() took over, with the velocities after the step.
-  const ContactPower& later_power() const { return later_power_; }
+  /// Adds the power of the contacts of the last evaluation on an involved body that moves so.
+  void add_power(std::int32_t slot, const Vec3<double>& velocity, const Vec3<double>& spin,
+                 ContactPower& power) const {
+    active_.on_body(slot).add_power(velocity, spin, power);
+  }
+  /// Adds the power of these contacts on obstacles, and of the obstacles, whose motions are those
+  /// at a time [s].
+  void add_power_on_obstacles(double velocity_time, ContactPower& power) const {
+    for (std::size_t k = 0; k < solids_.obstacles().size(); ++k) {
+      const ObstacleMotion& motion = solids_.obstacles()[k].motion;
+      active_.add_power_on_obstacle(k, motion.rate(velocity_time), motion.spin(velocity_time),
+                                    power);
+    }
+  }
   /// Returns the energies of the counted pairs at the last evaluation.
   /// \param work  until then [J]
   ContactEnergies energies(const ContactPower& work) const {
-    return contact_energies(work, active_.stored(), start_);
+    return contact_energies(work, stored(), start_);
   }
   /// Returns the counted pairs of the last evaluation of which one lies wholly inside the other,
   /// without a force.
@@ -150,24 +160,11 @@ class Contacts {
   StoredAtStart& stored_at_start() { return start_; }
 
  private:
-  /// A pair with an overlap in the last evaluation.
-  struct Touch {
-    std::int32_t pair = 0;  ///< index in the list
-    PairOverlap met;
-    PairHistory memory;
-    bool known = false;  ///< the pair has a history
-  };
-
   template <IsContactLaw Law>
-  void evaluate_pairs(const Law& law, std::span<ContactWrench> wrenches,
-                      const OffloadedOverlaps& offloaded);
+  void evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded);
   template <IsContactLaw Law>
-  void touch(const Law& law, std::int32_t index, const PairOverlap& met, const PairHistory* memory,
-             std::span<ContactWrench> wrenches);
-  template <IsContactLaw Law>
-  void respond(const Law& law, const Touch& touch, const RelativeMotion* predicted,
-               std::span<ContactWrench> wrenches);
-  void commit(const ActiveContact& active, std::span<const MovingPose> bodies);
+  void touch(const Law& law, std::int32_t index, const PairOverlap& met, const PairHistory* memory);
+  StoredEnergy stored() const;
   void find_crushed();
   WearCut cut_of(const Crush& crush);
 
@@ -177,15 +174,15 @@ class Contacts {
   PairList list_;
   Places places_;
   NarrowPhase narrow_;
-  std::vector<Touch> touches_;  ///< of the last evaluation, if there are dashpots
-  double last_dt_ = 0;          ///< length of the last step [s]
   ActiveContacts active_;
+  double damping_rate_;  ///< bound of M^-1 C of all dashpots [1/s]
+  double last_dt_ = 0;   ///< length of the last step [s]
+  int stages_ = 1;
   ContactHistory history_;
   Crushing crushing_;
   Wear wear_;
   CapFinder caps_;
   std::vector<WearCut> cuts_;  ///< of the last commit
-  ContactPower later_power_;
   StoredAtStart start_;
   ContactEvents events_;
 };

@@ -22,7 +22,7 @@ std::vector<Penetration> penetrations(const Solids& solids, const PairList& list
   for (const ActiveContact& active : contacts) {
     const Pair& pair = list.pair(active.pair);
     if (!pair.counted || active.is_enclosed()) continue;
-    const Vec3<double>& n = active.contact.normal;
+    const Vec3<double>& n = active.trial.normal;
     const Placed &a = places.of_a(pair), &b = places.of_b(pair);
     const auto [low, high] = reaches(solids, pair, a, b, n);
     const double depth = high + dot(n, b.x - a.x) - low;
@@ -32,11 +32,10 @@ std::vector<Penetration> penetrations(const Solids& solids, const PairList& list
   return found;
 }
 
-bool is_deep(const Solids& solids, const Pair& pair, const Overlap& overlap, double plastic) {
+bool is_deep(const Solids& solids, const Pair& pair, const ContactTrial& contact) {
   constexpr double holds = 0.25;
-  const double elastic = overlap.volume - plastic;
-  const double most = holds * std::min(solids.width(pair.a), solids.width(pair.b));
-  return elastic > 0 && elastic * elastic > most * most * dot(overlap.area, overlap.area);
+  const double elastic = contact.volume - contact.memory.plastic;
+  return elastic > holds * std::min(solids.width(pair.a), solids.width(pair.b)) * contact.area;
 }
 
 }  // namespace floe

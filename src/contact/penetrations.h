@@ -26,9 +26,8 @@ std::vector<Penetration> penetrations(const Solids& solids, const PairList& list
                                       const Places& places,
                                       std::span<const ActiveContact> contacts);
 
-/// Whether the mean elastic depth (V - V_p)/|S| of an overlap exceeds a quarter of the least width
+/// Whether the mean elastic depth (V - V_p)/|S| of a contact exceeds a quarter of the least width
 /// of the thinner one of two solids.
-/// \param plastic  V_p [m^3]
-bool is_deep(const Solids& solids, const Pair& pair, const Overlap& overlap, double plastic);
+bool is_deep(const Solids& solids, const Pair& pair, const ContactTrial& contact);
 
 }  // namespace floe

@@ -23,6 +23,8 @@ Placed place_of(const Obstacle& obstacle, double position, double motion) {
 
 void Places::restart(std::size_t slots) {
   bodies_.resize(slots);
+  mobility_.resize(slots);
+  predicted_.resize(slots);
   counts_travels_ = false;
 }
 
@@ -40,6 +42,8 @@ void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
     const Placed to{
         .x = body.pose.x, .axes = triad(body.pose.q), .velocity = body.velocity, .spin = body.spin};
     move(bodies_[s], to, solids.radius(involved[s]));
+    const InverseInertia inverse = solids.inverse_inertia(involved[s]);
+    mobility_[s] = {inverse.mass, SymmetricMatrix::along(to.axes, inverse.moments)};
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::int32_t index = obstacle_index(k);
@@ -49,20 +53,15 @@ void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
   counts_travels_ = true;
 }
 
-void Places::set_obstacle_velocities(const Solids& solids, double time) {
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const ObstacleMotion& motion = solids.obstacles()[k].motion;
-    obstacles_[k].velocity = motion.rate(time);
-    obstacles_[k].spin = motion.spin(time);
+void Places::predict(const Solids& solids, double after,
+                     std::span<const Acceleration> accelerations) {
+  for (std::size_t s = 0; s < bodies_.size(); ++s) {
+    predicted_[s] = {.velocity = bodies_[s].velocity + after * accelerations[s].linear,
+                     .spin = bodies_[s].spin + after * accelerations[s].angular};
   }
-}
-
-void Places::set_obstacles_now(const Solids& solids) {
-  obstacles_now_ = obstacles_;
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const ObstacleMotion& motion = solids.obstacles()[k].motion;
-    obstacles_now_[k].velocity = motion.rate(time_);
-    obstacles_now_[k].spin = motion.spin(time_);
+    predicted_obstacles_[k] = {.velocity = motion.rate(time_), .spin = motion.spin(time_)};
   }
 }
 

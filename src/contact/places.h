@@ -8,6 +8,7 @@
 
 #include "contact/pair.h"
 #include "contact/solids.h"
+#include "contact_laws/mobility.h"
 #include "contact_laws/response.h"
 #include "floe/base/item.h"
 
@@ -38,12 +39,23 @@ struct Placed {
 /// \param motion    time of its velocities [s]
 Placed place_of(const Obstacle& obstacle, double position, double motion);
 
+/// Velocity and spin of a body or obstacle [m/s, rad/s].
+struct BodyVelocity {
+  Vec3<double> velocity{}, spin{};
+};
+
+/// Acceleration of a body [m/s^2, rad/s^2].
+struct Acceleration {
+  Vec3<double> linear{}, angular{};
+};
+
 /// Returns the motion of A relative to B at a point.
 /// \param centre  the point, from the centroid of A [m]
-inline RelativeMotion relative_motion(const Placed& a, const Placed& b,
-                                      const Vec3<double>& centre) {
-  const Vec3<double> arm = centre + (a.x - b.x);
-  return {.velocity = (a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, arm)),
+/// \param apart   x_A - x_B [m]
+inline RelativeMotion relative_motion(const BodyVelocity& a, const BodyVelocity& b,
+                                      const Vec3<double>& centre, const Vec3<double>& apart) {
+  return {.velocity =
+              (a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, centre + apart)),
           .spin = a.spin - b.spin};
 }
 
@@ -51,7 +63,7 @@ inline RelativeMotion relative_motion(const Placed& a, const Placed& b,
 class Places {
  public:
   /// \param obstacles  number of obstacles
-  explicit Places(std::size_t obstacles) : obstacles_(obstacles) {}
+  explicit Places(std::size_t obstacles) : obstacles_(obstacles), predicted_obstacles_(obstacles) {}
 
   /// Begins to count travels, after a new list or new slots.
   void restart(std::size_t slots);
@@ -62,31 +74,43 @@ class Places {
   /// \param motion    of the velocities [s]
   void place(const Solids& solids, std::span<const std::int32_t> involved,
              std::span<const MovingPose> bodies, double time, double motion);
-  /// Gives obstacles their velocities at a time; their places stay.
-  void set_obstacle_velocities(const Solids& solids, double time);
 
   const Placed& of_slot(std::int32_t slot) const { return item(bodies_, slot); }
+  const Placed& of_obstacle(std::size_t k) const { return obstacles_[k]; }
+  /// Returns what the body in a slot opposes to contacts.
+  const BodyMobility& mobility(std::int32_t slot) const { return item(mobility_, slot); }
   const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
   const Placed& of_b(const Pair& pair) const {
     return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
   }
-  /// Returns a body at its place of the evaluation with a later velocity and spin; without axes.
-  Placed moving(std::int32_t slot, const MovingPose& later) const {
-    return {item(bodies_, slot).x, {}, later.velocity, later.spin};
+  /// Returns the motion of A relative to B at a point in the middle of the last step.
+  /// \param centre  the point, from the centroid of A [m]
+  RelativeMotion motion(const Pair& pair, const Vec3<double>& centre) const {
+    const Placed &a = of_a(pair), &b = of_b(pair);
+    return relative_motion({a.velocity, a.spin}, {b.velocity, b.spin}, centre, a.x - b.x);
   }
-  /// Returns an obstacle at its place of the evaluation with its velocity and spin at that time.
-  Placed obstacle_now(const Pair& pair) const { return obstacles_now_[obstacle_number(pair.b)]; }
-  /// Gives obstacle_now() its obstacles.
-  void set_obstacles_now(const Solids& solids);
+  /// Predicts the velocities of bodies a time after those of the last evaluation, and sets those of
+  /// obstacles at the time of the evaluation.
+  /// \param after          [s]
+  /// \param accelerations  of bodies, by slot
+  void predict(const Solids& solids, double after, std::span<const Acceleration> accelerations);
+  /// Returns the motion of A relative to B at a point, as predicted.
+  RelativeMotion predicted_motion(const Pair& pair, const Vec3<double>& centre) const {
+    const BodyVelocity& b = is_obstacle(pair.b) ? predicted_obstacles_[obstacle_number(pair.b)]
+                                                : item(predicted_, pair.slot_b);
+    return relative_motion(item(predicted_, pair.slot_a), b, centre, of_a(pair).x - of_b(pair).x);
+  }
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }
 
  private:
   void move(Placed& solid, const Placed& to, double radius) const;
 
-  std::vector<Placed> bodies_;     ///< per slot
-  std::vector<Placed> obstacles_;  ///< per obstacle
-  std::vector<Placed> obstacles_now_;
+  std::vector<Placed> bodies_;                     ///< per slot
+  std::vector<BodyMobility> mobility_;             ///< per slot
+  std::vector<Placed> obstacles_;                  ///< per obstacle
+  std::vector<BodyVelocity> predicted_;            ///< per slot
+  std::vector<BodyVelocity> predicted_obstacles_;  ///< per obstacle
   double time_ = 0;
   bool counts_travels_ = false;  ///< place() was called since restart()
 };

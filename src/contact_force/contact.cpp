@@ -101,10 +101,10 @@ class DistributedContact final : public Contact,
         expiry_.is_due(state, part_, contacts_, dt_))
       build(state);
     halo_.gather(state, bodies_);
-    std::fill(mine_.begin(), mine_.end(), ContactWrench{});
     contacts_.place(bodies_, state.time, state.velocity_time);
     balance_.evaluate(contacts_, mine_);
     if (contacts_.damps()) add_dashpots(state, wrenches);
+    power_ = power_with(state);
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = halo_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
@@ -116,7 +116,7 @@ class DistributedContact final : public Contact,
     return rates_.stiffness * item(part_.bodies.mass, body);
   }
   Rates hidden_stiffness() const override {
-    return possible_ ? Rates{.stiffness = rates_.stiffness, .damping = rates_.damping} : Rates{};
+    return possible_ ? Rates{.stiffness = rates_.stiffness} : Rates{};
   }
 
   /// Half a period of a touch by the largest face of a body is 11 steps, 14 for e < 0.4
@@ -131,7 +131,12 @@ class DistributedContact final : public Contact,
   }
   const std::string& overlap_at_start() const override { return overlap_at_start_; }
   Limit step_limit(const State<Spatial>& state) const override {
-    return travel_limit(contacts_.solids(), part_, state);
+    Limit limit = travel_limit(contacts_.solids(), part_, state);
+    const double dashpots = possible_ && rates_.damping > 0
+                                ? Contacts::two_stages_hold / rates_.damping
+                                : std::numeric_limits<double>::infinity();
+    if (dashpots < limit.dt) limit = {.dt = dashpots, .reason = "the dashpots of contacts"};
+    return limit;
   }
   std::vector<Remark> take_remarks() override {
     std::vector<Remark> remarks = remarks_.take(contacts_);
@@ -153,8 +158,7 @@ class DistributedContact final : public Contact,
   }
 
   void commit(const State<Spatial>& state, double dt) override {
-    halo_.gather(state, bodies_);
-    contacts_.commit(bodies_, state.velocity_time);
+    contacts_.commit();
     if (contacts_.wears()) wear_bodies();
     expiry_.after_step(state, dt);
     dt_ = dt;
@@ -162,11 +166,10 @@ class DistributedContact final : public Contact,
   }
 
   std::size_t works() const override { return ContactPower::terms; }
-  void powers(std::span<double> out) const override { contacts_.power().write(out); }
+  void powers(std::span<double> out) const override { power_.write(out); }
   LaterPowers later_powers() const override { return LaterPowers::at_once; }
-  /// The motion of every contact after the step is known in commit() only, which finds the powers.
-  void powers_with(const State<Spatial>&, std::span<double> out) const override {
-    contacts_.later_power().write(out);
+  void powers_with(const State<Spatial>& state, std::span<double> out) const override {
+    power_with(state).write(out);
   }
 
   void release(std::span<const BodyPair> pairs) override {
@@ -199,9 +202,11 @@ class DistributedContact final : public Contact,
   bool anywhere(bool here) const {
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
   }
+  ContactPower power_with(const State<Spatial>& state) const;
   void build(const State<Spatial>& state);
   void wear_bodies();
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
+  void accelerate(const Wrenches<Spatial>& others, std::vector<Acceleration>& accelerations) const;
   void restore(const std::vector<double>& rows, std::span<const BodyPair> released,
                std::size_t known, const PairListExpiry& expiry);
 
@@ -216,7 +221,9 @@ class DistributedContact final : public Contact,
   std::vector<double> prescribed_accelerations_;  ///< six per local body
   std::vector<MovingPose> bodies_;                ///< by slot
   std::vector<ContactWrench> mine_;               ///< by slot
-  std::vector<Acceleration> accelerations_;  ///< by slot, by all forces but dashpots of contacts
+  std::vector<Acceleration> accelerations_;       ///< by slot, of the bodies before dashpots act
+  std::vector<Acceleration> without_;  ///< by slot, by all forces but dashpots of contacts
+  ContactPower power_;                 ///< in the last evaluation
   ContactRates rates_;
   int steps_per_touch_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
@@ -264,12 +271,48 @@ void DistributedContact::wear_bodies() {
   contacts_.wear(all);
 }
 
+/// Returns the power of this rank's share of the last evaluation's contacts with the velocities of
+/// a state: the wrenches of owned bodies are complete here, and each obstacle's is of this rank's
+/// bodies.
+ContactPower DistributedContact::power_with(const State<Spatial>& state) const {
+  ContactPower power;
+  const std::vector<std::int32_t>& local = halo_.local();
+  for (std::size_t k = 0; k < local.size(); ++k) {
+    if (local[k] < 0) continue;
+    const auto b = static_cast<std::size_t>(local[k]);
+    contacts_.add_power(static_cast<std::int32_t>(k), velocity(state, b),
+                        angular_velocity(state, b), power);
+  }
+  contacts_.add_power_on_obstacles(state.velocity_time, power);
+  return power;
+}
+
 /// Evaluates the contacts with their dashpots, which act on the velocities to which all other
-/// forces take the bodies at t_n. Collective. \param others  wrenches of the other forces, complete
-/// for owned bodies
+/// forces take the bodies at t_n. In two stages the second sees an eighth of a step of the first's
+/// dashpots, a quarter of the half step before t_n. Collective.
+/// \param others  wrenches of the other forces, complete for owned bodies
 void DistributedContact::add_dashpots(const State<Spatial>& state,
                                       const Wrenches<Spatial>& others) {
   if (!prescribed_.bits.empty()) prescribed_.accelerations(state.time, prescribed_accelerations_);
+  accelerate(others, accelerations_);
+  halo_.complete(accelerations_);
+  if (contacts_.stages() > 1) {
+    contacts_.damp(accelerations_, mine_);
+    without_ = accelerations_;
+    accelerate(others, accelerations_);
+    halo_.complete(accelerations_);
+    for (std::size_t k = 0; k < accelerations_.size(); ++k) {
+      Acceleration& a = accelerations_[k];
+      a.linear = 0.75 * without_[k].linear + 0.25 * a.linear;
+      a.angular = 0.75 * without_[k].angular + 0.25 * a.angular;
+    }
+  }
+  contacts_.damp(accelerations_, mine_);
+}
+
+/// Finds the accelerations of owned bodies by the wrenches of contacts and all others.
+void DistributedContact::accelerate(const Wrenches<Spatial>& others,
+                                    std::vector<Acceleration>& accelerations) const {
   const std::vector<std::int32_t>& local = halo_.local();
   for (std::size_t k = 0; k < local.size(); ++k) {
     if (local[k] < 0) continue;
@@ -283,11 +326,8 @@ void DistributedContact::add_dashpots(const State<Spatial>& state,
       if ((bits >> c & 1U) != 0) a.linear[c] = prescribed_accelerations_[row + c];
       if ((bits >> (3 + c) & 1U) != 0) a.angular[c] = prescribed_accelerations_[row + 3 + c];
     }
-    accelerations_[k] = a;
+    accelerations[k] = a;
   }
-  halo_.complete(accelerations_);
-  std::fill(mine_.begin(), mine_.end(), ContactWrench{});
-  contacts_.damp(accelerations_, mine_);
 }
 
 /// The histories of pairs are saved and loaded. Once contacts are possible, a restart builds the

@@ -62,10 +62,10 @@ inline Friction within(const Friction& friction, double most, double reach) {
   if (most <= 0) return {};
   Friction cut = friction;
   if (reach <= 0) cut.couple = 0;
-  const double part = reach > 0 ? cut.couple / (most * reach) : 0.0;
-  const double load2 = dot(cut.force, cut.force) / (most * most) + part * part;
-  if (load2 <= 1) return cut;
-  const double share = 1 / std::sqrt(load2);
+  const double of_spin = reach > 0 ? cut.couple / reach : 0.0;
+  const double load2 = dot(cut.force, cut.force) + of_spin * of_spin;
+  if (load2 <= most * most) return cut;
+  const double share = most / std::sqrt(load2);
   return {.force = share * cut.force, .couple = share * cut.couple};
 }
 

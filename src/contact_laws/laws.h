@@ -22,15 +22,19 @@ using ContactLaws = std::variant<OverlapLaw, PotentialLaw>;
 /// What a law must have:
 /// - `word`, by which a scene names it;
 /// - a constructor from the options, from which the law takes its constants;
-/// - `respond`, the response to a contact with a direction, from the history of the pair;
+/// - `constants`, of the terms that laws share;
+/// - `term`, the elastic force of a contact with a direction;
+/// - `stored`, the energy that this force stores;
 /// - `steepness`, for the bound of the stable step: the largest factor by which the elastic force
 ///   rises with the overlap faster than k_v |S|, from the area of the largest face of a body and
 ///   from its A_r [m^2].
 template <class Law>
 concept IsContactLaw = std::constructible_from<Law, const ContactOptions&> &&
-    requires(const Law& law, const ContactState& state, const PairHistory& memory) {
+    requires(const Law& law, const ContactState& state, const ContactTrial& trial) {
   { Law::word } -> std::convertible_to<ContactLaw>;
-  { law.respond(state, memory) } -> std::same_as<ContactResponse>;
+  { law.constants } -> std::convertible_to<SharedConstants>;
+  { law.term(state) } -> std::same_as<ElasticTerm>;
+  { law.stored(trial) } -> std::same_as<double>;
   { law.steepness(0.0, 0.0) } -> std::same_as<double>;
 };
 
@@ -44,23 +48,21 @@ ContactLaws law_of(const ContactOptions& options) {
   throw std::logic_error("a contact law is not in the list ContactLaws");
 }
 
-/// Returns the response of a law to an overlap. Where one body lies inside the other there is no
-/// direction and no force, and the force of the springs of friction is lost.
+/// Returns what a law makes of an overlap before dashpots act. Where one body lies inside the other
+/// there is no direction and no force, and the force of the springs of friction is lost.
 /// \param overlap         in world axes, with V > 0
 /// \param depth           of its centroid below the plane of a half-space [m]; else not used
 /// \param motion          of A relative to B at the centroid of the overlap, in the last step
-/// \param predicted       the same now, but for dashpots; null: dashpots are left out
 /// \param mobility        of A and B
 /// \param last            the last step; the turn about the normal is found here
 /// \param mean_spin       mean of the spins of A and B in the last step [rad/s]
 /// \param memory          history of the pair
 /// \param newly_eligible  the overlap is stress-free: V_p = V
 template <IsContactLaw Law>
-ContactResponse contact_response(const Law& law, const PairConstants& pair, const Overlap& overlap,
-                                 double depth, const RelativeMotion& motion,
-                                 const RelativeMotion* predicted, const Mobility& mobility,
-                                 LastStep last, const Vec3<double>& mean_spin, PairHistory memory,
-                                 bool newly_eligible) {
+ContactTrial contact_trial(const Law& law, const PairConstants& pair, const Overlap& overlap,
+                           double depth, const RelativeMotion& motion, const Mobility& mobility,
+                           LastStep last, const Vec3<double>& mean_spin, PairHistory memory,
+                           bool newly_eligible) {
   if (newly_eligible) {
     memory.plastic = overlap.volume;
     last.dt = 0;  // nothing has slipped yet
@@ -69,22 +71,30 @@ ContactResponse contact_response(const Law& law, const PairConstants& pair, cons
   if (area <= 1e-12 * pair.area) {
     memory.springs.force = {};
     memory.twist.couple = 0;
-    ContactResponse none;
-    none.contact.memory = memory;
+    ContactTrial none;
+    none.memory = memory;
     return none;
   }
   const Vec3<double> normal = (1 / area) * overlap.area;
   last.mean_turn = last.dt * dot(mean_spin, normal);
-  return law.respond({.pair = pair,
-                      .overlap = overlap,
-                      .depth = depth,
-                      .motion = motion,
-                      .predicted = predicted,
-                      .mobility = mobility,
-                      .last = last,
-                      .area = area,
-                      .normal = normal},
-                     memory);
+  const ContactState state{.pair = pair,
+                           .overlap = overlap,
+                           .depth = depth,
+                           .motion = motion,
+                           .mobility = mobility,
+                           .last = last,
+                           .area = area,
+                           .normal = normal};
+  return trial_of(law.constants, state, law.term(state), memory);
+}
+
+/// Returns the energy that a contact stores.
+/// \param springs  of friction, within their limit
+template <IsContactLaw Law>
+StoredEnergy stored_energy(const Law& law, const ContactTrial& trial, const Friction& springs) {
+  if (trial.area == 0) return {};
+  const PairHistory now = history_of(trial, springs);
+  return {.normal = law.stored(trial), .tangential = now.springs.energy() + now.twist.energy()};
 }
 
 }  // namespace floe

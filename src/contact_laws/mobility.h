@@ -12,31 +12,64 @@ struct InverseInertia {
   Vec3<double> moments{};  ///< about the axes of the body [1/(kg m^2)]
 };
 
+/// A symmetric matrix of three rows.
+struct SymmetricMatrix {
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+
+  /// Returns the matrix with principal values along axes.
+  static SymmetricMatrix along(const Triad<double>& axes, const Vec3<double>& principal) {
+    const auto& [e, f, g] = axes;
+    const Vec3<double> a = principal.x * e, b = principal.y * f, c = principal.z * g;
+    return {.xx = a.x * e.x + b.x * f.x + c.x * g.x,
+            .yy = a.y * e.y + b.y * f.y + c.y * g.y,
+            .zz = a.z * e.z + b.z * f.z + c.z * g.z,
+            .xy = a.x * e.y + b.x * f.y + c.x * g.y,
+            .xz = a.x * e.z + b.x * f.z + c.x * g.z,
+            .yz = a.y * e.z + b.y * f.z + c.y * g.z};
+  }
+  Vec3<double> operator*(const Vec3<double>& v) const {
+    return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
+            xz * v.x + yz * v.y + zz * v.z};
+  }
+  SymmetricMatrix operator+(const SymmetricMatrix& m) const {
+    return {xx + m.xx, yy + m.yy, zz + m.zz, xy + m.xy, xz + m.xz, yz + m.yz};
+  }
+  double trace() const { return xx + yy + zz; }
+};
+
+/// A body as a contact moves it: inverse mass [1/kg] and inverse tensor of inertia in the world
+/// [1/(kg m^2)]; zeros for an obstacle.
+struct BodyMobility {
+  double mass = 0;
+  SymmetricMatrix turning{};
+};
+
 /// The bodies A and B of a contact, as rigid bodies.
 struct Mobility {
-  InverseInertia a{}, b{};
-  Triad<double> axes_a{}, axes_b{};  ///< of the bodies in the world
-  Vec3<double> apart{};              ///< x_A - x_B [m]
+  BodyMobility a{}, b{};
+  Vec3<double> apart{};  ///< x_A - x_B [m]
 
   /// Returns 1/m_eff = 1/m_a + 1/m_b + (r_a x d).I_a^-1 (r_a x d) + (r_b x d).I_b^-1 (r_b x d),
   /// the relative acceleration at a point per force, along the force [1/kg].
   /// \param r  the point, from x_A [m]
   /// \param d  a unit vector
   double along(const Vec3<double>& r, const Vec3<double>& d) const {
-    return a.mass + b.mass + turning(a, axes_a, cross(r, d)) +
-           turning(b, axes_b, cross(r + apart, d));
+    return a.mass + b.mass + form(a, cross(r, d)) + form(b, cross(r + apart, d));
   }
-  /// Returns d.(I_a^-1 + I_b^-1) d of a unit vector, the relative angular acceleration per couple
-  /// [1/(kg m^2)].
-  double about(const Vec3<double>& d) const {
-    return turning(a, axes_a, d) + turning(b, axes_b, d);
+  /// Returns the mean of along() over the directions across a unit vector [1/kg]. Over three
+  /// directions at right angles the terms of a body add up to tr(I^-1) r.r - r.I^-1 r.
+  double across(const Vec3<double>& r, const Vec3<double>& d) const {
+    return 0.5 * (3 * (a.mass + b.mass) + all(a, r) + all(b, r + apart) - along(r, d));
   }
+  /// Returns I_a^-1 + I_b^-1, the relative angular acceleration per couple [1/(kg m^2)].
+  SymmetricMatrix turning() const { return a.turning + b.turning; }
 
  private:
-  static double turning(const InverseInertia& body, const Triad<double>& axes,
-                        const Vec3<double>& v) {
-    const Vec3<double> u = axes.to_local(v);
-    return body.moments.x * u.x * u.x + body.moments.y * u.y * u.y + body.moments.z * u.z * u.z;
+  static double form(const BodyMobility& body, const Vec3<double>& v) {
+    return dot(v, body.turning * v);
+  }
+  static double all(const BodyMobility& body, const Vec3<double>& r) {
+    return body.turning.trace() * dot(r, r) - form(body, r);
   }
 };
 

@@ -14,30 +14,32 @@ struct OverlapLaw {
 
   explicit OverlapLaw(const ContactOptions& options) : constants(options) {}
 
-  ContactResponse respond(const ContactState& state, const PairHistory& memory) const {
-    const double stiffness = state.pair.stiffness;
-    ContactResponse response = elastic_response(
-        constants, state, {.rate = stiffness, .root = std::sqrt(stiffness * state.area)}, memory);
-    const double plastic = response.contact.memory.plastic;
-    const double elastic = state.elastic_volume(plastic);
-    response.stored.normal = state.pair.half_space
-                                 ? stiffness * stored_volume(state, plastic)
-                                 : 0.5 * stiffness * elastic * elastic / state.area;
-    return response;
+  ElasticTerm term(const ContactState& state) const {
+    return {.rate = state.pair.stiffness,
+            .couple = {},
+            .root = std::sqrt(state.pair.stiffness * state.area)};
+  }
+
+  /// Returns the energy that the elastic force stores [J].
+  static double stored(const ContactTrial& trial) {
+    const double k = trial.pair.stiffness, plastic = trial.memory.plastic;
+    if (trial.pair.half_space)
+      return k * stored_volume(trial.volume, trial.area, trial.depth, plastic);
+    const double elastic = std::max(trial.volume - plastic, 0.0);
+    return 0.5 * k * elastic * elastic / trial.area;
   }
 
   /// Returns the integral of V - V_p over the depth, from where V was V_p on [m^4]. Without V_p it
   /// is V times the depth of the centroid. Faces, edges and corners have V = (1/p)|S| x for the
   /// deepest point's depth x, p = 1, 2, 3, and the centroid at x/(p + 1); with p of the shape at
   /// hand the integral is exact for them, and its V_p -> 0 is exact for all.
-  static double stored_volume(const ContactState& state, double plastic) {
-    const double volume = state.overlap.volume, depth = state.depth;
+  static double stored_volume(double volume, double area, double depth, double plastic) {
     if (plastic == 0) return volume * depth;
     const double part = plastic / volume;
     if (part >= 1) return 0;
-    const double inverse = 1 / depth - state.area / volume;  // 1/x
+    const double inverse = 1 / depth - area / volume;  // 1/x
     if (!(inverse > 0)) return volume * depth * (1 - part) * (1 - part);
-    const double deepest = 1 / inverse, power = deepest * state.area / volume;
+    const double deepest = 1 / inverse, power = deepest * area / volume;
     const double left = std::pow(part, 1 / power);  // x where V was V_p, over x
     return volume * (depth * (1 - part * left) - part * deepest * (1 - left));
   }

@@ -18,17 +18,17 @@ struct PotentialLaw {
 
   explicit PotentialLaw(const ContactOptions& options) : constants(options) {}
 
-  ContactResponse respond(const ContactState& state, const PairHistory& memory) const {
+  ElasticTerm term(const ContactState& state) const {
     const double stiffness = state.pair.stiffness, reference = state.pair.area;
-    ContactResponse response =
-        elastic_response(constants, state,
-                         {.rate = stiffness * state.area / reference,
-                          .couple = (stiffness / reference) * state.overlap.moment,
-                          .root = std::sqrt(stiffness / reference) * state.area},
-                         memory);
-    const double elastic = state.elastic_volume(response.contact.memory.plastic);
-    response.stored.normal = 0.5 * stiffness * elastic * elastic / reference;
-    return response;
+    return {.rate = stiffness * state.area / reference,
+            .couple = (stiffness / reference) * state.overlap.moment,
+            .root = std::sqrt(stiffness / reference) * state.area};
+  }
+
+  /// Returns the energy that the elastic force stores [J].
+  static double stored(const ContactTrial& trial) {
+    const double elastic = std::max(trial.volume - trial.memory.plastic, 0.0);
+    return 0.5 * trial.pair.stiffness * elastic * elastic / trial.pair.area;
   }
 
   static double steepness(double widest, double reference) {

@@ -1,5 +1,5 @@
 /// \file
-/// What a contact law is given, and its response.
+/// What a contact law is given, and what it makes of a contact.
 #pragma once
 
 #include <algorithm>
@@ -53,15 +53,15 @@ struct LastStep {
   double dt = 0;         ///< [s]; 0 before the first step
   bool touched = true;   ///< whether the pair touched at its start
   double mean_turn = 0;  ///< of the bodies about the normal [rad]
+  int stages = 1;        ///< evaluations of dashpots per step
 };
 
 /// A contact in an evaluation, as a law sees it.
 struct ContactState {
   const PairConstants& pair;
-  const Overlap& overlap;  ///< in world axes, with V > 0
-  double depth = 0;        ///< of c below the plane of B where B is a half-space [m]; else not used
-  const RelativeMotion& motion;     ///< in the middle of the last step
-  const RelativeMotion* predicted;  ///< now, but for dashpots; null: dashpots are left out
+  const Overlap& overlap;        ///< in world axes, with V > 0
+  double depth = 0;              ///< of c below the plane of B where B is a half-space [m]
+  const RelativeMotion& motion;  ///< in the middle of the last step
   const Mobility& mobility;
   LastStep last;
   double area = 0;        ///< |S| [m^2]
@@ -71,6 +71,45 @@ struct ContactState {
   double elastic_volume(double plastic) const { return std::max(overlap.volume - plastic, 0.0); }
 };
 
+/// The elastic force of a law, proportional to V - V_p.
+struct ElasticTerm {
+  double rate = 0;        ///< force per volume [N/m^3]
+  Vec3<double> couple{};  ///< couple about the centroid of the overlap per volume [N m/m^3]
+  double root = 0;        ///< square root of the stiffness along n [(N/m)^1/2]
+};
+
+/// The dashpots of a contact: coefficients with which they act over a step.
+struct Dashpots {
+  double normal = 0;          ///< against approach at the middle of the facets [N s/m]
+  Vec3<double> arm{};         ///< of the middle of the facets, from the centroid of the overlap [m]
+  double area = 0;            ///< c/|S| of the viscous pressure, before it slows bodies [N s/m^3]
+  double counts = 1;          ///< part of the step in which the viscous pressure acts
+  double slip = 0;            ///< against slip [N s/m]
+  double twist = 0;           ///< against spin about n [N m s]
+  double widest = 0;          ///< square root of (largest eigenvalue of T)/|S| [m]
+  SymmetricMatrix turning{};  ///< I_A^-1 + I_B^-1 [1/(kg m^2)]
+};
+
+/// A contact of an evaluation before its dashpots act: all that does not depend on the velocities
+/// to come.
+struct ContactTrial {
+  Vec3<double> normal{};  ///< from B to A; zero if there is no direction, hence no force
+  double elastic = 0;     ///< along n [N]
+  Vec3<double> couple{};  ///< elastic [N m]
+  double yield = 0;       ///< largest force along n [N]
+  double friction = 0;    ///< mu
+  double reach = 0;       ///< r_eff [m]
+  Friction springs;       ///< of friction, before their limit
+  PairHistory memory;     ///< V_p and stiffnesses of the springs
+  double volume = 0;      ///< V [m^3]
+  double area = 0;        ///< |S| [m^2]
+  double depth = 0;       ///< of c below the plane of B where B is a half-space [m]
+  PairConstants pair;
+  LastStep last;
+  Dashpots dashpots;  ///< zeros without damping
+  Patch patch;        ///< of the overlap, with damping
+};
+
 /// The wrench of a contact on A, about the centroid of the overlap; that on B is the opposite.
 struct ContactForce {
   Vec3<double> normal{};            ///< from B to A; zero if there is no force
@@ -78,22 +117,24 @@ struct ContactForce {
   Vec3<double> couple{};            ///< elastic [N m]
   Vec3<double> viscous_couple{};    ///< of the viscous pressure [N m]
   Friction friction;                ///< of springs and dashpots
-  PairHistory memory;               ///< for the commit
+  Friction springs;                 ///< of springs alone, for the commit
 
   Vec3<double> force() const { return (elastic + viscous) * normal + friction.force; }
   /// Returns the couple of all terms [N m].
   Vec3<double> whole_couple() const { return couple + viscous_couple + friction.couple * normal; }
 };
 
+/// Returns the history after a contact that ended with these springs.
+inline PairHistory history_of(const ContactTrial& trial, const Friction& springs) {
+  PairHistory now = trial.memory;
+  now.springs.force = springs.force;
+  now.twist.couple = springs.couple;
+  return now;
+}
+
 /// Energy that a contact stores [J].
 struct StoredEnergy {
   double normal = 0, tangential = 0;
-};
-
-/// The response of a law to a contact.
-struct ContactResponse {
-  ContactForce contact;
-  StoredEnergy stored;
 };
 
 }  // namespace floe

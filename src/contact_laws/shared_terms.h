@@ -32,19 +32,6 @@ inline double plastic_pressure(const PlasticLimit& limit, double area, double ap
   return pressure;
 }
 
-/// The elastic force of a law, proportional to V - V_p.
-struct ElasticTerm {
-  double rate = 0;        ///< force per volume [N/m^3]
-  Vec3<double> couple{};  ///< couple about the centroid of the overlap per volume [N m/m^3]
-  double root = 0;        ///< square root of the stiffness along n [(N/m)^1/2]
-};
-
-/// Force and couple of a pressure over the facets.
-struct Pressure {
-  double force = 0;       ///< along n [N]
-  Vec3<double> couple{};  ///< about the centroid of the overlap [N m]
-};
-
 /// Returns the part of the last step in which the dashpot acts: in the first step of a touch the
 /// impulse of the half step before t_n counts from the time t_c of the touch on, which is at most
 /// a step ago.
@@ -55,130 +42,163 @@ inline double touched_for(const ContactState& state, double approach) {
   return std::min(dt, state.overlap.volume / (state.area * approach));
 }
 
-/// Returns the viscous pressure before any limit: the force -c v_n n at the middle of the facets
-/// and the couple -(c/|S|) T omega, with the velocities at t_n that the pressure itself slows down:
-/// v* = v/(1 + (dt/2) c/m_eff), v predicted with all other forces.
-inline Pressure viscous_pressure(const SharedConstants& constants, const ContactState& state,
-                                 double root, double touched) {
-  if (constants.damping_ratio == 0 || state.predicted == nullptr) return {};
-  const Vec3<double>& n = state.normal;
-  const Patch& patch = state.overlap.patch;
-  const double dt = state.last.dt, half = 0.5 * dt;
-  const Vec3<double> middle = patch.area > 0 ? patch.middle : state.overlap.centroid;
-  const double yields = state.mobility.along(middle, n);
-  const double c = 2 * constants.damping_ratio * root / std::sqrt(yields);
-  const double counts = state.last.touched || !(dt > 0) ? 1.0 : (touched + half) / dt;
-  const RelativeMotion& motion = *state.predicted;
-  const Vec3<double> velocity =
-      motion.velocity + cross(motion.spin, middle - state.overlap.centroid);
-  Pressure viscous{.force = -counts * c * dot(velocity, n) / (1 + half * c * yields)};
-  const Vec3<double> w = motion.spin - dot(motion.spin, n) * n, tw = patch.rocking(w);
-  const double w2 = dot(w, w);
-  if (w2 > 0) {
-    const double per_area = c / state.area;
-    const double slows = per_area * (dot(w, tw) / w2) * (state.mobility.about(w) / w2);
-    viscous.couple = (-counts * per_area / (1 + half * slows)) * tw;
-  }
-  return viscous;
+/// Returns the coefficient with which a dashpot c acts over a step on a velocity that c itself
+/// slows down: c/(1 + (dt/2) c yields), which takes z = dt c yields/(1 + (dt/2) c yields) of the
+/// velocity. In two stages (Contacts::damp()) an impulse z' acts as z' - z'^2/8, which is z for
+/// z' = 2 z/(1 + sqrt(1 - z/2)), so that a contact on its own loses the same.
+/// \param yields  relative acceleration per force of the dashpot
+/// \param counts  part of the step in which it acts
+inline double over_step(double c, double yields, const LastStep& last, double counts) {
+  const double once = counts * c / (1 + 0.5 * last.dt * c * yields);
+  if (last.stages == 1) return once;
+  return once * 2 / (1 + std::sqrt(std::max(0.0, 1 - 0.5 * last.dt * once * yields)));
 }
 
-/// Advances the springs of friction by the slip of the last step and cuts them.
-/// \param stiffness  k_t [N/m]
-inline void advance_springs(const ContactState& state, double stiffness, const PairHistory& memory,
-                            double touched, double most, double reach, double twist_arm2,
-                            PairHistory& now) {
+/// Returns the dashpots of a contact: 2 zeta sqrt(m_eff k) of the viscous pressure along n, and of
+/// friction 2 zeta sqrt(m_t k_t) against slip, 1/m_t the mean over the directions across n, and
+/// alike against spin.
+/// \param root     square root of the stiffness along n
+/// \param springs  stiffnesses of the springs of friction
+/// \param touched  part of the last step in which the pair touched [s]
+inline Dashpots dashpots_of(double damping_ratio, const ContactState& state, double root,
+                            const PairHistory& springs, double touched) {
+  const Patch& patch = state.overlap.patch;
+  const LastStep& last = state.last;
+  const Vec3<double>& n = state.normal;
+  const Vec3<double> middle = patch.area > 0 ? patch.middle : state.overlap.centroid;
+  const double yields = state.mobility.along(middle, n);
+  const double c = 2 * damping_ratio * root / std::sqrt(yields);
+  Dashpots d;
+  d.counts = last.touched || !(last.dt > 0) ? 1.0 : (touched + 0.5 * last.dt) / last.dt;
+  d.normal = over_step(c, yields, last, d.counts);
+  d.arm = middle - state.overlap.centroid;
+  d.area = c / state.area;
+  d.widest = std::sqrt(std::max(patch.largest(), 0.0) / state.area);
+  d.turning = state.mobility.turning();
+  if (state.pair.friction > 0) {
+    const double slides = state.mobility.across(state.overlap.centroid, n);
+    d.slip = over_step(2 * damping_ratio * std::sqrt(springs.springs.stiffness / slides), slides,
+                       last, 1);
+    const double turns = dot(n, d.turning * n);
+    if (turns > 0)
+      d.twist =
+          over_step(2 * damping_ratio * std::sqrt(springs.twist.stiffness / turns), turns, last, 1);
+  }
+  return d;
+}
+
+/// Returns the springs of friction advanced by the slip of the last step, before their limit.
+/// \param stiffness  k_t [N/m], and that against spin about n [N m]
+inline Friction advanced_springs(const ContactState& state, double stiffness, double twist,
+                                 const PairHistory& memory, double touched) {
   const Vec3<double>& n = state.normal;
   const Vec3<double>& v = state.motion.velocity;
   const Vec3<double> before =
       turned(carried(memory.springs, n, stiffness), n, state.last.mean_turn);
-  const double twist = stiffness * twist_arm2;
-  const Friction springs =
-      within({.force = before - (touched * stiffness) * (v - dot(v, n) * n),
-              .couple = carried(memory.twist, twist) - touched * twist * dot(state.motion.spin, n)},
-             most, reach);
-  now.springs = {.stiffness = stiffness, .force = springs.force};
-  now.twist = {.stiffness = twist, .couple = springs.couple};
+  return {.force = before - (touched * stiffness) * (v - dot(v, n) * n),
+          .couple = carried(memory.twist, twist) - touched * twist * dot(state.motion.spin, n)};
 }
 
-/// Returns what the dashpots of friction add: 2 zeta sqrt(m_t k_t) against slip and alike against
-/// spin, 1/m_t the mean over the directions across n.
-inline Friction friction_dashpots(const SharedConstants& constants, const ContactState& state,
-                                  const PairHistory& now) {
-  const Vec3<double>& n = state.normal;
-  const Vec3<double>& at = state.overlap.centroid;
-  const double half = 0.5 * state.last.dt;
+/// Returns a contact with an elastic force along the normal, before its dashpots act.
+/// \param term    of the law
+/// \param memory  history of the pair
+inline ContactTrial trial_of(const SharedConstants& constants, const ContactState& state,
+                             const ElasticTerm& term, const PairHistory& memory) {
+  const double approach = -dot(state.motion.velocity, state.normal);
+  const double yield = plastic_pressure(constants.plastic_limit, state.area, approach) * state.area;
+  const double volume = state.overlap.volume;
   const Patch& patch = state.overlap.patch;
-  const double yields =
-      0.5 * (state.mobility.along(at, patch.u) + state.mobility.along(at, patch.v));
-  const double c = 2 * constants.damping_ratio * std::sqrt(now.springs.stiffness / yields);
-  const Vec3<double>& v = state.predicted->velocity;
-  Friction dashpots{.force = (-c / (1 + half * c * yields)) * (v - dot(v, n) * n)};
-  const double turns = state.mobility.about(n);
-  if (turns > 0) {
-    const double d = 2 * constants.damping_ratio * std::sqrt(now.twist.stiffness / turns);
-    dashpots.couple = (-d / (1 + half * d * turns)) * dot(state.predicted->spin, n);
+  ContactTrial trial;
+  trial.normal = state.normal;
+  trial.memory = memory;
+  double& plastic = trial.memory.plastic;
+  if (term.rate * (volume - plastic) > yield) plastic = volume - yield / term.rate;
+  const double pressed = state.elastic_volume(plastic);
+  trial.elastic = term.rate * pressed;
+  trial.couple = pressed * term.couple;
+  trial.yield = yield;
+  trial.friction = state.pair.friction;
+  trial.reach = patch.reach / state.area;
+  const double stiffness = 0.6 * term.root * term.root,
+               twist = stiffness * ((patch.uu + patch.vv) / state.area);
+  const double touched = touched_for(state, approach);
+  trial.springs = advanced_springs(state, stiffness, twist, memory, touched);
+  trial.memory.springs.stiffness = stiffness;
+  trial.memory.twist.stiffness = twist;
+  trial.volume = volume;
+  trial.area = state.area;
+  trial.depth = state.depth;
+  trial.pair = state.pair;
+  trial.last = state.last;
+  if (constants.damping_ratio > 0) {
+    trial.dashpots = dashpots_of(constants.damping_ratio, state, term.root, trial.memory, touched);
+    trial.patch = patch;
   }
-  return dashpots;
+  return trial;
+}
+
+/// Returns the force of a contact without its dashpots.
+inline ContactForce without_dashpots(const ContactTrial& trial) {
+  const double pressing = std::min(trial.elastic, trial.yield);
+  const Friction springs = within(trial.springs, trial.friction * pressing, trial.reach);
+  return {.normal = trial.normal,
+          .elastic = trial.elastic,
+          .viscous = pressing - trial.elastic,
+          .couple = trial.couple,
+          .viscous_couple = {},
+          .friction = springs,
+          .springs = springs};
+}
+
+/// Returns the couple -(c/|S|) T omega of the viscous pressure, of the spin across n that it slows
+/// down itself.
+inline Vec3<double> rocking_couple(const ContactTrial& trial, const Vec3<double>& across) {
+  const double w2 = dot(across, across);
+  if (!(w2 > 0)) return {};
+  const Dashpots& d = trial.dashpots;
+  const Vec3<double> tw = trial.patch.rocking(across);
+  const double yields = dot(across, tw) * dot(across, d.turning * across) / (w2 * w2);
+  return -over_step(d.area, yields, trial.last, d.counts) * tw;
 }
 
 /// Returns the couple of the viscous pressure under its limits. Where the force along the normal is
 /// cut, couples are cut by the same factor; none exceeds what the force can carry over the facets.
-inline Vec3<double> limited_couple(const ContactState& state, const Pressure& elastic,
-                                   const Pressure& viscous, double pressing, double largest) {
-  if (!(pressing > 0)) return -elastic.couple;
-  const double raw = elastic.force + viscous.force;
-  const Patch& patch = state.overlap.patch;
-  const Vec3<double> arm = patch.area > 0 ? patch.middle - state.overlap.centroid : Vec3<double>{};
-  const double factor = pressing < raw ? pressing / raw : 1.0;
-  Vec3<double> couple =
-      factor * viscous.couple + (pressing - elastic.force) * cross(arm, state.normal);
-  const double most = pressing * std::sqrt(std::max(largest, 0.0) / state.area);
-  const double size = length(couple);
-  if (size > most) couple = (most / size) * couple;
+/// \param viscous  before any limit: force along n and couple of the pressure
+inline Vec3<double> limited_couple(const ContactTrial& trial, double viscous,
+                                   const Vec3<double>& rocking, double pressing) {
+  if (!(pressing > 0)) return -trial.couple;
+  const double raw = trial.elastic + viscous;
+  Vec3<double> couple = (pressing - trial.elastic) * cross(trial.dashpots.arm, trial.normal);
+  couple = couple + (pressing < raw ? pressing / raw : 1.0) * rocking;
+  const double most = pressing * trial.dashpots.widest, size2 = dot(couple, couple);
+  if (size2 > most * most) couple = (most / std::sqrt(size2)) * couple;
   // An elastic couple ends with the force along the normal.
-  if (pressing < elastic.force) couple = couple + (pressing / elastic.force - 1) * elastic.couple;
+  if (pressing < trial.elastic) couple = couple + (pressing / trial.elastic - 1) * trial.couple;
   return couple;
 }
 
-/// Returns the response of a contact with an elastic force along the normal, without the energy
-/// that this force stores.
-/// \param term    of the law
-/// \param memory  history of the pair
-inline ContactResponse elastic_response(const SharedConstants& constants, const ContactState& state,
-                                        const ElasticTerm& term, const PairHistory& memory) {
-  const double approach = -dot(state.motion.velocity, state.normal);
-  const double yield = plastic_pressure(constants.plastic_limit, state.area, approach) * state.area;
-  const double volume = state.overlap.volume;
-  PairHistory now = memory;
-  if (term.rate * (volume - now.plastic) > yield) now.plastic = volume - yield / term.rate;
-  const double pressed = state.elastic_volume(now.plastic);
-  const Pressure elastic{.force = term.rate * pressed, .couple = pressed * term.couple};
-  const double touched = touched_for(state, approach);
-  const Pressure viscous = viscous_pressure(constants, state, term.root, touched);
-  const double pressing = std::min(std::max(elastic.force + viscous.force, 0.0), yield);
-
-  const Patch& patch = state.overlap.patch;
-  const double most = state.pair.friction * pressing, reach = patch.reach / state.area;
-  advance_springs(state, 0.6 * term.root * term.root, memory, touched, most, reach,
-                  (patch.uu + patch.vv) / state.area, now);
-
-  ContactResponse response;
-  ContactForce& contact = response.contact;
-  contact.normal = state.normal;
-  contact.elastic = elastic.force;
-  contact.viscous = pressing - elastic.force;
-  contact.couple = elastic.couple;
-  contact.friction = {.force = now.springs.force, .couple = now.twist.couple};
-  if (constants.damping_ratio > 0 && state.predicted != nullptr) {
-    contact.viscous_couple = limited_couple(state, elastic, viscous, pressing, patch.largest());
-    const Friction dashpots = friction_dashpots(constants, state, now);
-    contact.friction = within({.force = contact.friction.force + dashpots.force,
-                               .couple = contact.friction.couple + dashpots.couple},
-                              most, reach);
-  }
-  contact.memory = now;
-  response.stored.tangential = now.springs.energy() + now.twist.energy();
-  return response;
+/// Returns the force of a contact with its dashpots.
+/// \param predicted  motion of A relative to B at c on which dashpots act
+inline ContactForce with_dashpots(const ContactTrial& trial, const RelativeMotion& predicted) {
+  const Vec3<double>&n = trial.normal, &v = predicted.velocity, &w = predicted.spin;
+  const Dashpots& d = trial.dashpots;
+  const double about = dot(w, n);
+  const Vec3<double> across = w - about * n;
+  const double viscous = -d.normal * dot(v + cross(w, d.arm), n);
+  const double pressing = std::min(std::max(trial.elastic + viscous, 0.0), trial.yield);
+  const double most = trial.friction * pressing;
+  ContactForce force{
+      .normal = n,
+      .elastic = trial.elastic,
+      .viscous = pressing - trial.elastic,
+      .couple = trial.couple,
+      .viscous_couple = limited_couple(trial, viscous, rocking_couple(trial, across), pressing),
+      .friction = {},
+      .springs = within(trial.springs, most, trial.reach)};
+  force.friction = within({.force = force.springs.force - d.slip * (v - dot(v, n) * n),
+                           .couple = force.springs.couple - d.twist * about},
+                          most, trial.reach);
+  return force;
 }
 
 }  // namespace floe

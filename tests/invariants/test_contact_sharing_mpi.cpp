@@ -80,11 +80,14 @@ TEST(ContactLoadBalance, ChangesNoForceAndNoHistory) {
     std::vector<Acceleration> accelerations;
     for (std::size_t s = 0; s < wrenches.size(); ++s)
       accelerations.push_back(contacts.acceleration(static_cast<std::int32_t>(s), wrenches[s]));
-    std::fill(wrenches.begin(), wrenches.end(), ContactWrench{});
     contacts.damp(accelerations, wrenches);
-    powers.push_back(contacts.power().friction);
-    contacts.commit(bodies, 0.5e-4);
-    powers.push_back(contacts.later_power().friction);
+    ContactPower power;
+    for (std::size_t s = 0; s < bodies.size(); ++s)
+      contacts.add_power(static_cast<std::int32_t>(s), bodies[s].velocity, bodies[s].spin, power);
+    powers.push_back(power.friction);
+    contacts.add_power_on_obstacles(0.5e-4, power);
+    powers.push_back(power.friction);
+    contacts.commit();
     return wrenches;
   };
   for (int k = 0; k < 3; ++k) {
