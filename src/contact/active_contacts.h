@@ -61,14 +61,19 @@ class ActiveContacts {
 
   /// Begins an evaluation. \param slots  number of involved bodies
   void start(std::size_t slots);
-  void add(const ActiveContact& active, bool counted) {
-    contacts_.push_back(active);
+  /// Adds a contact, whose members are to be set.
+  ActiveContact& add(bool counted) {
     touching_ += counted ? 1 : 0;
+    return contacts_.emplace_back();
   }
   /// Sets the forces of all contacts anew, and with them the wrenches on bodies and obstacles.
   /// \param pair_of   function from an index to the pair of the list
   /// \param force_of  function from contact and pair to the contact's force
   void act(const Places& places, auto pair_of, auto force_of);
+  /// Adds the sums of the terms of all contacts to the wrenches on bodies only, and sets no forces.
+  /// \param wrenches  by slot
+  void add_sums(const Places& places, auto pair_of, auto force_of,
+                std::span<ContactWrench> wrenches) const;
   /// Forgets the contacts; forces on obstacles stay.
   void clear() { contacts_.clear(); }
 
@@ -124,6 +129,20 @@ void ActiveContacts::act(const Places& places, auto pair_of, auto force_of) {
     add_pair(contact.viscous * n, contact.viscous_couple, arm_a, arm_b, a.viscous, b.viscous);
     add_pair(contact.friction.force, contact.friction.couple * n, arm_a, arm_b, a.friction,
              b.friction);
+  }
+}
+
+void ActiveContacts::add_sums(const Places& places, auto pair_of, auto force_of,
+                              std::span<ContactWrench> wrenches) const {
+  ContactWrench on_obstacles;
+  for (const ActiveContact& active : contacts_) {
+    if (active.is_enclosed()) continue;
+    const Pair& pair = pair_of(active.pair);
+    const ContactForce contact = force_of(active, pair);
+    add_pair(contact.force(), contact.whole_couple(), active.centre,
+             active.centre + (places.of_a(pair).x - places.of_b(pair).x),
+             item(wrenches, pair.slot_a),
+             is_obstacle(pair.b) ? on_obstacles : item(wrenches, pair.slot_b));
   }
 }
 

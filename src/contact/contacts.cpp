@@ -1,5 +1,6 @@
 #include "contact/contacts.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace floe {
@@ -59,10 +60,17 @@ void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
   active_.start(list_.involved().size());
   std::visit([&](const auto& law) { evaluate_pairs(law, offloaded); }, law_);
-  active_.act(
-      places_, [&](std::int32_t index) -> const Pair& { return list_.pair(index); },
-      [](const ActiveContact& active, const Pair&) { return without_dashpots(active.trial); });
-  write_sums(active_, wrenches);
+  const auto pair_of = [&](std::int32_t index) -> const Pair& { return list_.pair(index); };
+  const auto force_of = [](const ActiveContact& active, const Pair&) {
+    return without_dashpots(active.trial);
+  };
+  if (damps()) {
+    std::fill(wrenches.begin(), wrenches.end(), ContactWrench{});
+    active_.add_sums(places_, pair_of, force_of, wrenches);
+  } else {
+    active_.act(places_, pair_of, force_of);
+    write_sums(active_, wrenches);
+  }
 }
 
 void Contacts::damp(std::span<const Acceleration> accelerations,
@@ -115,13 +123,12 @@ void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
   const bool wet = a.x.z + overlap.centroid.z < 0;
   const LastStep last{
       .dt = last_dt_, .touched = memory != nullptr || pair.newly_eligible, .stages = stages_};
-  active_.add({.pair = index,
-               .centre = overlap.centroid,
-               .trial = contact_trial(
-                   law, pair_constants(solids_, options_, pair, wet), overlap, met.depth,
-                   places_.motion(pair, overlap.centroid), mobility, last, 0.5 * (a.spin + b.spin),
-                   memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible)},
-              pair.counted);
+  ActiveContact& active = active_.add(pair.counted);
+  active.pair = index;
+  active.centre = overlap.centroid;
+  find_trial(law, pair_constants(solids_, options_, pair, wet), overlap, met.depth,
+             places_.motion(pair, overlap.centroid), mobility, last, 0.5 * (a.spin + b.spin),
+             memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible, active.trial);
 }
 
 /// Returns the energy that the counted contacts store.

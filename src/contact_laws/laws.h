@@ -48,7 +48,7 @@ ContactLaws law_of(const ContactOptions& options) {
   throw std::logic_error("a contact law is not in the list ContactLaws");
 }
 
-/// Returns what a law makes of an overlap before dashpots act. Where one body lies inside the other
+/// Finds what a law makes of an overlap before dashpots act. Where one body lies inside the other
 /// there is no direction and no force, and the force of the springs of friction is lost.
 /// \param overlap         in world axes, with V > 0
 /// \param depth           of its centroid below the plane of a half-space [m]; else not used
@@ -58,11 +58,12 @@ ContactLaws law_of(const ContactOptions& options) {
 /// \param mean_spin       mean of the spins of A and B in the last step [rad/s]
 /// \param memory          history of the pair
 /// \param newly_eligible  the overlap is stress-free: V_p = V
+/// \param trial           filled
 template <IsContactLaw Law>
-ContactTrial contact_trial(const Law& law, const PairConstants& pair, const Overlap& overlap,
-                           double depth, const RelativeMotion& motion, const Mobility& mobility,
-                           LastStep last, const Vec3<double>& mean_spin, PairHistory memory,
-                           bool newly_eligible) {
+void find_trial(const Law& law, const PairConstants& pair, const Overlap& overlap, double depth,
+                const RelativeMotion& motion, const Mobility& mobility, LastStep last,
+                const Vec3<double>& mean_spin, PairHistory memory, bool newly_eligible,
+                ContactTrial& trial) {
   if (newly_eligible) {
     memory.plastic = overlap.volume;
     last.dt = 0;  // nothing has slipped yet
@@ -71,9 +72,9 @@ ContactTrial contact_trial(const Law& law, const PairConstants& pair, const Over
   if (area <= 1e-12 * pair.area) {
     memory.springs.force = {};
     memory.twist.couple = 0;
-    ContactTrial none;
-    none.memory = memory;
-    return none;
+    trial = {};
+    trial.memory = memory;
+    return;
   }
   const Vec3<double> normal = (1 / area) * overlap.area;
   last.mean_turn = last.dt * dot(mean_spin, normal);
@@ -85,7 +86,7 @@ ContactTrial contact_trial(const Law& law, const PairConstants& pair, const Over
                            .last = last,
                            .area = area,
                            .normal = normal};
-  return trial_of(law.constants, state, law.term(state), memory);
+  find_trial_along(law.constants, state, law.term(state), memory, trial);
 }
 
 /// Returns the energy that a contact stores.

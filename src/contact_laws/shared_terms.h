@@ -99,16 +99,17 @@ inline Friction advanced_springs(const ContactState& state, double stiffness, do
           .couple = carried(memory.twist, twist) - touched * twist * dot(state.motion.spin, n)};
 }
 
-/// Returns a contact with an elastic force along the normal, before its dashpots act.
+/// Finds a contact with an elastic force along the normal, before its dashpots act.
 /// \param term    of the law
 /// \param memory  history of the pair
-inline ContactTrial trial_of(const SharedConstants& constants, const ContactState& state,
-                             const ElasticTerm& term, const PairHistory& memory) {
+/// \param trial   filled
+inline void find_trial_along(const SharedConstants& constants, const ContactState& state,
+                             const ElasticTerm& term, const PairHistory& memory,
+                             ContactTrial& trial) {
   const double approach = -dot(state.motion.velocity, state.normal);
   const double yield = plastic_pressure(constants.plastic_limit, state.area, approach) * state.area;
   const double volume = state.overlap.volume;
   const Patch& patch = state.overlap.patch;
-  ContactTrial trial;
   trial.normal = state.normal;
   trial.memory = memory;
   double& plastic = trial.memory.plastic;
@@ -130,11 +131,9 @@ inline ContactTrial trial_of(const SharedConstants& constants, const ContactStat
   trial.depth = state.depth;
   trial.pair = state.pair;
   trial.last = state.last;
-  if (constants.damping_ratio > 0) {
-    trial.dashpots = dashpots_of(constants.damping_ratio, state, term.root, trial.memory, touched);
-    trial.patch = patch;
-  }
-  return trial;
+  if (constants.damping_ratio == 0) return;
+  trial.dashpots = dashpots_of(constants.damping_ratio, state, term.root, trial.memory, touched);
+  trial.patch = patch;
 }
 
 /// Returns the force of a contact without its dashpots.

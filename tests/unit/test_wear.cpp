@@ -40,7 +40,7 @@ struct Press {
     wrenches.assign(involved.size(), {});
     contacts.place(involved, 0, 0);
     contacts.evaluate(wrenches);
-    contacts.commit(involved, 0);
+    contacts.commit();
     contacts.wear(contacts.cuts());
     return contacts.list().involved().empty() || contacts.list().involved()[0] != 0
                ? Vec3<double>{}
