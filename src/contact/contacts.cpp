@@ -22,8 +22,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free),
       places_(solids_.obstacles().size()),
       narrow_(options.damping_ratio > 0 || solids_.has_friction(options)),
-      active_(solids_.obstacles().size()),
-      damping_rate_(rates().damping) {}
+      active_(solids_.obstacles().size()) {}
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
   list_.build(solids_, narrow_, poses, here, time);
@@ -47,7 +46,6 @@ void Contacts::take_on(std::span<const BodyPair> pairs) {
 void Contacts::place(std::span<const MovingPose> bodies, double time, double velocity_time) {
   places_.place(solids_, list_.involved(), bodies, time, velocity_time);
   last_dt_ = 2 * (time - velocity_time);
-  stages_ = last_dt_ * damping_rate_ > one_stage_holds ? 2 : 1;
 }
 
 void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
@@ -121,8 +119,7 @@ void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
                           .b = is_obstacle(pair.b) ? BodyMobility{} : places_.mobility(pair.slot_b),
                           .apart = a.x - b.x};
   const bool wet = a.x.z + overlap.centroid.z < 0;
-  const LastStep last{
-      .dt = last_dt_, .touched = memory != nullptr || pair.newly_eligible, .stages = stages_};
+  const LastStep last{.dt = last_dt_, .touched = memory != nullptr || pair.newly_eligible};
   ActiveContact& active = active_.add(pair.counted);
   active.pair = index;
   active.centre = overlap.centroid;

@@ -83,16 +83,9 @@ class Contacts {
   bool damps() const { return options_.damping_ratio > 0; }
   /// Returns the acceleration of an involved body by a wrench, at the places set by place().
   Acceleration acceleration(std::int32_t slot, const ContactWrench& wrench) const;
-  /// Returns how often damp() is to be called after an evaluation (model.md, "Contact"): once where
-  /// an impulse of all dashpots leaves at least the part 1 - dt C > -1 of a velocity, else twice.
-  int stages() const { return stages_; }
-  /// The largest dt C for one stage and for two, which leave the part 1 - z + z^2/8, z = dt C.
-  static constexpr double one_stage_holds = 2, two_stages_hold = 8;
   /// Sets the wrenches of the last evaluate() anew, now with dashpots, which act on the velocities
   /// to which accelerations take the bodies at t_n (model.md, "Contact").
-  /// \param accelerations  of the involved bodies, by slot: those by all forces but dashpots; for a
-  ///                       second stage three quarters of these, and a quarter of those with the
-  ///                       wrenches of the first stage
+  /// \param accelerations  of the involved bodies at t_n by all forces but dashpots, by slot
   /// \param wrenches       on the involved bodies, by slot; overwritten
   void damp(std::span<const Acceleration> accelerations, std::span<ContactWrench> wrenches);
   /// Makes the findings of the last evaluation history: friction, crushing.
@@ -175,9 +168,7 @@ class Contacts {
   Places places_;
   NarrowPhase narrow_;
   ActiveContacts active_;
-  double damping_rate_;  ///< bound of M^-1 C of all dashpots [1/s]
-  double last_dt_ = 0;   ///< length of the last step [s]
-  int stages_ = 1;
+  double last_dt_ = 0;  ///< length of the last step [s]
   ContactHistory history_;
   Crushing crushing_;
   Wear wear_;

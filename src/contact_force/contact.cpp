@@ -116,7 +116,7 @@ class DistributedContact final : public Contact,
     return rates_.stiffness * item(part_.bodies.mass, body);
   }
   Rates hidden_stiffness() const override {
-    return possible_ ? Rates{.stiffness = rates_.stiffness} : Rates{};
+    return possible_ ? Rates{.stiffness = rates_.stiffness, .damping = rates_.damping} : Rates{};
   }
 
   /// Half a period of a touch by the largest face of a body is 11 steps, 14 for e < 0.4
@@ -131,12 +131,7 @@ class DistributedContact final : public Contact,
   }
   const std::string& overlap_at_start() const override { return overlap_at_start_; }
   Limit step_limit(const State<Spatial>& state) const override {
-    Limit limit = travel_limit(contacts_.solids(), part_, state);
-    const double dashpots = possible_ && rates_.damping > 0
-                                ? Contacts::two_stages_hold / rates_.damping
-                                : std::numeric_limits<double>::infinity();
-    if (dashpots < limit.dt) limit = {.dt = dashpots, .reason = "the dashpots of contacts"};
-    return limit;
+    return travel_limit(contacts_.solids(), part_, state);
   }
   std::vector<Remark> take_remarks() override {
     std::vector<Remark> remarks = remarks_.take(contacts_);
@@ -206,7 +201,7 @@ class DistributedContact final : public Contact,
   void build(const State<Spatial>& state);
   void wear_bodies();
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
-  void accelerate(const Wrenches<Spatial>& others, std::vector<Acceleration>& accelerations) const;
+  void accelerate(const Wrenches<Spatial>& others);
   void restore(const std::vector<double>& rows, std::span<const BodyPair> released,
                std::size_t known, const PairListExpiry& expiry);
 
@@ -221,9 +216,8 @@ class DistributedContact final : public Contact,
   std::vector<double> prescribed_accelerations_;  ///< six per local body
   std::vector<MovingPose> bodies_;                ///< by slot
   std::vector<ContactWrench> mine_;               ///< by slot
-  std::vector<Acceleration> accelerations_;       ///< by slot, of the bodies before dashpots act
-  std::vector<Acceleration> without_;  ///< by slot, by all forces but dashpots of contacts
-  ContactPower power_;                 ///< in the last evaluation
+  std::vector<Acceleration> accelerations_;  ///< by slot, by all forces but dashpots of contacts
+  ContactPower power_;                       ///< in the last evaluation
   ContactRates rates_;
   int steps_per_touch_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
@@ -288,31 +282,18 @@ ContactPower DistributedContact::power_with(const State<Spatial>& state) const {
 }
 
 /// Evaluates the contacts with their dashpots, which act on the velocities to which all other
-/// forces take the bodies at t_n. In two stages the second sees an eighth of a step of the first's
-/// dashpots, a quarter of the half step before t_n. Collective.
-/// \param others  wrenches of the other forces, complete for owned bodies
+/// forces take the bodies at t_n. Collective. \param others  wrenches of the other forces, complete
+/// for owned bodies
 void DistributedContact::add_dashpots(const State<Spatial>& state,
                                       const Wrenches<Spatial>& others) {
   if (!prescribed_.bits.empty()) prescribed_.accelerations(state.time, prescribed_accelerations_);
-  accelerate(others, accelerations_);
+  accelerate(others);
   halo_.complete(accelerations_);
-  if (contacts_.stages() > 1) {
-    contacts_.damp(accelerations_, mine_);
-    without_ = accelerations_;
-    accelerate(others, accelerations_);
-    halo_.complete(accelerations_);
-    for (std::size_t k = 0; k < accelerations_.size(); ++k) {
-      Acceleration& a = accelerations_[k];
-      a.linear = 0.75 * without_[k].linear + 0.25 * a.linear;
-      a.angular = 0.75 * without_[k].angular + 0.25 * a.angular;
-    }
-  }
   contacts_.damp(accelerations_, mine_);
 }
 
 /// Finds the accelerations of owned bodies by the wrenches of contacts and all others.
-void DistributedContact::accelerate(const Wrenches<Spatial>& others,
-                                    std::vector<Acceleration>& accelerations) const {
+void DistributedContact::accelerate(const Wrenches<Spatial>& others) {
   const std::vector<std::int32_t>& local = halo_.local();
   for (std::size_t k = 0; k < local.size(); ++k) {
     if (local[k] < 0) continue;
@@ -326,7 +307,7 @@ void DistributedContact::accelerate(const Wrenches<Spatial>& others,
       if ((bits >> c & 1U) != 0) a.linear[c] = prescribed_accelerations_[row + c];
       if ((bits >> (3 + c) & 1U) != 0) a.angular[c] = prescribed_accelerations_[row + 3 + c];
     }
-    accelerations[k] = a;
+    accelerations_[k] = a;
   }
 }
 

@@ -53,7 +53,6 @@ struct LastStep {
   double dt = 0;         ///< [s]; 0 before the first step
   bool touched = true;   ///< whether the pair touched at its start
   double mean_turn = 0;  ///< of the bodies about the normal [rad]
-  int stages = 1;        ///< evaluations of dashpots per step
 };
 
 /// A contact in an evaluation, as a law sees it.
@@ -105,7 +104,7 @@ struct ContactTrial {
   double area = 0;        ///< |S| [m^2]
   double depth = 0;       ///< of c below the plane of B where B is a half-space [m]
   PairConstants pair;
-  LastStep last;
+  double dt = 0;      ///< of the last step [s]
   Dashpots dashpots;  ///< zeros without damping
   Patch patch;        ///< of the overlap, with damping
 };

@@ -43,15 +43,11 @@ inline double touched_for(const ContactState& state, double approach) {
 }
 
 /// Returns the coefficient with which a dashpot c acts over a step on a velocity that c itself
-/// slows down: c/(1 + (dt/2) c yields), which takes z = dt c yields/(1 + (dt/2) c yields) of the
-/// velocity. In two stages (Contacts::damp()) an impulse z' acts as z' - z'^2/8, which is z for
-/// z' = 2 z/(1 + sqrt(1 - z/2)), so that a contact on its own loses the same.
+/// slows down: c/(1 + (dt/2) c yields).
 /// \param yields  relative acceleration per force of the dashpot
 /// \param counts  part of the step in which it acts
-inline double over_step(double c, double yields, const LastStep& last, double counts) {
-  const double once = counts * c / (1 + 0.5 * last.dt * c * yields);
-  if (last.stages == 1) return once;
-  return once * 2 / (1 + std::sqrt(std::max(0.0, 1 - 0.5 * last.dt * once * yields)));
+inline double over_step(double c, double yields, double dt, double counts) {
+  return counts * c / (1 + 0.5 * dt * c * yields);
 }
 
 /// Returns the dashpots of a contact: 2 zeta sqrt(m_eff k) of the viscous pressure along n, and of
@@ -70,7 +66,7 @@ inline Dashpots dashpots_of(double damping_ratio, const ContactState& state, dou
   const double c = 2 * damping_ratio * root / std::sqrt(yields);
   Dashpots d;
   d.counts = last.touched || !(last.dt > 0) ? 1.0 : (touched + 0.5 * last.dt) / last.dt;
-  d.normal = over_step(c, yields, last, d.counts);
+  d.normal = over_step(c, yields, last.dt, d.counts);
   d.arm = middle - state.overlap.centroid;
   d.area = c / state.area;
   d.widest = std::sqrt(std::max(patch.largest(), 0.0) / state.area);
@@ -78,11 +74,11 @@ inline Dashpots dashpots_of(double damping_ratio, const ContactState& state, dou
   if (state.pair.friction > 0) {
     const double slides = state.mobility.across(state.overlap.centroid, n);
     d.slip = over_step(2 * damping_ratio * std::sqrt(springs.springs.stiffness / slides), slides,
-                       last, 1);
+                       last.dt, 1);
     const double turns = dot(n, d.turning * n);
     if (turns > 0)
-      d.twist =
-          over_step(2 * damping_ratio * std::sqrt(springs.twist.stiffness / turns), turns, last, 1);
+      d.twist = over_step(2 * damping_ratio * std::sqrt(springs.twist.stiffness / turns), turns,
+                          last.dt, 1);
   }
   return d;
 }
@@ -130,7 +126,7 @@ inline void find_trial_along(const SharedConstants& constants, const ContactStat
   trial.area = state.area;
   trial.depth = state.depth;
   trial.pair = state.pair;
-  trial.last = state.last;
+  trial.dt = state.last.dt;
   if (constants.damping_ratio == 0) return;
   trial.dashpots = dashpots_of(constants.damping_ratio, state, term.root, trial.memory, touched);
   trial.patch = patch;
@@ -157,7 +153,7 @@ inline Vec3<double> rocking_couple(const ContactTrial& trial, const Vec3<double>
   const Dashpots& d = trial.dashpots;
   const Vec3<double> tw = trial.patch.rocking(across);
   const double yields = dot(across, tw) * dot(across, d.turning * across) / (w2 * w2);
-  return -over_step(d.area, yields, trial.last, d.counts) * tw;
+  return -over_step(d.area, yields, trial.dt, d.counts) * tw;
 }
 
 /// Returns the couple of the viscous pressure under its limits. Where the force along the normal is

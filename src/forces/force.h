@@ -102,13 +102,14 @@ class LimitsStep {
   /// Upper bound of the stiffness against a displacement of an owned body [N/m].
   virtual double stiffness_bound(std::int32_t body) const = 0;
 
-  /// Upper bounds of M^-1 K [1/s^2] and M^-1 C [1/s].
+  /// Upper bounds of M^-1 K [1/s^2], and of M^-1 C [1/s] of dashpots that act on velocities at t_n.
   struct Rates {
     double stiffness = 0, damping = 0;
   };
-  /// Stiffness and damping that the present state does not show (contacts that have not formed),
-  /// added to those that the search for the stable step measures. A force that returns more than
-  /// zero takes no part in the measurement. Default: none.
+  /// Stiffness and damping that the present state does not show (contacts that have not formed).
+  /// The stiffness is added to that which the search for the stable step measures; dashpots take
+  /// dt C of a velocity at t_n, which must be below 2. A force with a stiffness above zero takes no
+  /// part in the measurement. Default: none.
   virtual Rates hidden_stiffness() const { return {}; }
 
   /// Cheap estimate of the fastest rate at which the force alone moves or stops one of this rank's

@@ -88,7 +88,6 @@ class Operators {
     if (!damped_) return;
     difference_damping(z, step, damping);
     if (step > 0 && !decided_) decide(damping);
-    if (damped_) damping += bound_.damping * z;
   }
   /// Whether any force damps; valid after the first apply().
   bool is_damped() const { return damped_; }
@@ -133,7 +132,7 @@ class Operators {
     const double mine = damping.size() > 0 ? damping.cwiseAbs().maxCoeff() : 0;
     const double largest = largest_over_ranks(mine, part_.comm);
     decided_ = true;
-    damped_ = largest > 0 || bound_.damping > 0;
+    damped_ = largest > 0;
     if (damped_) return;
     damping = {};
     at_rest_.values = {};

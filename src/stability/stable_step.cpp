@@ -230,8 +230,12 @@ StableStep stable_step(const Model<Space>& model, const State<Space>& state) {
   result.decay = (a.is_damped() ? a.dot(mode->z, mode->c) : 0.0);
   result.evaluations = a.evaluations();
   result.limit = describe(a, model, mode->z);
-  if (dt * dt * a.bound().stiffness + 2 * dt * a.bound().damping > 2)  // more than half of 4
-    result.limit = "contacts that may come";
+  const auto& bound = a.bound();
+  if (dt * dt * bound.stiffness > 2) result.limit = "contacts that may come";  // more than half
+  if (result.dt * bound.damping > 2) {
+    result.dt = 2 / bound.damping;
+    result.limit = "dashpots of contacts that may come";
+  }
   return result;
 }
 

@@ -25,7 +25,8 @@ struct StableStep {
 /// eigenvalue of M^-1 (dt^2 K + 2 dt C) is 4, by a locally optimal conjugate gradient iteration
 /// (Knyazev 2001) that solves for dt in the three-dimensional trial space of each iteration; dt
 /// falls towards the limit. K and C act through differences of the forces at the given state, so
-/// all forces count. Collective.
+/// all forces count. Dashpots that act on velocities at t_n (LimitsStep::Rates) hold for dt C < 2
+/// beside that. Collective.
 template <class Space>
 StableStep stable_step(const Model<Space>& model, const State<Space>& state);
 

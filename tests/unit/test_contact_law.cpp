@@ -222,33 +222,6 @@ TEST(ContactLaw, DashpotIsImplicitAndCountsFromTheTouch) {
   EXPECT_NEAR(law(face_of(1e-5)).viscous, 0.55 * c * 0.1 / slow, 1e-9 * c);
 }
 
-/// In two stages an impulse z of the velocity v acts on v - z v/8. A contact on its own loses in
-/// two stages what it loses in one.
-TEST(ContactLaw, TwoStagesSlowOneContactAsOneStageDoes) {
-  Law law;
-  law.options.damping_ratio = 0.2;
-  law.pair.friction = 5;
-  law.last = {.dt = 1e-3, .touched = true};
-  law.motion.velocity = {0.02, 0, -0.1};
-  law.motion.spin = {0, 0, 0.03};
-  law.mobility.a.turning = {.xx = 0.3, .yy = 0.3, .zz = 0.3};
-  law.memory.springs.stiffness = law.memory.twist.stiffness = 1;
-  const double inverse_mass = 0.1;
-  for (const bool touched : {true, false}) {
-    law.last.touched = touched;
-    law.last.stages = 1;
-    law.motion.velocity = {0.02, 0, -0.1};
-    law.motion.spin = {0, 0, 0.03};
-    const ContactForce once = law(face_of(0.01));
-    law.last.stages = 2;
-    const ContactForce first = law(face_of(0.01));
-    EXPECT_GT(first.viscous, 1.001 * once.viscous);
-    const double eighth = law.last.dt / 8;
-    law.motion.velocity.z += eighth * inverse_mass * first.viscous;
-    EXPECT_NEAR(law(face_of(0.01)).viscous, once.viscous, 1e-12 * once.viscous) << touched;
-  }
-}
-
 TEST(ContactLaw, EffectiveMassIsThatOfBothBodiesAtThePoint) {
   const Triad<double> upright = triad(Quat<double>{1, 0, 0, 0}),
                       turned = triad(exp_rotation({0, 0, 0.5 * std::acos(-1.0)}));
