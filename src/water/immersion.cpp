@@ -19,7 +19,7 @@ void put(const Submerged& s, std::size_t lane, Immersion::Lane& below) {
 
 }  // namespace
 
-Immersion::Immersion(const Part& part) : part_(part) {
+Immersion::Immersion(const Part& part, Wet wet) : part_(part), wet_(wet) {
   const auto owned = static_cast<std::size_t>(part.owned);
   blocks_.resize((owned + lanes - 1) / lanes);
   for (std::size_t b = 0; b < owned; ++b) {
@@ -184,13 +184,13 @@ Submerged Immersion::clipped(std::int32_t body, const Triad<double>& axes, doubl
     const double reach = 0.5 * (p.top - p.bottom) * std::abs(axes.e3.z) +
                          std::sqrt(p.radius2 * (axes.e1.z * axes.e1.z + axes.e2.z * axes.e2.z));
     if (middle > reach) return {};
-    if (middle < -reach) return whole(body, axes);
+    if (middle < -reach && wet_ == Wet::by_points) return whole(body, axes);
   }
   place_vertices(body, axes);
-  const auto [low, high] = std::minmax_element(
-      placed_.begin(), placed_.end(), [](const Point3& p, const Point3& q) { return p.z < q.z; });
-  if (z + low->z >= 0) return {};
-  if (z + high->z < 0) return whole(body, axes);
+  bool any_below = false, any_above = false;
+  for (const Point3& p : placed_) (p.z < -z ? any_below : any_above) = true;
+  if (!any_below) return {};
+  if (!any_above && wet_ == Wet::by_points) return whole(body, axes);
   return submerged(part_.shapes, body, placed_, -z);
 }
 

@@ -116,8 +116,12 @@ Quat<T> of_unit_length(const Quat<T>& q) {
 /// Computes the submerged parts of the owned bodies of a part.
 class Immersion {
  public:
+  /// How the submerged parts of bodies that lie below the surface are found: by clipping, unless
+  /// all of a sphere about the body is below, or by the body's lowest and highest points. The
+  /// volumes differ by rounding.
+  enum class Wet { by_sphere, by_points };
   /// \param part  with shapes; must outlive this object
-  explicit Immersion(const Part& part);
+  explicit Immersion(const Part& part, Wet wet = Wet::by_sphere);
 
   /// Submerged part of an owned body; moments are about its centroid, in world axes.
   Submerged of(const State<Spatial>& state, std::int32_t body) const;
@@ -228,6 +232,7 @@ class Immersion {
   void place_vertices(std::int32_t body, const Triad<double>& axes) const;
 
   const Part& part_;
+  Wet wet_;
   std::vector<Block> blocks_;
   std::vector<VolumeProperties> whole_;
   std::vector<double> extent_;          ///< distance of the farthest vertex from the centroid [m]

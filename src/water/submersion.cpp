@@ -16,7 +16,10 @@ const Part& require_shapes(const Part& part, std::string_view force) {
 }
 
 Submersion::Submersion(const Part& part, int pace, bool shared)
-    : part_(part), immersion_(part), pace_(pace), shared_(shared) {
+    : part_(part),
+      immersion_(part, pace > 1 ? Immersion::Wet::by_points : Immersion::Wet::by_sphere),
+      pace_(pace),
+      shared_(shared) {
   if (shared) volumes_.resize(immersion_.blocks());
   if (!has_pace()) return;
   new_.resize(immersion_.blocks());

@@ -9,7 +9,11 @@
 namespace floe {
 
 SubmersionInWaves::SubmersionInWaves(const Part& part, Waves waves, int pace, bool shared)
-    : part_(part), immersion_(part), waves_(std::move(waves)), pace_(pace), shared_(shared) {
+    : part_(part),
+      immersion_(part, pace > 1 ? Immersion::Wet::by_points : Immersion::Wet::by_sphere),
+      waves_(std::move(waves)),
+      pace_(pace),
+      shared_(shared) {
   const auto owned = static_cast<std::size_t>(part.owned);
   if (shared || has_pace()) now_.resize(owned);
   if (!has_pace()) return;
