@@ -7,8 +7,8 @@
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
-#include "water/immersion.h"
-#include "water/waves.h"
+#include "submersion/immersion.h"
+#include "submersion/waves.h"
 
 namespace floe {
 namespace {

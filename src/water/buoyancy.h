@@ -8,8 +8,8 @@
 
 #include "floe/water/wave_options.h"
 #include "forces/force.h"
-#include "water/submersion.h"
-#include "water/submersion_in_waves.h"
+#include "submersion/submersion.h"
+#include "submersion/submersion_in_waves.h"
 
 namespace floe {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "water/immersion.h"
+#include "submersion/immersion.h"
 
 namespace floe {
 namespace {

@@ -11,18 +11,19 @@
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "submersion/immersion.h"
+#include "submersion/submersion.h"
+#include "submersion/submersion_in_waves.h"
+#include "submersion/waves.h"
 #include "water/drag.h"
-#include "water/immersion.h"
+#include "water/face_wrench.h"
 #include "water/shelter.h"
-#include "water/submersion.h"
-#include "water/submersion_in_waves.h"
-#include "water/waves.h"
 
 namespace floe {
 namespace {
 
 using Vec = Vec3<double>;
-using Matrix = std::array<Vec, 3>;  ///< by rows
+using Matrix = FaceWrench::Matrix;
 
 /// A point of a face, from the body's centroid in world axes [m], and the height at it of a
 /// function that is linear over the face.
@@ -50,50 +51,6 @@ struct Flow {
   double normal;  ///< u.n
   double area;    ///< weight [m^2]
   bool front;     ///< u.n < 0 on the whole triangle
-};
-
-/// Drag on the faces of a body as it was found, with its derivative C = (C_vv, C_vw; C_vw^T, C_ww)
-/// to the body's velocity v and angular velocity w, times -1.
-struct FaceWrench {
-  Vec force{0, 0, 0}, moment{0, 0, 0};
-  Vec against{0, 0, 0}, spin{0, 0, 0};  ///< velocity of the water less the body's; w
-  Matrix vv{}, vw{}, ww{};
-
-  /// Adds the derivative D of a force at r.
-  void add_slope(const Vec& r, const Matrix& d) {
-    const auto times = [&d](const Vec& u) { return Vec{dot(d[0], u), dot(d[1], u), dot(d[2], u)}; };
-    // The body's velocity at r is v + w x r, the moment of a force f there r x f.
-    const std::array<Vec, 3> turned{times({0, -r.z, r.y}), times({r.z, 0, -r.x}),
-                                    times({-r.y, r.x, 0})};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec couple = cross(r, turned[k]);
-      for (std::size_t row = 0; row < 3; ++row) {
-        vw[row][k] += turned[k][row];
-        ww[row][k] += couple[row];
-      }
-      vv[k] = vv[k] + d[k];
-    }
-  }
-  /// The wrench at other velocities, to first order.
-  std::pair<Vec, Vec> at(const Vec& against_now, const Vec& spin_now) const {
-    const Vec faster = against - against_now, turns = spin_now - spin;
-    Vec f = force, m = moment;
-    for (std::size_t k = 0; k < 3; ++k) {
-      f[k] -= dot(vv[k], faster) + dot(vw[k], turns);
-      m = m - faster[k] * vw[k];
-      m[k] -= dot(ww[k], turns);
-    }
-    return {f, m};
-  }
-  static constexpr std::size_t numbers = 39;
-  std::array<double*, numbers> all() {
-    std::array<double*, numbers> all{};
-    std::size_t n = 0;
-    for (Vec* v : {&force, &moment, &against, &spin, &vv[0], &vv[1], &vv[2], &vw[0], &vw[1], &vw[2],
-                   &ww[0], &ww[1], &ww[2]})
-      for (double* x : {&v->x, &v->y, &v->z}) all[n++] = x;
-    return all;
-  }
 };
 
 /// The submerged parts that a force of this surface uses.

@@ -1,7 +1,7 @@
 // The submerged parts that the forces of the water share: the same bits as each force finds alone,
 // and, with a pace, to first order what it would find.
 
-#include "water/submersion.h"
+#include "submersion/submersion.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "water/submersion_in_waves.h"
+#include "submersion/submersion_in_waves.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "floe/base/item.h"
-#include "water/submersion.h"
+#include "submersion/submersion.h"
 
 namespace floe {
 

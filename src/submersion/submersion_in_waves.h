@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "forces/force.h"
-#include "water/immersion.h"
-#include "water/waves.h"
+#include "submersion/immersion.h"
+#include "submersion/waves.h"
 
 namespace floe {
 

@@ -6,7 +6,7 @@
 
 #include "floe/water/wave_options.h"
 #include "lattice/partition.h"
-#include "water/surface.h"
+#include "submersion/surface.h"
 
 namespace floe {
 

@@ -1,4 +1,4 @@
-#include "water/submersion.h"
+#include "submersion/submersion.h"
 
 #include <algorithm>
 #include <array>

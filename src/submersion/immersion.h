@@ -18,7 +18,7 @@
 #include "floe/base/item.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
-#include "water/surface.h"
+#include "submersion/surface.h"
 
 namespace floe {
 

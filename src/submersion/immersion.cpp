@@ -1,4 +1,4 @@
-#include "water/immersion.h"
+#include "submersion/immersion.h"
 
 #include <algorithm>
 #include <cmath>

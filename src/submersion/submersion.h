@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "forces/force.h"
-#include "water/immersion.h"
+#include "submersion/immersion.h"
 
 namespace floe {
 

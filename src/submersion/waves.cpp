@@ -1,4 +1,4 @@
-#include "water/waves.h"
+#include "submersion/waves.h"
 
 #include <algorithm>
 #include <cmath>
