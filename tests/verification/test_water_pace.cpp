@@ -160,7 +160,8 @@ TEST(WaterPace, DragDecays) {
             .quantity = "energy lost to " + which + " at pace 10 over 1, -1",
             .value = slow.drag.back() / exact.drag.back() - 1,
             .reference = 0.0,
-            .tolerance = 1e-5});
+            .tolerance = tenth == &faces ? 1e-4 : 1e-5,
+            .note = tenth == &faces ? "the wetted faces are up to 2 ms old" : ""});
     EXPECT_LT(slow.distance(exact), 1e-3);  // of a way of 4 m
     EXPECT_LT(slow.worst_error(), 1e-5 * slow.drag.back());
   }
@@ -229,8 +230,7 @@ TEST(WaterPace, ABlockFallsIntoTheWater) {
                         ", pace 10: largest error over its fall's energy",
             .value = tenth.worst_error() / moved,
             .reference = 0.0,
-            .tolerance = 1e-4,
-            .note = "pace 1: " + std::to_string(each.worst_error() / moved)});
+            .tolerance = 1e-4});
     EXPECT_LT(tenth.distance(each), 2e-3);
   }
 }
