@@ -59,6 +59,36 @@ void buoyancy_sea(benchmark::State& run) {
                {.spectrum = WaveOptions::Spectrum::jonswap, .height = 0.1, .period = 60}),
            c);
 }
+/// Buoyancy and drag in steps, of bodies that the water cuts at their sides (third argument 0), or
+/// through their tops. \param run  bodies, pace, whether through their tops
+void in_steps(benchmark::State& run, const DragOptions& options) {
+  bench::Sheet<Spatial> c(run.range(0));
+  if (run.range(2) != 0)
+    for (std::size_t b = 0; b < static_cast<std::size_t>(c.part.local); ++b)
+      c.state.record(b)[2] = -0.5 * SheetSection{}.thickness;
+  const auto submersion =
+      std::make_shared<Submersion>(c.part, static_cast<int>(run.range(1)), true);
+  const auto buoyancy = make_buoyancy(submersion, 1010 * 9.81);
+  const auto drag =
+      options.faces ? make_face_drag(submersion, options, false) : make_drag(submersion, options);
+  for ([[maybe_unused]] auto _ : run) {
+    submersion->before_evaluation(c.state);
+    buoyancy->add(c.state, c.wrenches);
+    drag->add(c.state, c.wrenches);
+    submersion->after_evaluation();
+    submersion->commit(c.state, 1);
+    benchmark::DoNotOptimize(c.wrenches.values.data());
+  }
+  run.counters["ns_per_body"] =
+      benchmark::Counter(static_cast<double>(run.iterations()) * c.part.owned * 1e-9,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+void steps(benchmark::State& run) { in_steps(run, {.linear = 100, .coefficient = 1}); }
+void steps_faces(benchmark::State& run) {
+  in_steps(run, {.faces = true, .form = 1.1, .skin = 0.003});
+}
+BENCHMARK(steps)->ArgsProduct({{1460, 29561}, {1, 10}, {0, 1}});
+BENCHMARK(steps_faces)->ArgsProduct({{1460}, {1, 10}, {0, 1}});
 BENCHMARK(drag_faces)->Arg(1460);
 BENCHMARK(buoyancy_one_wave)->Arg(1460);
 BENCHMARK(buoyancy_sea)->Arg(1460);

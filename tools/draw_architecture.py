@@ -32,6 +32,7 @@ ROLES = {
     "lattice": ("bodies, beams, sets, state;", "partition, archive"),
     "forces": ("interface of a force, tangent,", "gravity, loads, boundaries"),
     "beams": ("beam kernel, moduli,", "calibration"),
+    "submersion": ("submerged parts,", "waves"),
     "water": ("buoyancy, drag,", "added mass"),
     "contact_force": ("contact as a force:", "exchange, sharing"),
     "fracture": ("beams that damage", "and break"),

@@ -3,6 +3,8 @@
 /// (explicit.cpp), tests, and any other back end of the step use these functions.
 #pragma once
 
+#include <vector>
+
 #include "base/collectives.h"
 #include "leapfrog/leapfrog_work.h"
 #include "leapfrog/planar_leapfrog_stepper.h"
@@ -27,7 +29,10 @@ class ExplicitStep {
         state_(state),
         wrenches_(wrenches),
         stepper_(model),
-        work_(model.forces(), works.all()) {}
+        work_(model.forces(), works.all()) {
+    for (const auto& force : model.forces())
+      if (auto* role = force->roles().prepares) preparing_.push_back(role);
+  }
 
   /// Sets the bodies' initial velocities, at t_0, and evaluates the forces. Collective.
   void start() {
@@ -45,7 +50,9 @@ class ExplicitStep {
   void evaluate() {
     state_.velocity_time = state_.time - 0.5 * work_.last_dt();
     model_.part().ghosts.update(state_.records, Space::record);
+    for (auto* force : preparing_) force->before_evaluation(state_);
     model_.evaluate(state_, wrenches_);
+    for (auto* force : preparing_) force->after_evaluation();
   }
   /// Kick and drift of the owned bodies, from t_n to t_n + dt. Returns the square of the largest
   /// speed [m^2/s^2], which is not finite if a body's speed is not.
@@ -106,6 +113,7 @@ class ExplicitStep {
   Wrenches<Space>& wrenches_;
   LeapfrogStepperOf<Space> stepper_;
   LeapfrogWork<Space> work_;
+  std::vector<PreparesSteps<Space>*> preparing_;
 };
 
 }  // namespace floe

@@ -136,6 +136,22 @@ class LimitsStep {
   ~LimitsStep() = default;
 };
 
+/// Role of a force with findings that it shares with other forces, or that it keeps over several
+/// steps, in the evaluations of the steps of leapfrog. There all forces get the run's own state. In
+/// other evaluations (other integrators, the search for the stable step) it does without them.
+template <class Space>
+class PreparesSteps {
+ public:
+  /// Called before the forces are evaluated for the step that begins at the state, perhaps several
+  /// times at one state; steps are told apart by Commits::commit().
+  virtual void before_evaluation(const State<Space>& state) = 0;
+  /// Called after that.
+  virtual void after_evaluation() = 0;
+
+ protected:
+  ~PreparesSteps() = default;
+};
+
 /// Role of a force whose wrenches depend on a history, which an accepted step changes: damage,
 /// slip. Dynamics can use such a force only by integrators that evaluate once per step and never
 /// take a step back.
@@ -205,6 +221,7 @@ struct Roles {
   Damps<Space>* damping = nullptr;
   DoesWork<Space>* work = nullptr;
   LimitsStep<Space>* step = nullptr;
+  PreparesSteps<Space>* prepares = nullptr;
   Commits<Space>* commits = nullptr;
   Persists* persists = nullptr;
   TakesBrokenPairs* broken_pairs = nullptr;

@@ -140,6 +140,9 @@ constexpr std::array table{
                "one that a beam joins; required with lattice_file; 0: beams only"},
     OptionSpec{"water: current", numbers, "0 0 0", "m/s", ">= -1e6, <= 1e6",
                "drag: velocity of the water", 3},
+    OptionSpec{"water: pace", integer, "(10 with fracture or contact, else 1)", "", ">= 1, <= 100",
+               "leapfrog: the water on a body is computed in every pace-th step, and earlier once "
+               "the body has moved by 1 % of its thickness; in between it follows to first order"},
     OptionSpec{
         "water: added_mass", text, "0", "", "",
         "dynamics: a body takes along this part, 0 to 1e3, of the water that it displaces at "

@@ -170,6 +170,24 @@ void read_added_mass(Options& options, Scene& scene) {
                      "(integrator: explicit without -ts_type); give added_mass a number");
 }
 
+/// Bodies that may come loose are cut by the surface in any way, which takes time; those of an
+/// intact sheet are not.
+void read_pace(Options& options, Scene& scene) {
+  const bool in_space = scene.forces.buoyancy || scene.drag.faces || options.given_section("waves");
+  if (!leaps(options, scene)) {
+    options.refuse("water: pace",
+                   "would have no effect: only leapfrog (integrator: explicit without -ts_type) "
+                   "steps at it");
+  } else if (!in_space) {
+    options.refuse("water: pace", "would have no effect without buoyancy, waves or 'drag: faces'");
+  } else if (options.given("water: pace")) {
+    scene.water_pace = static_cast<int>(options.integer("water: pace"));
+  } else {
+    constexpr int enough = 10;
+    scene.water_pace = scene.forces.fracture || scene.forces.contact ? enough : 1;
+  }
+}
+
 void read_waves(Options& options, Scene& scene) {
   if (!options.given_section("waves")) return;
   if (!scene.forces.buoyancy && !scene.forces.drag) return;  // refused
@@ -222,6 +240,7 @@ void read_water(Options& options, Scene& scene) {
     options.refuse("water: density", "would have no effect on linear drag");
   }
   scene.drag.density = scene.water_density;
+  read_pace(options, scene);
   read_waves(options, scene);
 }
 

@@ -254,6 +254,39 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
   return placed;
 }
 
+namespace {
+
+/// Adds buoyancy, and the drag that shares its submerged parts.
+template <class Water>
+void add_by(const std::shared_ptr<Water>& submersion, const Scene& scene, Model<Spatial>& model) {
+  const bool buoyancy = scene.forces.buoyancy;
+  if (buoyancy) model.add_force(make_buoyancy(submersion, scene.water_density * scene.gravity));
+  if (!scene.forces.drag) return;
+  if constexpr (std::is_same_v<Water, Submersion>) {
+    if (!scene.drag.faces) return model.add_force(make_drag(submersion, scene.drag));
+  }
+  model.add_force(make_face_drag(submersion, scene.drag, !buoyancy));
+}
+
+/// Adds the forces of the water that need space.
+void add_water(const Scene& scene, Model<Spatial>& model) {
+  const bool apart = !scene.drag.faces && !scene.waves.any();  // drag at centroids in still water
+  if (!scene.forces.buoyancy && (!scene.forces.drag || apart)) return;
+  const Part& part = model.part();
+  require_shapes(part, scene.forces.buoyancy ? "buoyancy" : "drag");
+  // At a pace drag on faces asks for the volumes that it has found itself.
+  const bool shared = scene.forces.drag && (scene.forces.buoyancy || scene.water_pace > 1);
+  if (scene.waves.any()) {
+    const Waves waves(part, scene.gravity, scene.waves, scene.drag.current);
+    add_by(std::make_shared<SubmersionInWaves>(part, waves, scene.water_pace, shared), scene,
+           model);
+  } else {
+    add_by(std::make_shared<Submersion>(part, scene.water_pace, shared), scene, model);
+  }
+}
+
+}  // namespace
+
 template <class Space>
 void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<Space>& model,
                 const Lattice* lattice) {
@@ -273,16 +306,9 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
     model.set_beams(make_beam_force<Space>(part, scene.beam), scene.beam.kinematics);
   if constexpr (std::is_same_v<Space, Spatial>) {
     if (scene.forces.gravity) model.add_force(make_gravity<Spatial>(part, scene.gravity));
-    const double weight = scene.water_density * scene.gravity;
-    if (scene.forces.buoyancy && scene.waves.any()) {
-      model.add_force(make_buoyancy_in_waves(part, weight, scene.gravity, scene.waves));
-    } else if (scene.forces.buoyancy) {
-      model.add_force(make_buoyancy<Spatial>(part, weight));
-    }
-    if (scene.forces.drag && (scene.drag.faces || scene.waves.any()))
-      model.add_force(make_face_drag(part, scene.drag, scene.gravity, scene.waves));
+    add_water(scene, model);
   }
-  if (scene.forces.drag && !scene.drag.faces && !scene.waves.any())
+  if (scene.forces.drag && !scene.forces.buoyancy && !scene.drag.faces && !scene.waves.any())
     model.add_force(make_drag<Space>(part, scene.drag));
   if (scene.added_mass > 0)
     model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "submersion/immersion.h"
 #include "water/buoyancy.h"
-#include "water/immersion.h"
 
 namespace floe {
 

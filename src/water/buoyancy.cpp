@@ -7,16 +7,24 @@
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
-#include "water/immersion.h"
-#include "water/waves.h"
+#include "submersion/immersion.h"
+#include "submersion/waves.h"
 
 namespace floe {
 namespace {
 
-const Part& with_shapes(const Part& part) {
-  if (part.shapes.empty() && part.owned > 0)
-    throw InputError("forces: buoyancy needs bodies with a shape; the lattice file has no /shapes");
-  return part;
+/// Upper bound of the stiffness of buoyancy against heave of an owned body [N/m].
+double heave_bound(const Immersion& immersion, const Part& part, double weight_density,
+                   std::int32_t body) {
+  // The waterplane of a convex body is at most three times its mean horizontal section, which is
+  // volume over height (the base of a cone).
+  double low = 0, high = 0;
+  const auto b = static_cast<std::size_t>(body);
+  for (std::int32_t v = part.shapes.vertex_of[b]; v < part.shapes.vertex_of[b + 1]; ++v) {
+    low = std::min(low, item(part.shapes.vertices, v)[2]);
+    high = std::max(high, item(part.shapes.vertices, v)[2]);
+  }
+  return 3.0 * weight_density * immersion.volume(body) / (high - low);
 }
 
 /// Buoyancy of the owned bodies. With r from the centroid of a body, its submerged part V and its
@@ -27,29 +35,39 @@ class Buoyancy final : public Force<Spatial>,
                        public HasTangent<Spatial>,
                        public LimitsStep<Spatial> {
  public:
-  Buoyancy(const Part& part, double weight_density)
-      : part_(part),
-        immersion_(with_shapes(part)),
-        owned_(static_cast<std::size_t>(part.owned)),
+  Buoyancy(std::shared_ptr<Submersion> submersion, double weight_density)
+      : part_(submersion->part()),
+        submersion_(std::move(submersion)),
+        immersion_(submersion_->immersion()),
+        owned_(static_cast<std::size_t>(part_.owned)),
         weight_(weight_density) {}
 
   std::string_view name() const override { return "buoyancy"; }
-  Roles<Spatial> roles() override { return {.tangent = this, .step = this}; }
+  Roles<Spatial> roles() override {
+    Roles<Spatial> roles{.tangent = this, .step = this, .prepares = submersion_.get()};
+    if (submersion_->has_pace())
+      roles.commits = submersion_.get(), roles.persists = submersion_.get();
+    return roles;
+  }
 
-  [[gnu::flatten]] void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
-    const Lanes zero(0.0);
-    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
-      const BlockMotion m = block_motion<false>(immersion_, state, block);
-      const Immersion::Lane below = immersion_.of_block(state, block, m.u.z, m.q);
-      const Lanes turn_y = -weight_ * below.moment.x;
-      std::array<Row, lanes> rows;
-      scatter_four({zero, zero, weight_ * below.volume, weight_ * below.moment.y}, rows);
-      for (std::size_t b = block * lanes; b < std::min<std::size_t>((block + 1) * lanes, owned_);
-           ++b) {
-        double* w = wrenches.of(b);
-        add_row(w, rows[b % lanes]);
-        w[4] += turn_y[b % lanes];
-      }
+  void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
+    Submersion& submersion = *submersion_;
+    const auto find = [&state, &immersion = immersion_](std::size_t block) {
+      const BlockMotion m = block_motion<false>(immersion, state, block);
+      return immersion.of_block(state, block, m.u.z, m.q);
+    };
+    if (submersion.is_paced()) {
+      add_by(wrenches, [&](std::size_t block) { return submersion.at_pace(state, block); });
+      submersion.volumes_are_kept();
+    } else if (submersion.wants_volumes()) {
+      add_by(wrenches, [&](std::size_t block) {
+        const Immersion::Lane below = find(block);
+        submersion.keep_volume(block, below.volume);
+        return below;
+      });
+      submersion.volumes_are_kept();
+    } else {
+      add_by(wrenches, find);
     }
   }
 
@@ -79,15 +97,7 @@ class Buoyancy final : public Force<Spatial>,
   }
 
   double stiffness_bound(std::int32_t body) const override {
-    // The waterplane of a convex body is at most three times its mean horizontal section, which is
-    // volume over height (the base of a cone).
-    double low = 0, high = 0;
-    const auto b = static_cast<std::size_t>(body);
-    for (std::int32_t v = part_.shapes.vertex_of[b]; v < part_.shapes.vertex_of[b + 1]; ++v) {
-      low = std::min(low, item(part_.shapes.vertices, v)[2]);
-      high = std::max(high, item(part_.shapes.vertices, v)[2]);
-    }
-    return 3.0 * weight_ * immersion_.volume(body) / (high - low);
+    return heave_bound(immersion_, part_, weight_, body);
   }
 
   /// Approximate rate of heave, with volume^(2/3) for the waterplane. Bodies that the surface does
@@ -120,42 +130,65 @@ class Buoyancy final : public Force<Spatial>,
   }
 
  private:
+  /// Adds the wrenches. \param below  function from a block to its submerged parts
+  template <class Below>
+  [[gnu::flatten]] void add_by(Wrenches<Spatial>& wrenches, Below below_of) const {
+    const Lanes zero(0.0);
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
+      const Immersion::Lane below = below_of(block);
+      const Lanes turn_y = -weight_ * below.moment.x;
+      std::array<Row, lanes> rows;
+      scatter_four({zero, zero, weight_ * below.volume, weight_ * below.moment.y}, rows);
+      for (std::size_t b = block * lanes; b < std::min<std::size_t>((block + 1) * lanes, owned_);
+           ++b) {
+        double* w = wrenches.of(b);
+        add_row(w, rows[b % lanes]);
+        w[4] += turn_y[b % lanes];
+      }
+    }
+  }
+
   const Part& part_;
-  Immersion immersion_;
+  std::shared_ptr<Submersion> submersion_;
+  const Immersion& immersion_;
   std::size_t owned_;
   double weight_;
 };
 
-/// Buoyancy below a surface that moves. In axes in which the local plane is level the pressure is
-/// that of still water with the weight rho g |(-slope, 1)|; the wrench is turned back.
-template <class Surface>
-class MovingBuoyancy final : public Force<Spatial>,
-                             public DoesWork<Spatial>,
-                             public LimitsStep<Spatial>,
-                             public DependsOnTime {
+/// Buoyancy below waves. In axes in which the local plane is level the pressure is that of still
+/// water with the weight rho g |(-slope, 1)|; the wrench is turned back.
+class BuoyancyInWaves final : public Force<Spatial>,
+                              public DoesWork<Spatial>,
+                              public LimitsStep<Spatial>,
+                              public DependsOnTime {
  public:
-  MovingBuoyancy(const Part& part, double weight_density, Surface surface)
-      : part_(part),
-        still_(part, weight_density),
-        immersion_(part),
+  BuoyancyInWaves(std::shared_ptr<SubmersionInWaves> submersion, double weight_density)
+      : part_(submersion->part()),
+        submersion_(std::move(submersion)),
+        immersion_(submersion_->immersion()),
         weight_(weight_density),
-        surface_(std::move(surface)),
-        forces_(static_cast<std::size_t>(part.owned)),
+        waves_(submersion_->waves()),
+        forces_(static_cast<std::size_t>(part_.owned)),
         moments_(forces_) {}
 
   std::string_view name() const override { return "buoyancy"; }
-  Roles<Spatial> roles() override { return {.work = this, .step = this, .time = this}; }
+  Roles<Spatial> roles() override {
+    Roles<Spatial> roles{.work = this, .step = this, .prepares = submersion_.get(), .time = this};
+    if (submersion_->has_pace())
+      roles.commits = submersion_.get(), roles.persists = submersion_.get();
+    return roles;
+  }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
+    const bool known = submersion_->knows_volumes();
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const auto b = static_cast<std::size_t>(body);
-      const SurfacePlane plane = surface_.plane(b, immersion_.centroid(state, body), state.time);
-      const Submerged s = immersion_.below(state, body, plane);
-      const Vec3<double> arm = rotate(conjugate(plane.to_level()), s.moment);
-      const Vec3<double> pressure{-weight_ * plane.slope_x, -weight_ * plane.slope_y, weight_};
-      forces_[b] = s.volume * pressure;
-      moments_[b] = cross(arm, pressure);
-      floe::add(wrenches, b, forces_[b], moments_[b]);
+      if (known) {
+        add_to(wrenches, b, submersion_->plane(b), submersion_->below(b));
+      } else {
+        const SurfacePlane plane = waves_.plane(b, immersion_.centroid(state, body), state.time);
+        add_to(wrenches, b, plane, immersion_.below(state, body, plane));
+      }
     }
     powers_with(state, std::span(&power_, 1));
   }
@@ -170,14 +203,15 @@ class MovingBuoyancy final : public Force<Spatial>,
   }
 
   double stiffness_bound(std::int32_t body) const override {
-    return surface_.most_steepness() * still_.stiffness_bound(body);
+    return waves_.most_steepness() * heave_bound(immersion_, part_, weight_, body);
   }
   /// As in still water, for every body: the surface may reach it at any time.
   std::optional<double> rate_estimate(const State<Spatial>&) const override {
     double fastest2 = 0;
     for (std::int32_t body = 0; body < part_.owned; ++body)
-      fastest2 = std::max(fastest2, still_.stiffness_bound(body) / item(part_.bodies.mass, body));
-    return std::sqrt(surface_.most_steepness() * fastest2);
+      fastest2 = std::max(
+          fastest2, heave_bound(immersion_, part_, weight_, body) / item(part_.bodies.mass, body));
+    return std::sqrt(waves_.most_steepness() * fastest2);
   }
   double time_dependent_until() const override { return std::numeric_limits<double>::infinity(); }
 
@@ -187,11 +221,20 @@ class MovingBuoyancy final : public Force<Spatial>,
   }
 
  private:
+  void add_to(Wrenches<Spatial>& wrenches, std::size_t b, const SurfacePlane& plane,
+              const Submerged& s) {
+    const Vec3<double> arm = rotate(conjugate(plane.to_level()), s.moment);
+    const Vec3<double> pressure{-weight_ * plane.slope_x, -weight_ * plane.slope_y, weight_};
+    forces_[b] = s.volume * pressure;
+    moments_[b] = cross(arm, pressure);
+    floe::add(wrenches, b, forces_[b], moments_[b]);
+  }
+
   const Part& part_;
-  Buoyancy still_;
-  Immersion immersion_;
+  std::shared_ptr<SubmersionInWaves> submersion_;
+  const Immersion& immersion_;
   double weight_;
-  Surface surface_;
+  const Waves& waves_;
   std::vector<Vec3<double>> forces_, moments_;  ///< of the last evaluation [N, N m]
   double power_ = 0;                            ///< of the last evaluation [W]
 };
@@ -200,17 +243,28 @@ class MovingBuoyancy final : public Force<Spatial>,
 
 std::unique_ptr<Force<Spatial>> make_buoyancy_in_waves(const Part& part, double weight_density,
                                                        double gravity, const WaveOptions& waves) {
-  return std::make_unique<MovingBuoyancy<Waves>>(with_shapes(part), weight_density,
-                                                 Waves(part, gravity, waves, {}));
+  return make_buoyancy(
+      std::make_shared<SubmersionInWaves>(require_shapes(part, "buoyancy"),
+                                          Waves(part, gravity, waves, {}), 1, false),
+      weight_density);
+}
+std::unique_ptr<Force<Spatial>> make_buoyancy(std::shared_ptr<SubmersionInWaves> submersion,
+                                              double weight_density) {
+  return std::make_unique<BuoyancyInWaves>(std::move(submersion), weight_density);
 }
 
 template <>
 std::unique_ptr<Force<Spatial>> make_buoyancy<Spatial>(const Part& part, double weight_density) {
-  return std::make_unique<Buoyancy>(part, weight_density);
+  return make_buoyancy(std::make_shared<Submersion>(require_shapes(part, "buoyancy"), 1, false),
+                       weight_density);
+}
+std::unique_ptr<Force<Spatial>> make_buoyancy(std::shared_ptr<Submersion> submersion,
+                                              double weight_density) {
+  return std::make_unique<Buoyancy>(std::move(submersion), weight_density);
 }
 
 std::vector<double> displaced_mass(const Part& part, double density) {
-  const Immersion immersion(with_shapes(part));
+  const Immersion immersion(require_shapes(part, "buoyancy"));
   const State<Spatial> rest(static_cast<std::size_t>(part.local));
   std::vector<double> mass;
   mass.reserve(static_cast<std::size_t>(part.owned));

@@ -8,6 +8,8 @@
 
 #include "floe/water/wave_options.h"
 #include "forces/force.h"
+#include "submersion/submersion.h"
+#include "submersion/submersion_in_waves.h"
 
 namespace floe {
 
@@ -18,6 +20,11 @@ namespace floe {
 template <class Space>
 std::unique_ptr<Force<Space>> make_buoyancy(const Part& part, double weight_density);
 
+/// The same with submerged parts that other forces use too. This force calls them in each step, and
+/// keeps them in checkpoints.
+std::unique_ptr<Force<Spatial>> make_buoyancy(std::shared_ptr<Submersion> submersion,
+                                              double weight_density);
+
 /// Makes the force of buoyancy below a moving surface: the same with the local plane of the waves,
 /// rho_w g V (-slope_x, -slope_y, 1) at the centroid of the part below that plane, which is the
 /// Froude-Krylov force. All of its work is reported as `energy_external`. For explicit dynamics.
@@ -25,6 +32,10 @@ std::unique_ptr<Force<Space>> make_buoyancy(const Part& part, double weight_dens
 /// \throws InputError as above, and if a wave is shorter than 8 bodies; collective
 std::unique_ptr<Force<Spatial>> make_buoyancy_in_waves(const Part& part, double weight_density,
                                                        double gravity, const WaveOptions& waves);
+
+/// The same with submerged parts that other forces use too, as above.
+std::unique_ptr<Force<Spatial>> make_buoyancy(std::shared_ptr<SubmersionInWaves> submersion,
+                                              double weight_density);
 
 /// Mass of the water that each owned body displaces at rest [kg].
 /// \param density  of the water [kg/m^3]

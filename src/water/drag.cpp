@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "floe/base/petsc.h"
-#include "water/immersion.h"
+#include "submersion/immersion.h"
 
 namespace floe {
 namespace {
-
-const Part& with_shapes(const Part& part) {
-  if (part.shapes.empty() && part.owned > 0)
-    throw InputError("forces: drag needs bodies with a shape; the lattice file has no /shapes");
-  return part;
-}
 
 /// Velocities of the bodies of a block, and their wet areas A_p V/V_0 with V the submerged volume.
 struct MovingBlock {
@@ -35,7 +30,11 @@ template <>
 class WettedBodies<Spatial> {
  public:
   explicit WettedBodies(const Part& part)
-      : immersion_(with_shapes(part)), area_per_volume_(immersion_.blocks()) {
+      : WettedBodies(std::make_shared<Submersion>(require_shapes(part, "drag"), 1, false)) {}
+  explicit WettedBodies(std::shared_ptr<Submersion> submersion)
+      : submersion_(std::move(submersion)),
+        immersion_(submersion_->immersion()),
+        area_per_volume_(immersion_.blocks()) {
     for (std::size_t k = 0; k < immersion_.blocks() * lanes; ++k) {
       const auto body = static_cast<std::int32_t>(immersion_.body_of(k / lanes, k % lanes));
       area_per_volume_[k / lanes].values[k % lanes] =
@@ -45,7 +44,9 @@ class WettedBodies<Spatial> {
   std::size_t blocks() const { return immersion_.blocks(); }
   MovingBlock block(const State<Spatial>& state, std::size_t block) const {
     const BlockMotion m = block_motion<true>(immersion_, state, block);
-    const Lanes volume = immersion_.of_block(state, block, m.u.z, m.q).volume;
+    const Lanes volume = submersion_->knows_volumes()
+                             ? submersion_->volume(block)
+                             : immersion_.of_block(state, block, m.u.z, m.q).volume;
     return {m.v, volume * load(area_per_volume_[block].values.data())};
   }
   /// Wet area of one body [m^2].
@@ -63,7 +64,8 @@ class WettedBodies<Spatial> {
  private:
   double per_volume(std::size_t b) const { return area_per_volume_[b / lanes].values[b % lanes]; }
 
-  Immersion immersion_;
+  std::shared_ptr<Submersion> submersion_;
+  const Immersion& immersion_;
   std::vector<LaneNumbers> area_per_volume_;  ///< A_p/V_0 of each body [1/m]
 };
 
@@ -103,9 +105,9 @@ class Drag final : public Force<Space>,
                    public DoesWork<Space>,
                    public LimitsStep<Space> {
  public:
-  Drag(const Part& part, const DragOptions& options)
+  Drag(const Part& part, WettedBodies<Space> bodies, const DragOptions& options)
       : part_(part),
-        bodies_(part),
+        bodies_(std::move(bodies)),
         current_(options.current),
         linear_(options.linear),
         coefficient_(0.5 * options.density * options.coefficient),
@@ -242,7 +244,13 @@ class Drag final : public Force<Space>,
 
 template <class Space>
 std::unique_ptr<Force<Space>> make_drag(const Part& part, const DragOptions& options) {
-  return std::make_unique<Drag<Space>>(part, options);
+  return std::make_unique<Drag<Space>>(part, WettedBodies<Space>(part), options);
+}
+std::unique_ptr<Force<Spatial>> make_drag(std::shared_ptr<Submersion> submersion,
+                                          const DragOptions& options) {
+  const Part& part = submersion->part();
+  return std::make_unique<Drag<Spatial>>(part, WettedBodies<Spatial>(std::move(submersion)),
+                                         options);
 }
 
 template std::unique_ptr<Force<Spatial>> make_drag<Spatial>(const Part&, const DragOptions&);

@@ -7,6 +7,8 @@
 #include "floe/water/drag_options.h"
 #include "floe/water/wave_options.h"
 #include "forces/force.h"
+#include "submersion/submersion.h"
+#include "submersion/submersion_in_waves.h"
 
 namespace floe {
 
@@ -19,6 +21,10 @@ namespace floe {
 template <class Space>
 std::unique_ptr<Force<Space>> make_drag(const Part& part, const DragOptions& options);
 
+/// The same by submerged parts that buoyancy calls in each step.
+std::unique_ptr<Force<Spatial>> make_drag(std::shared_ptr<Submersion> submersion,
+                                          const DragOptions& options);
+
 /// Makes drag on the wetted faces of the owned bodies (DragOptions::faces), or in waves, or both
 /// (model.md, "Water"). With u the velocity of the water less that of the body at a point of a face
 /// with the outward normal n, u_t the part of u along the face: rho_w C_d/2 (u.n)^2 (-n) per area
@@ -30,5 +36,13 @@ std::unique_ptr<Force<Space>> make_drag(const Part& part, const DragOptions& opt
 /// \throws InputError if the lattice has no shapes, or a wave is shorter than 8 bodies; collective
 std::unique_ptr<Force<Spatial>> make_face_drag(const Part& part, const DragOptions& options,
                                                double gravity, const WaveOptions& waves);
+
+/// The same by submerged parts that other forces use too. With a pace, drag on faces of a body is
+/// computed when its submerged part is, and in between follows the body's velocity to first order.
+/// \param leads  no other force calls the submerged parts in each step: this one does
+std::unique_ptr<Force<Spatial>> make_face_drag(std::shared_ptr<Submersion> submersion,
+                                               const DragOptions& options, bool leads);
+std::unique_ptr<Force<Spatial>> make_face_drag(std::shared_ptr<SubmersionInWaves> submersion,
+                                               const DragOptions& options, bool leads);
 
 }  // namespace floe

@@ -2,22 +2,28 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "submersion/immersion.h"
+#include "submersion/submersion.h"
+#include "submersion/submersion_in_waves.h"
+#include "submersion/waves.h"
 #include "water/drag.h"
-#include "water/immersion.h"
+#include "water/face_wrench.h"
 #include "water/shelter.h"
-#include "water/waves.h"
 
 namespace floe {
 namespace {
 
 using Vec = Vec3<double>;
-using Matrix = std::array<Vec, 3>;  ///< by rows
+using Matrix = FaceWrench::Matrix;
 
 /// A point of a face, from the body's centroid in world axes [m], and the height at it of a
 /// function that is linear over the face.
@@ -47,6 +53,10 @@ struct Flow {
   bool front;     ///< u.n < 0 on the whole triangle
 };
 
+/// The submerged parts that a force of this surface uses.
+template <class Surface>
+using SubmersionIn = std::conditional_t<Surface::moves, SubmersionInWaves, Submersion>;
+
 /// Drag at the centroid and on faces of the owned bodies.
 template <class Surface>
 class FaceDrag final : public Force<Spatial>,
@@ -59,18 +69,22 @@ class FaceDrag final : public Force<Spatial>,
                        public TakesBrokenPairs,
                        public DependsOnTime {
  public:
-  FaceDrag(const Part& part, const DragOptions& options, Surface surface)
-      : part_(part),
+  FaceDrag(std::shared_ptr<SubmersionIn<Surface>> submersion, const DragOptions& options,
+           Surface surface, bool leads)
+      : part_(submersion->part()),
         surface_(std::move(surface)),
-        immersion_(part),
-        normal_(face_normals(part.shapes)),
+        submersion_(std::move(submersion)),
+        immersion_(submersion_->immersion()),
+        leads_(leads),
+        normal_(face_normals(part_.shapes)),
         faces_(options.faces),
         linear_(options.linear),
         quadratic_(0.5 * options.density * options.coefficient),
         form_(0.5 * options.density * options.form),
         skin_(0.5 * options.density * options.skin),
-        forces_(static_cast<std::size_t>(part.owned)),
+        forces_(static_cast<std::size_t>(part_.owned)),
         moments_(forces_) {
+    const Part& part = part_;
     std::size_t most = 0;
     for (std::size_t f = 0; f + 1 < part.shapes.corner_of.size(); ++f)
       most = std::max(
@@ -80,6 +94,7 @@ class FaceDrag final : public Force<Spatial>,
     for (auto* points : {&wet_, &half_}) points->reserve(most + 3);
     for (std::int32_t body = 0; body < part.owned; ++body)
       area_per_volume_.push_back(immersion_.plan_area(body) / immersion_.volume(body));
+    if (faces_ && submersion_->has_pace()) found_.resize(forces_.size());
   }
 
   std::string_view name() const override { return "drag"; }
@@ -87,15 +102,23 @@ class FaceDrag final : public Force<Spatial>,
     Roles<Spatial> roles{.tangent = this, .damping = this, .work = this, .step = this};
     if (faces_) roles.persists = this, roles.broken_pairs = this;
     if (faces_ && shelter_->renews()) roles.commits = this;
+    if (leads_) roles.prepares = submersion_.get();
+    if (leads_ && submersion_->has_pace()) roles.commits = this, roles.persists = this;
     if constexpr (Surface::moves) roles.time = this;
     return roles;
   }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
-    evaluate(state, [&](std::size_t b, const Vec& force, const Vec& moment) {
+    const auto take = [&](std::size_t b, const Vec& force, const Vec& moment) {
       forces_[b] = force, moments_[b] = moment;
       floe::add(wrenches, b, force, moment);
-    });
+    };
+    if (submersion_->is_paced()) {
+      if (leads_) submersion_->find_all_at_pace(state);
+      evaluate_at_pace(state, take);
+    } else {
+      evaluate(state, take);
+    }
     powers_with(state, std::span(&power_, 1));
   }
   /// The derivative to places is small against that of buoyancy, and left out.
@@ -154,8 +177,16 @@ class FaceDrag final : public Force<Spatial>,
     columns.add("energy_drag", 0.0 - works.front());
   }
 
-  void commit(const State<Spatial>& state, double) override { shelter_->after_step(state); }
-  void persist(Archive& archive) override { shelter_->persist(archive); }
+  void commit(const State<Spatial>& state, double dt) override {
+    if (leads_) submersion_->commit(state, dt);
+    if (faces_ && shelter_->renews()) shelter_->after_step(state);
+  }
+  void persist(Archive& archive) override {
+    if (leads_ && submersion_->has_pace()) submersion_->persist(archive);
+    if (!faces_) return;
+    shelter_->persist(archive);
+    if (submersion_->has_pace()) persist_found(archive);
+  }
   void release(std::span<const std::array<std::int32_t, 2>> pairs) override {
     shelter_->release(pairs);
   }
@@ -163,13 +194,11 @@ class FaceDrag final : public Force<Spatial>,
 
  private:
   /// Calls take(b, force, moment) for each owned body.
-  void evaluate(const State<Spatial>& state, auto&& take) const {
+  [[gnu::flatten]] void evaluate(const State<Spatial>& state, auto&& take) const {
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       Vec force{0, 0, 0}, moment{0, 0, 0};
       each_flow(state, body, [&](const Flow& flow, const Vec& n) {
-        const Vec along = flow.u - flow.normal * n;
-        Vec f = (skin_ * length(along) * flow.area) * along;
-        if (flow.front) f = f - (form_ * flow.normal * flow.normal * flow.area) * n;
+        const Vec f = force_of(flow, n);
         force = force + f;
         moment = moment + cross(flow.at, f);
       });
@@ -178,26 +207,78 @@ class FaceDrag final : public Force<Spatial>,
       take(static_cast<std::size_t>(body), force, moment);
     }
   }
+  /// The same, where drag on faces is found only for bodies whose submerged part is new.
+  void evaluate_at_pace(const State<Spatial>& state, auto&& take) {
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      const auto b = static_cast<std::size_t>(body);
+      Vec force{0, 0, 0}, moment{0, 0, 0};
+      if (faces_) {
+        if (submersion_->is_new(b)) find(state, body);
+        std::tie(force, moment) =
+            found_[b].at(water_at(state, b) - velocity(state, b), angular_velocity(state, b));
+      }
+      const auto [wet, u] = at_centroid(state, body);
+      if (wet > 0) force = force + ((linear_ + quadratic_ * length(u)) * wet) * u;
+      take(b, force, moment);
+    }
+  }
+  /// Finds the drag on a body's faces, with its derivatives.
+  void find(const State<Spatial>& state, std::int32_t body) {
+    const auto b = static_cast<std::size_t>(body);
+    FaceWrench found;
+    found.against = water_at(state, b) - velocity(state, b);
+    found.spin = angular_velocity(state, b);
+    each_flow(state, body, [&](const Flow& flow, const Vec& n) {
+      const Vec f = force_of(flow, n);
+      found.force = found.force + f;
+      found.moment = found.moment + cross(flow.at, f);
+      found.add_slope(flow.at, slope_of(flow, n));
+    });
+    found_[b] = found;
+  }
+  void persist_found(Archive& archive) {
+    std::vector<std::int32_t> bodies;
+    std::vector<double> rows;
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      bodies.push_back(body);
+      for (const double* number : item(found_, body).all()) rows.push_back(*number);
+    }
+    archive.rows("face_drag", bodies, rows, static_cast<int>(FaceWrench::numbers));
+    if (!archive.loading()) return;
+    const double* row = rows.data();
+    for (FaceWrench& found : found_)
+      for (double* number : found.all()) *number = *row++;
+  }
+
+  Vec force_of(const Flow& flow, const Vec& n) const {
+    const Vec along = flow.u - flow.normal * n;
+    Vec f = (skin_ * length(along) * flow.area) * along;
+    if (flow.front) f = f - (form_ * flow.normal * flow.normal * flow.area) * n;
+    return f;
+  }
+  static void add_rank_one(Matrix& d, double size, const Vec& a) {
+    for (std::size_t r = 0; r < 3; ++r) d[r] = d[r] + (size * a[r]) * a;
+  }
+  static void add_unit(Matrix& d, double size) {
+    for (std::size_t r = 0; r < 3; ++r) d[r][r] += size;
+  }
+  /// Derivative of force_of() to the velocity of the body at the point, times -1.
+  Matrix slope_of(const Flow& flow, const Vec& n) const {
+    Matrix d{};
+    if (flow.front) add_rank_one(d, -2 * form_ * flow.normal * flow.area, n);
+    const Vec along = flow.u - flow.normal * n;
+    const double speed = length(along), weight = skin_ * flow.area;
+    add_unit(d, weight * speed);
+    add_rank_one(d, -weight * speed, n);
+    if (speed > 0) add_rank_one(d, weight / speed, along);
+    return d;
+  }
 
   /// Calls take(r, D) with the derivative D of the force at r to the velocity of the body there,
   /// times -1; D is symmetric and positive.
   void each_slope(const State<Spatial>& state, std::int32_t body, auto&& take) const {
-    const auto add_rank_one = [](Matrix& d, double size, const Vec& a) {
-      for (std::size_t r = 0; r < 3; ++r) d[r] = d[r] + (size * a[r]) * a;
-    };
-    const auto add_unit = [](Matrix& d, double size) {
-      for (std::size_t r = 0; r < 3; ++r) d[r][r] += size;
-    };
-    each_flow(state, body, [&](const Flow& flow, const Vec& n) {
-      Matrix d{};
-      if (flow.front) add_rank_one(d, -2 * form_ * flow.normal * flow.area, n);
-      const Vec along = flow.u - flow.normal * n;
-      const double speed = length(along), weight = skin_ * flow.area;
-      add_unit(d, weight * speed);
-      add_rank_one(d, -weight * speed, n);
-      if (speed > 0) add_rank_one(d, weight / speed, along);
-      take(flow.at, d);
-    });
+    each_flow(state, body,
+              [&](const Flow& flow, const Vec& n) { take(flow.at, slope_of(flow, n)); });
     const auto [wet, u] = at_centroid(state, body);
     if (!(wet > 0)) return;
     Matrix d{};
@@ -207,17 +288,30 @@ class FaceDrag final : public Force<Spatial>,
     take(Vec{0, 0, 0}, d);
   }
 
+  SurfacePlane plane_at(const State<Spatial>& state, std::size_t b) const {
+    if constexpr (Surface::moves)
+      if (submersion_->knows_volumes()) return submersion_->plane(b);
+    return surface_.plane(b, immersion_.centroid(state, static_cast<std::int32_t>(b)), state.time);
+  }
+  Vec water_at(const State<Spatial>& state, std::size_t b) const {
+    if constexpr (Surface::moves)
+      if (submersion_->knows_volumes()) return submersion_->water(b);
+    return surface_.velocity(b, immersion_.centroid(state, static_cast<std::int32_t>(b)),
+                             state.time);
+  }
+  double volume_at(const State<Spatial>& state, std::int32_t body) const {
+    const auto b = static_cast<std::size_t>(body);
+    if (submersion_->knows_volumes()) return submersion_->volume_of(b);
+    return Surface::moves ? immersion_.below(state, body, plane_at(state, b)).volume
+                          : immersion_.of(state, body).volume;
+  }
+
   /// Wet plan area [m^2], if the scene has drag at centroids, and the velocity of the water against
   /// the centroid [m/s].
   std::pair<double, Vec> at_centroid(const State<Spatial>& state, std::int32_t body) const {
     if (linear_ == 0 && quadratic_ == 0) return {0, {0, 0, 0}};
     const auto b = static_cast<std::size_t>(body);
-    const Vec at = immersion_.centroid(state, body);
-    const double volume =
-        Surface::moves ? immersion_.below(state, body, surface_.plane(b, at, state.time)).volume
-                       : immersion_.of(state, body).volume;
-    return {area_per_volume_[b] * volume,
-            surface_.velocity(b, at, state.time) - velocity(state, b)};
+    return {area_per_volume_[b] * volume_at(state, body), water_at(state, b) - velocity(state, b)};
   }
 
   /// Calls take(flow, n) at the points of the quadrature of all wet faces without shelter.
@@ -229,9 +323,8 @@ class FaceDrag final : public Force<Spatial>,
     const Triad<double> axes =
         triad(product(of_unit_length(rotation(state, b)), Quat<double>{w, x, y, z}));
     const Vec at = immersion_.centroid(state, body);
-    const SurfacePlane plane = surface_.plane(b, at, state.time);
-    const Vec against = surface_.velocity(b, at, state.time) - velocity(state, b),
-              spin = angular_velocity(state, b);
+    const SurfacePlane plane = plane_at(state, b);
+    const Vec against = water_at(state, b) - velocity(state, b), spin = angular_velocity(state, b);
     for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
       if ((*shelter_)(f)) continue;
       corners_.clear();
@@ -278,7 +371,9 @@ class FaceDrag final : public Force<Spatial>,
 
   const Part& part_;
   Surface surface_;
-  Immersion immersion_;
+  std::shared_ptr<SubmersionIn<Surface>> submersion_;
+  const Immersion& immersion_;
+  bool leads_;                      ///< calls the submerged parts in each step
   std::optional<Shelter> shelter_;  ///< of faces
   std::vector<Vec> normal_;         ///< per face of the owned bodies, in the body's axes
   bool faces_;
@@ -287,6 +382,7 @@ class FaceDrag final : public Force<Spatial>,
   std::vector<double> area_per_volume_;  ///< plan area over volume of each body [1/m]
   std::vector<Vec> forces_, moments_;    ///< of the last evaluation [N, N m]
   double power_ = 0;                     ///< of the last evaluation [W]
+  std::vector<FaceWrench> found_;        ///< per body, with a pace
   // Work space: corners of a face; its wet part; one side of u.n = 0 of that.
   mutable std::vector<Corner> corners_, wet_corners_;
   mutable std::vector<Vec> wet_, half_;
@@ -296,12 +392,22 @@ class FaceDrag final : public Force<Spatial>,
 
 std::unique_ptr<Force<Spatial>> make_face_drag(const Part& part, const DragOptions& options,
                                                double gravity, const WaveOptions& waves) {
-  if (part.shapes.empty() && part.owned > 0)
-    throw InputError("forces: drag needs bodies with a shape; the lattice file has no /shapes");
+  require_shapes(part, "drag");
   if (waves.any())
-    return std::make_unique<FaceDrag<Waves>>(part, options,
-                                             Waves(part, gravity, waves, options.current));
-  return std::make_unique<FaceDrag<StillWater>>(part, options, StillWater{options.current});
+    return make_face_drag(std::make_shared<SubmersionInWaves>(
+                              part, Waves(part, gravity, waves, options.current), 1, false),
+                          options, false);
+  return make_face_drag(std::make_shared<Submersion>(part, 1, false), options, false);
+}
+std::unique_ptr<Force<Spatial>> make_face_drag(std::shared_ptr<Submersion> submersion,
+                                               const DragOptions& options, bool leads) {
+  return std::make_unique<FaceDrag<StillWater>>(std::move(submersion), options,
+                                                StillWater{options.current}, leads);
+}
+std::unique_ptr<Force<Spatial>> make_face_drag(std::shared_ptr<SubmersionInWaves> submersion,
+                                               const DragOptions& options, bool leads) {
+  const Waves waves = submersion->waves();
+  return std::make_unique<FaceDrag<Waves>>(std::move(submersion), options, waves, leads);
 }
 
 }  // namespace floe

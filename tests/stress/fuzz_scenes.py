@@ -354,6 +354,10 @@ class Scenes:
         else:
             for word in ("drag_form", "drag_skin", "shelter"):
                 scene.pop(("water", word), None)
+        in_space = ("buoyancy" in scene.get(("forces",), "")
+                    or scene.get(("water", "drag")) == "faces")
+        if scene.get(("integrator",)) != "explicit" or not in_space:
+            scene.pop(("water", "pace"), None)
         jonswap = scene.get(("waves", "spectrum")) == "jonswap"
         for word in ("phase",) if jonswap else ("gamma", "components", "seed"):
             scene.pop(("waves", word), None)

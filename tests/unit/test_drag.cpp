@@ -12,7 +12,7 @@
 #include "support/lattices.h"
 #include "support/roles.h"
 #include "water/buoyancy.h"
-#include "water/immersion.h"
+#include "submersion/immersion.h"
 
 namespace floe {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "submersion/immersion.h"
 #include "support/lattices.h"
 #include "support/record.h"
 #include "support/states.h"
 #include "water/buoyancy.h"
-#include "water/immersion.h"
 
 namespace floe {
 namespace {

@@ -43,6 +43,31 @@ TEST_F(WaterKeys, Faces) {
   EXPECT_TRUE(contains(scene_error(steady + ", shelter: 1}\n"), "water: shelter: 1 must be 0"));
 }
 
+/// Bodies that may come loose have a pace of 10 by default, those of an intact sheet none.
+TEST_F(WaterKeys, Pace) {
+  const std::string drag = "water: {drag_linear: 1";
+  EXPECT_EQ(scene_of(adrift(drag + "}\n")).water_pace, 1);
+  EXPECT_EQ(scene_of(adrift(drag + ", pace: 4}\n")).water_pace, 4);
+  const std::string breaks =
+      "integrator: explicit\nforces: [beam, fracture, gravity, buoyancy]\n"
+      "sheet: {length: 40}\nfracture: {tensile_strength: 1e5}\n";
+  EXPECT_EQ(scene_of(breaks).water_pace, 10);
+  EXPECT_EQ(scene_of(breaks + "water: {pace: 1}\n").water_pace, 1);
+  EXPECT_TRUE(contains(scene_error(breaks + "water: {pace: 0}\n"), "water: pace"));
+  EXPECT_TRUE(contains(scene_error(breaks + "water: {pace: 101}\n"), "<= 100"));
+  // Only leapfrog steps at it; drag on the plan alone needs no submerged parts that change.
+  EXPECT_TRUE(contains(scene_error("integrator: implicit\nforces: [beam, gravity, buoyancy]\n"
+                                   "sheet: {length: 40}\nwater: {pace: 2}\n"),
+                       "only leapfrog"));
+  EXPECT_EQ(scene_of("integrator: explicit\nforces: [beam, fracture, drag]\nsheet: {length: 40}\n"
+                     "fracture: {tensile_strength: 1e5}\nwater: {drag_linear: 1}\n")
+                .water_pace,
+            1);
+  EXPECT_TRUE(contains(scene_error("integrator: explicit\nforces: [beam, drag]\n"
+                                   "sheet: {length: 40}\nwater: {drag_linear: 1, pace: 2}\n"),
+                       "without buoyancy"));
+}
+
 TEST_F(WaterKeys, AddedMass) {
   const std::string drag = "water: {drag_linear: 1, ";
   EXPECT_EQ(scene_of(adrift(drag + "added_mass: 0.5}\n")).added_mass, 0.5);

@@ -1,11 +1,12 @@
 // Waves: their kinematics, the force on a body against the integral of the pressure, and what is
 // refused.
-#include "water/waves.h"
+#include "submersion/waves.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "submersion/immersion.h"
 #include "support/blocks.h"
 #include "support/box.h"
 #include "support/dynamics.h"
@@ -13,7 +14,6 @@
 #include "support/roles.h"
 #include "water/buoyancy.h"
 #include "water/drag.h"
-#include "water/immersion.h"
 
 namespace floe {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "floe/water/wave_options.h"
 #include "lattice/partition.h"
-#include "water/surface.h"
+#include "submersion/surface.h"
 
 namespace floe {
 
@@ -42,6 +42,13 @@ class Waves {
 
   SurfacePlane plane(std::size_t b, const Vec3<double>& at, double time) const;
   Vec3<double> velocity(std::size_t b, const Vec3<double>& at, double time) const;
+  /// How plane() and velocity() change: with the time [1/s of theirs], and slopes with the place.
+  struct Change {
+    double level, slope_x, slope_y;
+    double xx, xy, yy;      ///< second derivatives of the surface [1/m]
+    Vec3<double> velocity;  ///< [m/s^2]
+  };
+  Change change(std::size_t b, const Vec3<double>& at, double time) const;
   /// Bound of SurfacePlane::steepness().
   double most_steepness() const { return most_steepness_; }
 

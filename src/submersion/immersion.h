@@ -18,7 +18,7 @@
 #include "floe/base/item.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
-#include "water/surface.h"
+#include "submersion/surface.h"
 
 namespace floe {
 
@@ -65,6 +65,32 @@ PrismBelow<T> prism_below(const Prism<T>& b, const Quat<T>& rotation, const T& z
   return p;
 }
 
+/// The waterplane of a body: its area [m^2], and its moments about the body's centroid [m^3, m^4].
+template <class T>
+struct Waterplane {
+  T area, x, y, xx, xy, yy;
+};
+
+/// Waterplane of a prism of which the water cuts only the sides.
+template <class T>
+Waterplane<T> waterplane_of(const Prism<T>& b, const PrismBelow<T>& p) {
+  const auto& [e1, e2, e3] = p.axes;
+  // The point of the waterplane at (x, y) of the plan has the world coordinates p0 + p1 x + p2 y,
+  // q0 + q1 x + q2 y from the centroid.
+  const T p0 = e3.x * p.c0, p1 = e1.x - e3.x * p.sx, p2 = e2.x - e3.x * p.sy;
+  const T q0 = e3.y * p.c0, q1 = e1.y - e3.y * p.sx, q2 = e2.y - e3.y * p.sy;
+  const T px = p1 * b.x + p2 * b.y, qx = q1 * b.x + q2 * b.y;
+  return {T(p.upright * b.area),
+          T(p.upright * (p0 * b.area + px)),
+          T(p.upright * (q0 * b.area + qx)),
+          T(p.upright * (p0 * (p0 * b.area + 2.0 * px) + p1 * (p1 * b.xx + p2 * b.xy) +
+                         p2 * (p1 * b.xy + p2 * b.yy))),
+          T(p.upright * (p0 * (q0 * b.area + qx) + q0 * px + p1 * (q1 * b.xx + q2 * b.xy) +
+                         p2 * (q1 * b.xy + q2 * b.yy))),
+          T(p.upright * (q0 * (q0 * b.area + 2.0 * qx) + q1 * (q1 * b.xx + q2 * b.xy) +
+                         q2 * (q1 * b.xy + q2 * b.yy)))};
+}
+
 /// Whether the water cuts only the sides of a prism.
 /// \param axes  principal axes in the world
 /// \param z     height of the centroid over the water [m]
@@ -90,8 +116,12 @@ Quat<T> of_unit_length(const Quat<T>& q) {
 /// Computes the submerged parts of the owned bodies of a part.
 class Immersion {
  public:
+  /// How the submerged parts of bodies that lie below the surface are found: by clipping, unless
+  /// all of a sphere about the body is below, or by the body's lowest and highest points. The
+  /// volumes differ by rounding.
+  enum class Wet { by_sphere, by_points };
   /// \param part  with shapes; must outlive this object
-  explicit Immersion(const Part& part);
+  explicit Immersion(const Part& part, Wet wet = Wet::by_sphere);
 
   /// Submerged part of an owned body; moments are about its centroid, in world axes.
   Submerged of(const State<Spatial>& state, std::int32_t body) const;
@@ -123,6 +153,24 @@ class Immersion {
     }
     return below;
   }
+  /// The same with the waterplanes, by which the submerged parts change as bodies move.
+  struct Cut {
+    Lane below;
+    Waterplane<Lanes> waterplane;
+  };
+  Cut cut_of_block(const State<Spatial>& state, std::size_t block, const Lanes& uz,
+                   const Quat<Lanes>& q) const {
+    const Prism<Lanes> b = blocks_[block].get();
+    const Lanes z = b.z + uz;
+    const PrismBelow<Lanes> p = prism_below<Lanes>(b, of_unit_length(q), z);
+    Cut cut{{p.volume, p.moment}, waterplane_of<Lanes>(b, p)};
+    const auto good = sides_only<Lanes>(b, p.axes, z);
+    if (!all_of(good)) {
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        if (!good[lane]) replace(state, block, lane, cut);
+    }
+    return cut;
+  }
   std::size_t blocks() const { return blocks_.size(); }
   /// Owned body in a lane of a block.
   std::size_t body_of(std::size_t block, std::size_t lane) const {
@@ -139,6 +187,8 @@ class Immersion {
     const auto b = static_cast<std::size_t>(body);
     return part_.bodies.position[b] + displacement(state, b);
   }
+  /// Distance of the farthest vertex of an owned body from its centroid [m].
+  double extent(std::int32_t body) const { return item(extent_, body); }
   /// Volume of an owned body [m^3].
   double volume(std::int32_t body) const { return item(whole_, body).volume; }
   /// Area of an owned body at rest seen from above [m^2].
@@ -176,10 +226,13 @@ class Immersion {
   Prism<double> find_prism(std::size_t body) const;
   Submerged placed(std::int32_t body, const Quat<double>& rotation, double z) const;
   void replace(const State<Spatial>& state, std::size_t block, std::size_t lane, Lane& below) const;
+  void replace(const State<Spatial>& state, std::size_t block, std::size_t lane, Cut& cut) const;
   Submerged clipped(std::int32_t body, const Triad<double>& axes, double z) const;
-  Submerged clipped_polyhedron(std::int32_t body, const Triad<double>& axes, double z) const;
+  Submerged whole(std::int32_t body, const Triad<double>& axes) const;
+  void place_vertices(std::int32_t body, const Triad<double>& axes) const;
 
   const Part& part_;
+  Wet wet_;
   std::vector<Block> blocks_;
   std::vector<VolumeProperties> whole_;
   std::vector<double> extent_;          ///< distance of the farthest vertex from the centroid [m]

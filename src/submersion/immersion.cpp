@@ -1,4 +1,4 @@
-#include "water/immersion.h"
+#include "submersion/immersion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,18 @@
 #include "floe/base/item.h"
 
 namespace floe {
+namespace {
 
-Immersion::Immersion(const Part& part) : part_(part) {
+void put(const Submerged& s, std::size_t lane, Immersion::Lane& below) {
+  below.volume[lane] = s.volume;
+  below.moment.x[lane] = s.moment.x;
+  below.moment.y[lane] = s.moment.y;
+  below.moment.z[lane] = s.moment.z;
+}
+
+}  // namespace
+
+Immersion::Immersion(const Part& part, Wet wet) : part_(part), wet_(wet) {
   const auto owned = static_cast<std::size_t>(part.owned);
   blocks_.resize((owned + lanes - 1) / lanes);
   for (std::size_t b = 0; b < owned; ++b) {
@@ -98,36 +108,33 @@ Submerged Immersion::below(const State<Spatial>& state, std::int32_t body,
 Submerged Immersion::placed(std::int32_t body, const Quat<double>& rotation, double z) const {
   const Prism<double> b = prism(static_cast<std::size_t>(body));
   const PrismBelow<double> p = prism_below(b, rotation, z);
-  const auto& [e1, e2, e3] = p.axes;
   if (!sides_only(b, p.axes, z)) return clipped(body, p.axes, z);
 
+  const Waterplane<double> w = waterplane_of(b, p);
   Submerged s;
   s.volume = p.volume;
   s.moment = p.moment;
-  // The point of the waterplane at (x, y) of the plan has the world coordinates p0 + p1 x + p2 y,
-  // q0 + q1 x + q2 y from the centroid.
-  const double p0 = e3.x * p.c0, p1 = e1.x - e3.x * p.sx, p2 = e2.x - e3.x * p.sy;
-  const double q0 = e3.y * p.c0, q1 = e1.y - e3.y * p.sx, q2 = e2.y - e3.y * p.sy;
-  const double px = p1 * b.x + p2 * b.y, qx = q1 * b.x + q2 * b.y;
-  s.waterplane = p.upright * b.area;
-  s.wx = p.upright * (p0 * b.area + px);
-  s.wy = p.upright * (q0 * b.area + qx);
-  s.wxx = p.upright * (p0 * (p0 * b.area + 2 * px) + p1 * (p1 * b.xx + p2 * b.xy) +
-                       p2 * (p1 * b.xy + p2 * b.yy));
-  s.wyy = p.upright * (q0 * (q0 * b.area + 2 * qx) + q1 * (q1 * b.xx + q2 * b.xy) +
-                       q2 * (q1 * b.xy + q2 * b.yy));
-  s.wxy = p.upright * (p0 * (q0 * b.area + qx) + q0 * px + p1 * (q1 * b.xx + q2 * b.xy) +
-                       p2 * (q1 * b.xy + q2 * b.yy));
+  s.waterplane = w.area;
+  s.wx = w.x, s.wy = w.y;
+  s.wxx = w.xx, s.wxy = w.xy, s.wyy = w.yy;
   return s;
 }
 
 void Immersion::replace(const State<Spatial>& state, std::size_t block, std::size_t lane,
                         Lane& below) const {
+  put(of(state, static_cast<std::int32_t>(body_of(block, lane))), lane, below);
+}
+
+void Immersion::replace(const State<Spatial>& state, std::size_t block, std::size_t lane,
+                        Cut& cut) const {
   const Submerged s = of(state, static_cast<std::int32_t>(body_of(block, lane)));
-  below.volume[lane] = s.volume;
-  below.moment.x[lane] = s.moment.x;
-  below.moment.y[lane] = s.moment.y;
-  below.moment.z[lane] = s.moment.z;
+  put(s, lane, cut.below);
+  cut.waterplane.area[lane] = s.waterplane;
+  cut.waterplane.x[lane] = s.wx;
+  cut.waterplane.y[lane] = s.wy;
+  cut.waterplane.xx[lane] = s.wxx;
+  cut.waterplane.xy[lane] = s.wxy;
+  cut.waterplane.yy[lane] = s.wyy;
 }
 
 double Immersion::plan_area(std::int32_t body) const {
@@ -154,29 +161,45 @@ double Immersion::plan_area(std::int32_t body) const {
 Submerged Immersion::by_clipping(const State<Spatial>& state, std::int32_t body) const {
   const auto b = static_cast<std::size_t>(body);
   const Quat<double> axes = product(of_unit_length(rotation(state, b)), prism(b).axes);
-  return clipped_polyhedron(body, triad(axes), height(state, body));
+  place_vertices(body, triad(axes));
+  return submerged(part_.shapes, body, placed_, -height(state, body));
 }
 
+Submerged Immersion::whole(std::int32_t body, const Triad<double>& axes) const {
+  const VolumeProperties& all = item(whole_, body);
+  Submerged s;
+  s.volume = all.volume;
+  s.moment = all.volume * axes.to_world(all.centroid);
+  return s;
+}
+
+/// The part of a body below z = 0; only a body that the surface may cut is clipped.
 Submerged Immersion::clipped(std::int32_t body, const Triad<double>& axes, double z) const {
   const auto b = static_cast<std::size_t>(body);
   if (z >= extent_[b]) return {};
-  if (z <= -extent_[b]) {
-    Submerged s;
-    s.volume = whole_[b].volume;
-    s.moment = whole_[b].volume * axes.to_world(whole_[b].centroid);
-    return s;
+  if (z <= -extent_[b]) return whole(body, axes);
+  if (const Prism<double> p = prism(b); p.radius2 < std::numeric_limits<double>::infinity()) {
+    // Its end faces lie within discs of the plan's circumradius.
+    const double middle = z + 0.5 * (p.top + p.bottom) * axes.e3.z;
+    const double reach = 0.5 * (p.top - p.bottom) * std::abs(axes.e3.z) +
+                         std::sqrt(p.radius2 * (axes.e1.z * axes.e1.z + axes.e2.z * axes.e2.z));
+    if (middle > reach) return {};
+    if (middle < -reach && wet_ == Wet::by_points) return whole(body, axes);
   }
-  return clipped_polyhedron(body, axes, z);
+  place_vertices(body, axes);
+  bool any_below = false, any_above = false;
+  for (const Point3& p : placed_) (p.z < -z ? any_below : any_above) = true;
+  if (!any_below) return {};
+  if (!any_above && wet_ == Wet::by_points) return whole(body, axes);
+  return submerged(part_.shapes, body, placed_, -z);
 }
 
-Submerged Immersion::clipped_polyhedron(std::int32_t body, const Triad<double>& axes,
-                                        double z) const {
+void Immersion::place_vertices(std::int32_t body, const Triad<double>& axes) const {
   const auto b = static_cast<std::size_t>(body);
   const Shapes& shapes = part_.shapes;
   placed_.clear();
   for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1]; ++v)
     placed_.push_back(axes.to_world(item(shapes.vertices, v)));
-  return submerged(shapes, body, placed_, -z);
 }
 
 }  // namespace floe

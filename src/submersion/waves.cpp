@@ -1,4 +1,4 @@
-#include "water/waves.h"
+#include "submersion/waves.h"
 
 #include <algorithm>
 #include <cmath>
@@ -154,6 +154,33 @@ Vec3<double> Waves::velocity(std::size_t b, const Vec3<double>& at, double time)
     v.z += speed * decay[n].up * std::sin(angle);
   }
   return v;
+}
+
+Waves::Change Waves::change(std::size_t b, const Vec3<double>& at, double time) const {
+  const double rise = this->rise(time), rising = ramp_ > 0 && time < ramp_ ? 1 / ramp_ : 0.0;
+  const Decay* decay = &decay_[first(b)];
+  Change change{};
+  for (std::size_t n = 0; n < waves_.size(); ++n) {
+    const WaveComponent& wave = waves_[n];
+    const double angle = wave.kx * at.x + wave.ky * at.y - wave.omega * time + wave.phase;
+    const double sine = std::sin(angle), cosine = std::cos(angle);
+    const double a = wave.amplitude * decay[n].pressure;
+    // Derivatives to the time of rise cos(angle) and of rise sin(angle).
+    const double of_cosine = rising * cosine + rise * wave.omega * sine,
+                 of_sine = rising * sine - rise * wave.omega * cosine;
+    change.level += a * of_cosine;
+    change.slope_x -= a * wave.kx * of_sine;
+    change.slope_y -= a * wave.ky * of_sine;
+    change.xx -= a * rise * cosine * wave.kx * wave.kx;
+    change.xy -= a * rise * cosine * wave.kx * wave.ky;
+    change.yy -= a * rise * cosine * wave.ky * wave.ky;
+    const double speed = wave.amplitude * wave.omega;
+    const double along = speed * decay[n].along * of_cosine / wave.number;
+    change.velocity.x += along * wave.kx;
+    change.velocity.y += along * wave.ky;
+    change.velocity.z += speed * decay[n].up * of_sine;
+  }
+  return change;
 }
 
 }  // namespace floe

@@ -1,0 +1,130 @@
+/// \file
+/// The submerged parts of the owned bodies for all forces of the water on them: found once per
+/// evaluation of a step, or every few steps only (model.md, "Water").
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "forces/force.h"
+#include "submersion/immersion.h"
+
+namespace floe {
+
+/// Step of a body, as a part of its mean thickness, after which its submerged part is found anew.
+inline constexpr double largest_move = 0.01;
+
+/// Returns the part. \param force  that needs its shapes \throws InputError if it has none
+const Part& require_shapes(const Part& part, std::string_view force);
+
+/// Submerged parts in still water. Outside the evaluations of steps it knows nothing, and forces
+/// find what they need by immersion().
+///
+/// With a pace k > 1 every k-th step finds volume V, moment m and waterplane W of each body. In
+/// between they follow to first order from how far the body has shifted (u_z) and turned (t) since,
+/// by Reynolds' theorem (buoyancy.cpp, add_tangent):
+///   V += -int_W (u_z + t_x r_y - t_y r_x) dA,   m += t x m - int_W r (u_z + t_x r_y - t_y r_x) dA.
+/// A body that has moved by more than largest_move of its thickness is looked at anew at once, so
+/// the error is at most of the second order in that. Steps only count, so a step may change.
+class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>, public Persists {
+ public:
+  /// \param part    with shapes; must outlive this object
+  /// \param pace    number of steps
+  /// \param shared  whether several forces ask
+  Submersion(const Part& part, int pace, bool shared);
+
+  const Part& part() const { return part_; }
+  const Immersion& immersion() const { return immersion_; }
+  bool has_pace() const { return pace_ > 1; }
+
+  void before_evaluation(const State<Spatial>&) override { open_ = true; }
+  void after_evaluation() override { open_ = known_ = false; }
+  /// Counts steps.
+  void commit(const State<Spatial>&, double) override { since_ = (since_ + 1) % pace_; }
+  void persist(Archive& archive) override;
+
+  /// Whether an evaluation of a step is under way, with a pace: at_pace() finds submerged parts.
+  bool is_paced() const { return open_ && has_pace(); }
+  /// Submerged parts of the bodies of a block, of the moments x and y only.
+  Immersion::Lane at_pace(const State<Spatial>& state, std::size_t block) {
+    const BlockMotion m = block_motion<false>(immersion_, state, block);
+    Immersion::Lane below = since_ == 0 ? find(state, block, m) : follow(state, block, m);
+    if (!volumes_.empty()) volumes_[block] = below.volume;
+    return below;
+  }
+  /// Finds those of all bodies, for forces that look at one body at a time.
+  void find_all_at_pace(const State<Spatial>& state) {
+    for (std::size_t block = 0; block < immersion_.blocks(); ++block) (void)at_pace(state, block);
+    volumes_are_kept();
+  }
+  /// Whether an owned body's submerged part was found anew in this step.
+  bool is_new(std::size_t body) const { return (new_[body / lanes] >> body % lanes & 1U) != 0; }
+
+  /// Whether others want the volumes that a force finds for this evaluation.
+  bool wants_volumes() const { return open_ && shared_; }
+  void keep_volume(std::size_t block, const Lanes& volume) { volumes_[block] = volume; }
+  /// Called when all volumes are kept.
+  void volumes_are_kept() { known_ = !volumes_.empty(); }
+  /// Whether the volumes at this evaluation's state are known.
+  bool knows_volumes() const { return known_; }
+  const Lanes& volume(std::size_t block) const { return volumes_[block]; }
+  double volume_of(std::size_t body) const { return volumes_[body / lanes][body % lanes]; }
+
+ private:
+  /// Places of the bodies of a block when the submerged parts were found, and these.
+  struct Expansion {
+    Lanes z;
+    Quat<Lanes> q;
+    Immersion::Cut cut;
+  };
+  static constexpr std::size_t numbers = 15;  ///< of a body in an Expansion
+  static std::array<Lanes*, numbers> numbers_of(Expansion& e);
+  struct Size {
+    Lanes extent2;  ///< square of the distance of the farthest vertex [m^2]
+    Lanes most2;    ///< half the square of the largest move [m^2]
+  };
+  Immersion::Lane find(const State<Spatial>& state, std::size_t block, const BlockMotion& m);
+  Immersion::Lane follow(const State<Spatial>& state, std::size_t block, const BlockMotion& m);
+  Immersion::Lane find_some(const State<Spatial>& state, std::size_t block, const BlockMotion& m,
+                            const Lanes& apart, const Immersion::Lane& followed);
+
+  const Part& part_;
+  Immersion immersion_;
+  int pace_;
+  bool shared_;
+  bool open_ = false, known_ = false;
+  std::int64_t since_ = 0;         ///< steps since all were found
+  std::vector<Lanes> volumes_;     ///< of the last evaluation [m^3]
+  std::vector<std::uint8_t> new_;  ///< per block, a bit per lane
+  std::vector<Expansion> expansions_;
+  std::vector<Size> sizes_;
+};
+
+inline Immersion::Lane Submersion::follow(const State<Spatial>& state, std::size_t block,
+                                          const BlockMotion& m) {
+  const Expansion& e = expansions_[block];
+  const Lanes shift = m.u.z - e.z;
+  // Twice the vector part of q q_1* = 1 + (q - q_1) q_1*: exactly 0 for a body that has not turned.
+  const Quat<Lanes> d{m.q.w - e.q.w, m.q.x - e.q.x, m.q.y - e.q.y, m.q.z - e.q.z};
+  const Vec3<Lanes> v{d.x, d.y, d.z}, v1{e.q.x, e.q.y, e.q.z};
+  const Vec3<Lanes> turn = 2.0 * (e.q.w * v - d.w * v1 + cross(v1, v));
+  const Waterplane<Lanes>& w = e.cut.waterplane;
+  const Vec3<Lanes>& m1 = e.cut.below.moment;
+  Immersion::Lane now = e.cut.below;
+  now.volume -= w.area * shift + w.y * turn.x - w.x * turn.y;
+  where(now.volume < 0.0, now.volume) = 0.0;
+  now.moment.x =
+      m1.x + Lanes(turn.y * m1.z - turn.z * m1.y) - (w.x * shift + w.xy * turn.x - w.xx * turn.y);
+  now.moment.y =
+      m1.y + Lanes(turn.z * m1.x - turn.x * m1.z) - (w.y * shift + w.yy * turn.x - w.xy * turn.y);
+  new_[block] = 0;
+  // (a + b)^2 <= 2 (a^2 + b^2)
+  const Lanes apart = shift * shift + sizes_[block].extent2 * dot(turn, turn) - sizes_[block].most2;
+  if (none_of(apart > 0.0)) [[likely]]
+    return now;
+  return find_some(state, block, m, apart, now);
+}
+
+}  // namespace floe
