@@ -11,7 +11,11 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <experimental/simd>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 /// Attributes of a function of which there must be one copy: contraction to fused operations may
 /// differ between two copies of a loop.
@@ -56,6 +60,23 @@ inline Lanes where_not_negative(const Lanes& of, Lanes x) {
 template <class T>
 double where_not_negative(const T& of, double x) {
   return of < 0.0 ? 0.0 : x;
+}
+
+/// Returns a mask: bit k is 1 where lane k of x is not above 0.
+inline std::uint64_t not_above_zero(const Lanes& x) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_pd_mask(std::bit_cast<__m512d>(x), _mm512_setzero_pd(), _CMP_LE_OQ);
+#elif defined(__AVX__)
+  const __m256d at_most = _mm256_cmp_pd(std::bit_cast<__m256d>(x), _mm256_setzero_pd(), _CMP_LE_OQ);
+  return static_cast<std::uint64_t>(_mm256_movemask_pd(at_most));
+#elif defined(__SSE2__)
+  const __m128d at_most = _mm_cmple_pd(std::bit_cast<__m128d>(x), _mm_setzero_pd());
+  return static_cast<std::uint64_t>(_mm_movemask_pd(at_most));
+#else
+  std::uint64_t mask = 0;
+  for (std::size_t k = 0; k < lanes; ++k) mask |= std::uint64_t{x[k] <= 0 ? 1U : 0U} << k;
+  return mask;
+#endif
 }
 
 /// Prefetches all cache lines of an object that is read soon.

@@ -62,23 +62,44 @@ bool NarrowPhase::has_gap(const Solids& solids, Pair& pair, const Placed& a, con
   return true;
 }
 
-PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, const Pair& pair,
+CutRecord& NarrowPhase::record_of(Pair& pair) {
+  if (pair.cuts < 0) {
+    pair.cuts = static_cast<std::int32_t>(records_.size());
+    records_.emplace_back();
+  }
+  return item(records_, pair.cuts);
+}
+
+/// Returns the overlap in the frame of B.
+/// \param turn, x  axes and place of A in this frame
+Overlap NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& turn,
+                          const Vec3<double>& x, const FurtherPlanes& further) {
+  const std::span<const HalfSpace> planes = solids.planes(pair.b);
+  if (const EdgeGraph* graph = solids.graph(pair.a)) {
+    graph_clipper_.place(solids.vertex_lists(pair.a), turn, x);
+    const auto found =
+        graph_clipper_.overlap(*graph, planes, with_patch_, further, record_of(pair));
+    if (found) return *found;
+  }
+  place(solids.vertices(pair.a), turn, x, vertices_a_);
+  return clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
+}
+
+PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair,
                                  const Placed& a, const Placed& b) {
   const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
                            b.axes.to_local(a.axes.e3)};
   const Vec3<double> x = b.axes.to_local(a.x - b.x);
-  place(solids.vertices(pair.a), turn, x, vertices_a_);
-  const std::span<const HalfSpace> planes = solids.planes(pair.b);
   worn_.clear();
   for (const HalfSpace& left : wear.of(pair.a)) {
     const Vec3<double> normal = turn.to_world(left.normal);
     worn_.push_back({normal, left.offset + dot(normal, x)});
   }
-  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_,
-                               {.a = worn_, .b = wear.of(pair.b)});
+  Overlap o = clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)});
   const double radius = solids.radius(pair.a);
   if (o.volume <= rounding_volume * radius * radius * radius) return {};
-  const double depth = planes[0].offset - dot(planes[0].normal, o.centroid);
+  const HalfSpace& face = solids.planes(pair.b)[0];
+  const double depth = face.offset - dot(face.normal, o.centroid);
   o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);

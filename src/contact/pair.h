@@ -32,6 +32,7 @@ struct Pair {
   bool newly_eligible = false;  ///< the first overlap of the pair counts as stress-free
   bool broken = false;          ///< a beam between A and B broke: they have new faces
   bool offloaded = false;       ///< another rank computes the overlap of the pair
+  std::int32_t cuts = -1;       ///< place of the record of its cuts (NarrowPhase); -1: none
   Vec3<double> axis{};          ///< of the last gap, a unit vector from B to A
   double safe = 0;  ///< the pair has a gap while the travels of A and B add up to less [m]
 };
