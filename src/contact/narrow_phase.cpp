@@ -21,12 +21,10 @@ void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, co
   for (const Vec3<double>& r : vertices) placed.push_back(x + axes.to_world(r));
 }
 
-Patch in_world(const Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
-  Patch turned = p;
-  turned.middle = axes.to_world(p.middle) + origin;
-  turned.u = axes.to_world(p.u);
-  turned.v = axes.to_world(p.v);
-  return turned;
+void to_world(Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
+  p.middle = axes.to_world(p.middle) + origin;
+  p.u = axes.to_world(p.u);
+  p.v = axes.to_world(p.v);
 }
 
 }  // namespace
@@ -70,19 +68,18 @@ CutRecord& NarrowPhase::record_of(Pair& pair) {
   return item(records_, pair.cuts);
 }
 
-/// Returns the overlap in the frame of B.
+/// Sets the overlap in the frame of B.
 /// \param turn, x  axes and place of A in this frame
-Overlap NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& turn,
-                          const Vec3<double>& x, const FurtherPlanes& further) {
+/// \param found    zeros
+void NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& turn,
+                       const Vec3<double>& x, const FurtherPlanes& further, Overlap& found) {
   const std::span<const HalfSpace> planes = solids.planes(pair.b);
   if (const EdgeGraph* graph = solids.graph(pair.a)) {
     graph_clipper_.place(solids.vertex_lists(pair.a), turn, x);
-    const auto found =
-        graph_clipper_.overlap(*graph, planes, with_patch_, further, record_of(pair));
-    if (found) return *found;
+    if (graph_clipper_.overlap(*graph, planes, with_patch_, further, record_of(pair), found)) return;
   }
   place(solids.vertices(pair.a), turn, x, vertices_a_);
-  return clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
+  found = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
 }
 
 PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair,
@@ -95,16 +92,21 @@ PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& p
     const Vec3<double> normal = turn.to_world(left.normal);
     worn_.push_back({normal, left.offset + dot(normal, x)});
   }
-  Overlap o = clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)});
+  PairOverlap met;
+  Overlap& o = met.overlap;
+  clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)}, o);
   const double radius = solids.radius(pair.a);
-  if (o.volume <= rounding_volume * radius * radius * radius) return {};
+  if (o.volume <= rounding_volume * radius * radius * radius) {
+    o.volume = 0;
+    return met;
+  }
   const HalfSpace& face = solids.planes(pair.b)[0];
-  const double depth = face.offset - dot(face.normal, o.centroid);
+  met.depth = face.offset - dot(face.normal, o.centroid);
   o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);
-  if (with_patch_) o.patch = in_world(o.patch, b.axes, b.x - a.x);
-  return {.overlap = o, .depth = depth};
+  if (with_patch_) to_world(o.patch, b.axes, b.x - a.x);
+  return met;
 }
 
 }  // namespace floe

@@ -52,8 +52,8 @@ class NarrowPhase {
   void forget_cuts() { records_.clear(); }
 
  private:
-  Overlap clip(const Solids& solids, Pair& pair, const Triad<double>& turn, const Vec3<double>& x,
-               const FurtherPlanes& further);
+  void clip(const Solids& solids, Pair& pair, const Triad<double>& turn, const Vec3<double>& x,
+            const FurtherPlanes& further, Overlap& found);
   CutRecord& record_of(Pair& pair);
   bool has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b);
 

@@ -18,14 +18,13 @@ struct Across {
   T u, v;
 };
 
-/// Returns two unit vectors that with n are a right-handed basis u, v, n.
+/// Returns two unit vectors that with n are a right-handed basis u, v, n (Duff et al. 2017, "Building
+/// an orthonormal basis, revisited", J. Comput. Graph. Tech. 6).
 /// \param n  unit vector
 inline std::pair<Vec3<double>, Vec3<double>> basis_across(const Vec3<double>& n) {
-  // Any vector that is not along n begins a basis across n.
-  const Vec3<double> side =
-      std::abs(n.x) < 0.6 ? Vec3<double>{0, n.z, -n.y} : Vec3<double>{-n.z, 0, n.x};
-  const Vec3<double> u = (1 / length(side)) * side;
-  return {u, cross(n, u)};
+  const double sign = std::copysign(1.0, n.z);
+  const double a = -1 / (sign + n.z), b = n.x * n.y * a;
+  return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
 /// Returns int rho dA over the triangle between the origin and an edge from a to b; below 0 where
@@ -46,7 +45,7 @@ T reach_of_edge(const Across<T>& a, const Across<T>& b) {
   }
   const T mean =
       (weight[0] * rho[0] + weight[1] * rho[1]) + (weight[2] * rho[2] + weight[3] * rho[3]);
-  return (a.u * b.v - a.v * b.u) / 3.0 * mean;
+  return (1.0 / 3) * (a.u * b.v - a.v * b.u) * mean;
 }
 
 }  // namespace floe

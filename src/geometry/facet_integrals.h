@@ -7,8 +7,9 @@
 
 namespace floe {
 
-/// Returns the integrals over an overlap, zeros if its volume is not above 0.
+/// Sets the integrals over an overlap, unless its volume is not above 0.
+/// \param overlap     zeros
 /// \param with_patch  whether to integrate over the facets on B for Overlap::patch
-Overlap facet_integrals(const Points& points, const Facets& facets, bool with_patch);
+void set_integrals(Overlap& overlap, const Points& points, const Facets& facets, bool with_patch);
 
 }  // namespace floe

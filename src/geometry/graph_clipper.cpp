@@ -30,18 +30,18 @@ void for_each_bit(std::uint64_t mask, Use use) {
   for (; mask != 0; mask &= mask - 1) use(lowest_bit(mask));
 }
 
-Lanes height(const HalfSpace& plane, const Points& points, std::size_t slot) {
-  const Vec3<Lanes> r{load(points.x.data() + slot), load(points.y.data() + slot),
-                      load(points.z.data() + slot)};
+FewLanes height(const HalfSpace& plane, const Points& points, std::size_t slot) {
+  const Vec3<FewLanes> r{load_few(points.x.data() + slot), load_few(points.y.data() + slot),
+                         load_few(points.z.data() + slot)};
   return dot(plane.normal, r);
 }
 
-Lanes load_anywhere(const double* p) { return {p, std::experimental::element_aligned}; }
+FewLanes load_anywhere(const double* p) { return {p, std::experimental::element_aligned}; }
 
 /// Fills a list up to a whole number of registers.
 template <class List, class Entry>
 std::uint8_t pad(List& list, std::size_t size, const Entry& entry) {
-  while (size % lanes != 0) list[size++] = entry;
+  while (size % few_lanes != 0) list[size++] = entry;
   return byte(size);
 }
 
@@ -65,13 +65,14 @@ void GraphClipper::Planes::for_each_but_first(Visit visit) const {
 void GraphClipper::place(const VertexLists& vertices, const Triad<double>& axes,
                          const Vec3<double>& x) {
   vertices_ = vertices.number;
-  for (std::size_t k = 0; k < vertices_; k += lanes) {
-    const Vec3<Lanes> r{load_anywhere(vertices.x + k), load_anywhere(vertices.y + k),
-                        load_anywhere(vertices.z + k)};
+  origin_of_a_ = x;
+  for (std::size_t k = 0; k < vertices_; k += few_lanes) {
+    const Vec3<FewLanes> r{load_anywhere(vertices.x + k), load_anywhere(vertices.y + k),
+                           load_anywhere(vertices.z + k)};
     const auto coordinate = [&](double origin, double e1, double e2, double e3) {
       return origin + (r.x * e1 + r.y * e2 + r.z * e3);
     };
-    const auto put = [&](const Lanes& c, std::array<double, Points::slots>& list) {
+    const auto put = [&](const FewLanes& c, std::array<double, Points::slots>& list) {
       c.copy_to(list.data() + low + k, std::experimental::vector_aligned);
     };
     put(coordinate(x.x, axes.e1.x, axes.e2.x, axes.e3.x), points_.x);
@@ -80,53 +81,41 @@ void GraphClipper::place(const VertexLists& vertices, const Triad<double>& axes,
   }
 }
 
-std::optional<Overlap> GraphClipper::overlap(const EdgeGraph& a, std::span<const HalfSpace> planes,
-                                             bool with_patch, const FurtherPlanes& further,
-                                             CutRecord& record) {
+bool GraphClipper::overlap(const EdgeGraph& a, std::span<const HalfSpace> planes, bool with_patch,
+                           const FurtherPlanes& further, CutRecord& record, Overlap& found) {
   replayed_ = false;
   Planes all{.b = planes, .further = further};
-  if (all.number() > most_planes) return std::nullopt;
-  const auto first = first_plane(planes);
-  if (!first) return Overlap{};
-  all.first = *first;
+  if (all.number() > most_planes) return false;
+  all.first = first_plane(planes);
   const bool known = record.cuts > 0 && record.first == all.first &&
                      record.planes == all.number() && record.further_of_b == further.b.size();
   replayed_ = known && replay(all, record);
-  if (!replayed_ && !clip(a, all, record)) return std::nullopt;
-  if (alive_ == 0) return Overlap{};
-  return facet_integrals(points_, record.facets, with_patch);
+  if (!replayed_ && !clip(a, all, record)) return false;
+  if (alive_ != 0) set_integrals(found, points_, record.facets, with_patch);
+  return true;
 }
 
-/// Returns the plane that removes most of A, because the later cuts are then small; nothing if A
-/// lies beyond a plane.
-std::optional<std::uint8_t> GraphClipper::first_plane(std::span<const HalfSpace> planes) const {
+/// Returns the plane of B farthest below A's origin: it removes most of A as a rule, and the later
+/// cuts are then small.
+std::uint8_t GraphClipper::first_plane(std::span<const HalfSpace> planes) const {
   std::size_t first = 0;
-  double shallowest = -std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < planes.size(); ++k) {
-    const double deepest = lowest(planes[k]);
-    if (deepest > 0) return std::nullopt;
-    if (deepest > shallowest) {
-      shallowest = deepest;
+    const double height_of_a = dot(planes[k].normal, origin_of_a_) - planes[k].offset;
+    if (height_of_a > highest) {
+      highest = height_of_a;
       first = k;
     }
   }
   return byte(first);
 }
 
-/// Returns the height of A's lowest vertex above a plane [m].
-double GraphClipper::lowest(const HalfSpace& plane) const {
-  Lanes least = height(plane, points_, low);
-  for (std::size_t k = lanes; k < vertices_; k += lanes)
-    least = std::experimental::min(least, height(plane, points_, low + k));
-  return std::experimental::hmin(least) - plane.offset;
-}
-
 /// Sets the distances of the points in the slots from `begin` to `end`, at least; returns a mask of
 /// the slots that are inside.
 std::uint64_t GraphClipper::inside(const HalfSpace& plane, std::size_t begin, std::size_t end) {
   std::uint64_t mask = 0;
-  for (std::size_t k = begin; k < end; k += lanes) {
-    const Lanes distance = height(plane, points_, k) - plane.offset;
+  for (std::size_t k = begin; k < end; k += few_lanes) {
+    const FewLanes distance = height(plane, points_, k) - plane.offset;
     distance.copy_to(distance_.data() + k, std::experimental::vector_aligned);
     mask |= not_above_zero(distance) << k;
   }

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "floe/base/rotation.h"
@@ -33,15 +32,16 @@ class GraphClipper {
   /// \param number   at most EdgeGraph::most_vertices
   void place(const VertexLists& vertices, const Triad<double>& axes, const Vec3<double>& x);
 
-  /// Returns the overlap of A, placed, and B, zeros if there is none; nothing if it has more
+  /// Sets the overlap of A, placed, and B, unless there is none. Returns false if it has more
   /// vertices, edges or planes on its way than there is room for: a task for Clipper.
   /// \param a           graph of A
   /// \param planes      B's half-spaces
   /// \param with_patch  whether to integrate over the facets on B for Overlap::patch
   /// \param further     half-spaces that bound A and B too, in B's frame
   /// \param record      of the same pair, with no cuts at first
-  std::optional<Overlap> overlap(const EdgeGraph& a, std::span<const HalfSpace> planes,
-                                 bool with_patch, const FurtherPlanes& further, CutRecord& record);
+  /// \param found       zeros
+  bool overlap(const EdgeGraph& a, std::span<const HalfSpace> planes, bool with_patch,
+               const FurtherPlanes& further, CutRecord& record, Overlap& found);
   /// Whether the last overlap() repeated its record.
   bool replayed() const { return replayed_; }
 
@@ -57,8 +57,7 @@ class GraphClipper {
     void for_each_but_first(Visit visit) const;
   };
 
-  std::optional<std::uint8_t> first_plane(std::span<const HalfSpace> planes) const;
-  double lowest(const HalfSpace& plane) const;
+  std::uint8_t first_plane(std::span<const HalfSpace> planes) const;
   std::uint64_t inside(const HalfSpace& plane, std::size_t begin, std::size_t end);
   std::uint32_t placed_inside(const HalfSpace& plane);
   std::uint32_t left_inside(const HalfSpace& plane);
@@ -79,6 +78,7 @@ class GraphClipper {
   bool replayed_ = false;
   std::size_t vertices_ = 0;  ///< of A
   Points points_;
+  Vec3<double> origin_of_a_{};
   alignas(64) std::array<double, Points::slots> distance_{};  ///< from the plane that cuts last
   std::uint64_t alive_ = 0;                                   ///< mask of the vertices
 

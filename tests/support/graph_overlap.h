@@ -40,7 +40,9 @@ struct GraphBody {
                                  const FurtherPlanes& further = {}) const {
     if (!graph) return std::nullopt;
     clipper.place(lists, triad(q), x);
-    return clipper.overlap(*graph, planes, with_patch, further, record);
+    Overlap found;
+    if (!clipper.overlap(*graph, planes, with_patch, further, record, found)) return std::nullopt;
+    return found;
   }
 };
 
