@@ -11,7 +11,11 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <experimental/simd>
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
 
 /// Attributes of a function of which there must be one copy: contraction to fused operations may
 /// differ between two copies of a loop.
@@ -36,6 +40,30 @@ using Lanes = std::experimental::simd<double, std::experimental::simd_abi::deduc
 static_assert(sizeof(Lanes) == lanes * sizeof(double), "a register holds all lanes");
 
 inline Lanes load(const double* aligned) { return {aligned, std::experimental::vector_aligned}; }
+
+/// One double per lane, for short loops, which waste the wider registers: four lanes at most.
+inline constexpr std::size_t few_lanes = lanes < 4 ? lanes : 4;
+using FewLanes =
+    std::experimental::simd<double, std::experimental::simd_abi::deduce_t<double, few_lanes>>;
+
+inline FewLanes load_few(const double* aligned) {
+  return {aligned, std::experimental::vector_aligned};
+}
+
+/// Returns a mask: bit k is 1 where lane k of x is not above 0.
+inline std::uint64_t not_above_zero(const FewLanes& x) {
+#if defined(__AVX__)
+  const __m256d at_most = _mm256_cmp_pd(std::bit_cast<__m256d>(x), _mm256_setzero_pd(), _CMP_LE_OQ);
+  return static_cast<std::uint64_t>(_mm256_movemask_pd(at_most));
+#elif defined(__SSE2__)
+  const __m128d at_most = _mm_cmple_pd(std::bit_cast<__m128d>(x), _mm_setzero_pd());
+  return static_cast<std::uint64_t>(_mm_movemask_pd(at_most));
+#else
+  std::uint64_t mask = 0;
+  for (std::size_t k = 0; k < few_lanes; ++k) mask |= std::uint64_t{x[k] <= 0 ? 1U : 0U} << k;
+  return mask;
+#endif
+}
 
 /// Returns 1 or -1 with the sign of x.
 inline Lanes sign_of(const Lanes& x) {
@@ -137,6 +165,21 @@ inline Row larger(const Row& a, const Row& b) {
   return {a.low > b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
 }
 #endif
+
+/// Returns the sums over the lanes of a, b, c and d.
+inline Row lane_sums(const FewLanes& a, const FewLanes& b, const FewLanes& c, const FewLanes& d) {
+  using namespace detail;
+#if defined(__AVX__)
+  const auto four = [](const FewLanes& x) { return std::bit_cast<Four>(x); };
+  const Four ab = evens(four(a), four(b)) + odds(four(a), four(b)),
+             cd = evens(four(c), four(d)) + odds(four(c), four(d));
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+#else
+  const auto two = [](const FewLanes& x) { return std::bit_cast<Two>(x); };
+  return {evens(two(a), two(b)) + odds(two(a), two(b)),
+          evens(two(c), two(d)) + odds(two(c), two(d))};
+#endif
+}
 
 /// Add four doubles to memory, subtract four, subtract two.
 inline void add_row(double* p, const Row& row) { store_row(p, load_row(p) + row); }

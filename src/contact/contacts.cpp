@@ -49,7 +49,7 @@ void Contacts::place(std::span<const MovingPose> bodies, double time, double vel
 }
 
 void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
-  const std::span<const Pair> pairs = list_.taken_on();
+  const std::span<Pair> pairs = list_.taken_on();
   for (std::size_t k = 0; k < pairs.size(); ++k)
     overlaps[k] =
         narrow_.overlap(solids_, wear_, pairs[k], places_.of_a(pairs[k]), places_.of_b(pairs[k]));

@@ -1,7 +1,8 @@
 #include "contact/narrow_phase.h"
 
 #include <algorithm>
-#include <limits>
+#include <tuple>
+#include <utility>
 
 #include "geometry/separation.h"
 
@@ -21,12 +22,76 @@ void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, co
   for (const Vec3<double>& r : vertices) placed.push_back(x + axes.to_world(r));
 }
 
-Patch in_world(const Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
-  Patch turned = p;
-  turned.middle = axes.to_world(p.middle) + origin;
-  turned.u = axes.to_world(p.u);
-  turned.v = axes.to_world(p.v);
-  return turned;
+/// Axes and origin of the frame of A in that of B.
+struct Relative {
+  Triad<double> turn;
+  Vec3<double> x;
+
+  Relative(const Placed& a, const Placed& b)
+      : turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2), b.axes.to_local(a.axes.e3)},
+        x(b.axes.to_local(a.x - b.x)) {}
+};
+
+/// The gaps of a pair at the planes of its faces. A face is a plane of B, or, counted on, of A.
+class Faces {
+ public:
+  Faces(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b)
+      : planes_a_(solids.planes(pair.a)),
+        planes_b_(solids.planes(pair.b)),
+        vertices_a_(solids.vertex_lists(pair.a)),
+        vertices_b_(solids.vertex_lists(pair.b)),
+        place_(a, b) {}
+
+  /// Returns the gap between the plane of a face and the vertices of the other body [m].
+  double gap(std::int32_t face) const {
+    const auto k = static_cast<std::size_t>(face);
+    return k < planes_b_.size() ? gap_at_b(planes_b_[k])
+                                : gap_at_a(planes_a_[k - planes_b_.size()]);
+  }
+  /// Returns the face with the widest gap above `least`, and this gap; else -1.
+  std::pair<std::int16_t, double> widest(double least) const;
+
+ private:
+  /// The height of the other body's origin above a plane: no gap is wider if the origin is inside.
+  double height_at_b(const HalfSpace& plane) const {
+    return dot(plane.normal, place_.x) - plane.offset;
+  }
+  double height_at_a(const HalfSpace& plane) const {
+    return -dot(place_.turn.to_world(plane.normal), place_.x) - plane.offset;
+  }
+  double gap_at_b(const HalfSpace& plane) const {
+    return height_at_b(plane) + lowest_along(vertices_a_, place_.turn.to_local(plane.normal));
+  }
+  double gap_at_a(const HalfSpace& plane) const {
+    return height_at_a(plane) + lowest_along(vertices_b_, place_.turn.to_world(plane.normal));
+  }
+
+  std::span<const HalfSpace> planes_a_, planes_b_;
+  VertexLists vertices_a_, vertices_b_;
+  Relative place_;
+};
+
+std::pair<std::int16_t, double> Faces::widest(double least) const {
+  std::pair<std::int16_t, double> found{-1, least};
+  std::int16_t face = 0;
+  const auto look = [&](double height, double (Faces::*gap_at)(const HalfSpace&) const,
+                        const HalfSpace& plane) {
+    if (height > found.second) {
+      const double width = (this->*gap_at)(plane);
+      if (width > found.second) found = {face, width};
+    }
+    ++face;
+  };
+  for (const HalfSpace& plane : planes_b_) look(height_at_b(plane), &Faces::gap_at_b, plane);
+  if (vertices_b_.number == 0) return found;  // a half-space
+  for (const HalfSpace& plane : planes_a_) look(height_at_a(plane), &Faces::gap_at_a, plane);
+  return found;
+}
+
+void to_world(Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
+  p.middle = axes.to_world(p.middle) + origin;
+  p.u = axes.to_world(p.u);
+  p.v = axes.to_world(p.v);
 }
 
 }  // namespace
@@ -34,11 +99,10 @@ Patch in_world(const Patch& p, const Triad<double>& axes, const Vec3<double>& or
 Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b,
                 const Vec3<double>& axis) {
   const Vec3<double> along_a = a.axes.to_local(axis), along_b = b.axes.to_local(axis);
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3<double>& r : solids.vertices(pair.a)) low = std::min(low, dot(along_a, r));
-  for (const Vec3<double>& r : solids.vertices(pair.b)) high = std::max(high, dot(along_b, r));
-  if (solids.is_half_space(pair.b)) high = solids.planes(pair.b)[0].offset;
-  return {.low_of_a = low, .high_of_b = high};
+  return {.low_of_a = lowest_along(solids.vertex_lists(pair.a), along_a),
+          .high_of_b = solids.is_half_space(pair.b)
+                           ? solids.planes(pair.b)[0].offset
+                           : -lowest_along(solids.vertex_lists(pair.b), -along_b)};
 }
 
 double NarrowPhase::gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b,
@@ -53,37 +117,69 @@ double NarrowPhase::gap(const Solids& solids, Pair& pair, const Placed& a, const
   return separate(vertices_a_, vertices_b_, pair.axis, tries);
 }
 
+/// Looks first along what separated the pair last, then at the faces, which separate most pairs
+/// that nearly touch, then for an axis between edges.
 bool NarrowPhase::has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b) {
   constexpr int tries = 8;
   constexpr double margin = 1e-6;  // for the rounding of travels
-  const double found = gap(solids, pair, a, b, tries);
-  if (!(found > rounding * solids.radius(pair.a))) return false;
+  const double least = rounding * solids.radius(pair.a);
+  const Faces faces(solids, pair, a, b);
+  double found = pair.face >= 0 ? faces.gap(pair.face) : gap(solids, pair, a, b, 0);
+  if (!(found > least)) {
+    std::tie(pair.face, found) = faces.widest(least);
+    if (pair.face < 0) found = gap(solids, pair, a, b, tries);
+  }
+  if (!(found > least)) return false;
   pair.safe = (a.travelled + b.travelled) + (1 - margin) * found;
   return true;
 }
 
-PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, const Pair& pair,
-                                 const Placed& a, const Placed& b) {
-  const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
-                           b.axes.to_local(a.axes.e3)};
-  const Vec3<double> x = b.axes.to_local(a.x - b.x);
-  place(solids.vertices(pair.a), turn, x, vertices_a_);
+CutRecord& NarrowPhase::record_of(Pair& pair) {
+  if (pair.cuts < 0) {
+    pair.cuts = static_cast<std::int32_t>(records_.size());
+    records_.emplace_back();
+  }
+  return item(records_, pair.cuts);
+}
+
+/// Sets the overlap in the frame of B.
+/// \param turn, x  axes and place of A in this frame
+/// \param found    zeros
+void NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& turn,
+                       const Vec3<double>& x, const FurtherPlanes& further, Overlap& found) {
   const std::span<const HalfSpace> planes = solids.planes(pair.b);
+  if (const EdgeGraph* graph = solids.graph(pair.a)) {
+    graph_clipper_.place(solids.vertex_lists(pair.a), turn, x);
+    if (graph_clipper_.overlap(*graph, planes, with_patch_, further, record_of(pair), found))
+      return;
+  }
+  place(solids.vertices(pair.a), turn, x, vertices_a_);
+  found = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
+}
+
+PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair,
+                                 const Placed& a, const Placed& b) {
+  const auto [turn, x] = Relative(a, b);
   worn_.clear();
   for (const HalfSpace& left : wear.of(pair.a)) {
     const Vec3<double> normal = turn.to_world(left.normal);
     worn_.push_back({normal, left.offset + dot(normal, x)});
   }
-  Overlap o = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_,
-                               {.a = worn_, .b = wear.of(pair.b)});
+  PairOverlap met;
+  Overlap& o = met.overlap;
+  clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)}, o);
   const double radius = solids.radius(pair.a);
-  if (o.volume <= rounding_volume * radius * radius * radius) return {};
-  const double depth = planes[0].offset - dot(planes[0].normal, o.centroid);
+  if (o.volume <= rounding_volume * radius * radius * radius) {
+    o.volume = 0;
+    return met;
+  }
+  const HalfSpace& face = solids.planes(pair.b)[0];
+  met.depth = face.offset - dot(face.normal, o.centroid);
   o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);
-  if (with_patch_) o.patch = in_world(o.patch, b.axes, b.x - a.x);
-  return {.overlap = o, .depth = depth};
+  if (with_patch_) to_world(o.patch, b.axes, b.x - a.x);
+  return met;
 }
 
 }  // namespace floe

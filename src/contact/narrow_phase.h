@@ -8,6 +8,7 @@
 #include "contact/places.h"
 #include "contact/solids.h"
 #include "contact/wear.h"
+#include "geometry/graph_clipper.h"
 #include "geometry/overlap.h"
 
 namespace floe {
@@ -45,14 +46,21 @@ class NarrowPhase {
   }
 
   /// Returns the overlap of what wear has left of a pair.
-  PairOverlap overlap(const Solids& solids, const Wear& wear, const Pair& pair, const Placed& a,
+  PairOverlap overlap(const Solids& solids, const Wear& wear, Pair& pair, const Placed& a,
                       const Placed& b);
+  /// Forgets the records of cuts of all pairs, for a new list. No number depends on them.
+  void forget_cuts() { records_.clear(); }
 
  private:
+  void clip(const Solids& solids, Pair& pair, const Triad<double>& turn, const Vec3<double>& x,
+            const FurtherPlanes& further, Overlap& found);
+  CutRecord& record_of(Pair& pair);
   bool has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b);
 
   bool with_patch_;
-  Clipper clipper_;
+  GraphClipper graph_clipper_;
+  Clipper clipper_;                 ///< for the few pairs that are too much for the other
+  std::vector<CutRecord> records_;  ///< of the pairs that overlapped since the last list
   std::vector<Vec3<double>> vertices_a_, vertices_b_;  ///< work space: placed vertices
   std::vector<HalfSpace> worn_;                        ///< work space: placed planes
 };

@@ -32,7 +32,9 @@ struct Pair {
   bool newly_eligible = false;  ///< the first overlap of the pair counts as stress-free
   bool broken = false;          ///< a beam between A and B broke: they have new faces
   bool offloaded = false;       ///< another rank computes the overlap of the pair
-  Vec3<double> axis{};          ///< of the last gap, a unit vector from B to A
+  std::int32_t cuts = -1;       ///< place of the record of its cuts (NarrowPhase); -1: none
+  std::int16_t face = -1;       ///< of the last gap: number of a plane of B, then of A; -1: axis
+  Vec3<double> axis{};          ///< of the last gap that no face had, a unit vector from B to A
   double safe = 0;  ///< the pair has a gap while the travels of A and B add up to less [m]
 };
 

@@ -33,6 +33,7 @@ void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const 
   search.bodies.reserve(poses.size());
   for (const Pose& p : poses) search.bodies.push_back({.x = p.x, .axes = triad(p.q)});
   pairs_.clear();
+  narrow.forget_cuts();
   list_bodies(search);
   list_obstacles(search);
   std::sort(pairs_.begin(), pairs_.end(),

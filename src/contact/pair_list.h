@@ -56,7 +56,7 @@ class PairList {
   std::span<Pair> pairs() { return pairs_; }
   std::span<const Pair> pairs() const { return pairs_; }
   const Pair& pair(std::int32_t index) const { return item(pairs_, index); }
-  std::span<const Pair> taken_on() const { return taken_on_; }
+  std::span<Pair> taken_on() { return taken_on_; }
   /// Returns the involved bodies, by slot.
   std::span<const std::int32_t> involved() const { return involved_; }
   /// Whether a listed pair has an obstacle.

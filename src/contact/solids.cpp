@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "geometry/overlap.h"
@@ -50,26 +51,53 @@ Solids::Faces faces_of(const Shapes& shapes, std::int32_t body) {
 Solids::Solids(const Shapes& shapes, std::span<const double> masses,
                std::vector<Obstacle> obstacles)
     : shapes_(shapes), obstacles_(std::move(obstacles)) {
+  Graphs graphs;
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
-    add(b, item(masses, b));
+    add(b, item(masses, b), graphs);
     faces_.push_back(faces_of(shapes_, b));
   }
   for (const Obstacle& o : obstacles_)
-    extents_.push_back({.radius = o.radius(), .width = least_width(o.vertices, o.planes)});
+    extents_.push_back({.radius = o.radius(),
+                        .width = least_width(o.vertices, o.planes),
+                        .lists = add_lists(o.vertices)});
   for (const Body& body : bodies_) thinnest_ = std::min(thinnest_, body.width);
   for (const Extents& obstacle : extents_) thinnest_ = std::min(thinnest_, obstacle.width);
 }
 
-void Solids::add(std::int32_t body, double mass) {
+Solids::Lists Solids::add_lists(std::span<const Vec3<double>> vertices) {
+  constexpr std::size_t padding = VertexLists::padding;
+  const std::size_t length = (vertices.size() + padding - 1) / padding * padding;
+  const Lists lists{.first = coordinates_.size(), .length = length, .number = vertices.size()};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t k = 0; k < length; ++k)
+      coordinates_.push_back(vertices[std::min(k, vertices.size() - 1)][axis]);
+  }
+  return lists;
+}
+
+/// Returns the place of the graph of a body in graphs_, or -1.
+/// \param known  places of the graphs in graphs_
+std::int32_t Solids::add_graph(std::int32_t body, Graphs& known) {
+  const std::optional<EdgeGraph> graph = edge_graph(shapes_, body);
+  if (!graph) return -1;
+  const auto [place, is_new] = known.try_emplace(*graph, static_cast<std::int32_t>(graphs_.size()));
+  if (is_new) graphs_.push_back(*graph);
+  return place->second;
+}
+
+void Solids::add(std::int32_t body, double mass, Graphs& known) {
   Body added;
-  added.first_vertex = static_cast<std::int32_t>(vertices_.size());
+  added.first_vertex = item(shapes_.vertex_of, body);
+  added.vertices = item(shapes_.vertex_of, body + 1) - added.first_vertex;
   added.first_plane = static_cast<std::int32_t>(planes_.size());
   for (std::int32_t v = item(shapes_.vertex_of, body); v < item(shapes_.vertex_of, body + 1); ++v) {
-    vertices_.push_back(item(shapes_.vertices, v));
-    added.radius = std::max(added.radius, length(vertices_.back()));
+    added.radius = std::max(added.radius, length(item(shapes_.vertices, v)));
   }
+  const auto first = static_cast<std::size_t>(added.first_vertex);
+  added.lists = add_lists(
+      std::span(shapes_.vertices).subspan(first, static_cast<std::size_t>(added.vertices)));
+  added.graph = add_graph(body, known);
   append_half_spaces(shapes_, body, planes_);
-  added.vertices = static_cast<std::int32_t>(vertices_.size()) - added.first_vertex;
   added.planes = static_cast<std::int32_t>(planes_.size()) - added.first_plane;
   const VolumeProperties properties = volume_properties(shapes_, body);
   added.size = std::cbrt(properties.volume);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "floe/contact_laws/contact_options.h"
 #include "floe/geometry/half_space.h"
 #include "floe/geometry/polyhedron.h"
+#include "geometry/edge_graph.h"
+#include "geometry/vertex_lists.h"
 
 namespace floe {
 
@@ -35,7 +38,19 @@ class Solids {
   std::span<const Vec3<double>> vertices(std::int32_t index) const {
     if (is_obstacle(index)) return obstacle(index).vertices;
     const Body& body = item(bodies_, index);
-    return {vertices_.data() + body.first_vertex, static_cast<std::size_t>(body.vertices)};
+    return {shapes_.vertices.data() + body.first_vertex, static_cast<std::size_t>(body.vertices)};
+  }
+  /// Returns the vertices by coordinates.
+  VertexLists vertex_lists(std::int32_t index) const {
+    const Lists& lists =
+        is_obstacle(index) ? extents_[obstacle_number(index)].lists : item(bodies_, index).lists;
+    const double* x = coordinates_.data() + lists.first;
+    return {.x = x, .y = x + lists.length, .z = x + 2 * lists.length, .number = lists.number};
+  }
+  /// Returns the graph of the surface of a body; null if it has too many vertices.
+  const EdgeGraph* graph(std::int32_t body) const {
+    const std::int32_t graph = item(bodies_, body).graph;
+    return graph < 0 ? nullptr : &item(graphs_, graph);
   }
   /// Returns the planes of the faces, in the frame of the body or obstacle.
   std::span<const HalfSpace> planes(std::int32_t index) const {
@@ -83,22 +98,33 @@ class Solids {
   const Faces& faces(std::int32_t body) const { return item(faces_, body); }
 
  private:
+  struct Lists {
+    std::size_t first = 0, length = 0;  ///< of x, y and z in coordinates_
+    std::size_t number = 0;             ///< of vertices
+  };
   /// What an evaluation needs of a body, side by side in memory.
   struct Body {
     std::int32_t first_vertex = 0, vertices = 0;
     std::int32_t first_plane = 0, planes = 0;
+    std::int32_t graph = -1;  ///< in graphs_
+    Lists lists;
     double size = 0, mass = 0, radius = 0, width = 0;
     InverseInertia inverse;
   };
   struct Extents {
     double radius = 0, width = 0;
+    Lists lists;
   };
 
-  void add(std::int32_t body, double mass);
+  Lists add_lists(std::span<const Vec3<double>> vertices);
+  using Graphs = std::map<EdgeGraph, std::int32_t>;
+  std::int32_t add_graph(std::int32_t body, Graphs& known);
+  void add(std::int32_t body, double mass, Graphs& known);
 
   Shapes shapes_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Vec3<double>> vertices_;
+  std::vector<double> coordinates_;
+  std::vector<EdgeGraph> graphs_;  ///< different ones: most bodies share one with others
   std::vector<HalfSpace> planes_;
   std::vector<Body> bodies_;
   std::vector<Faces> faces_;      ///< per body

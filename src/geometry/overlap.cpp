@@ -1,13 +1,14 @@
 #include "geometry/overlap.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "floe/base/item.h"
+#include "geometry/across.h"
 
 namespace floe {
 namespace {
@@ -30,30 +31,6 @@ std::optional<HalfSpace> plane_of(const Shapes& shapes, std::size_t face) {
   double offset = -std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < corners.size(); ++k) offset = std::max(offset, dot(normal, at(k)));
   return HalfSpace{normal, offset};
-}
-
-/// A vector across the direction of S.
-struct Across {
-  double u, v;
-};
-
-/// Returns int rho dA over the triangle between the origin and an edge from a to b; below 0 where
-/// the edge runs clockwise [m^3]. It is a third of twice the area times the mean of rho along the
-/// edge, here by the rule of Gauss-Legendre with four points: 6e-5 too large for a square about its
-/// centre, at most 1.5 % for narrow rectangles.
-double reach_of_edge(const Across& a, const Across& b) {
-  constexpr std::array<double, 4> at{0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
-                                     0.9305681557970263};
-  constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307,
-                                         0.32607257743127307, 0.17392742256872693};
-  std::array<double, 4> rho;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double u = a.u + at[k] * (b.u - a.u), v = a.v + at[k] * (b.v - a.v);
-    rho[k] = std::sqrt(u * u + v * v);
-  }
-  const double mean =
-      (weight[0] * rho[0] + weight[1] * rho[1]) + (weight[2] * rho[2] + weight[3] * rho[3]);
-  return (a.u * b.v - a.v * b.u) / 3 * mean;
 }
 
 }  // namespace
@@ -286,12 +263,10 @@ Patch Clipper::patch(const Vec3<double>& n) const {
     return item(now_.points, item(now_.corners, c)) - apex;
   };
   Patch sum;
-  // Any vector that is not along n begins a basis across n.
-  const Vec3<double> side =
-      std::abs(n.x) < 0.6 ? Vec3<double>{0, n.z, -n.y} : Vec3<double>{-n.z, 0, n.x};
-  sum.u = (1 / length(side)) * side;
-  sum.v = cross(n, sum.u);
-  const auto across = [&](const Vec3<double>& r) { return Across{dot(sum.u, r), dot(sum.v, r)}; };
+  std::tie(sum.u, sum.v) = basis_across(n);
+  const auto across = [&](const Vec3<double>& r) {
+    return Across<double>{dot(sum.u, r), dot(sum.v, r)};
+  };
   Vec3<double> first{};           // int r dA, from the apex
   double uu = 0, vv = 0, uv = 0;  // 12 times those about the apex
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
@@ -299,11 +274,11 @@ Patch Clipper::patch(const Vec3<double>& n) const {
     if (!face.on_b) continue;
     const Vec3<double> p = corner(face.begin);
     Vec3<double> q = corner(face.begin + 1);
-    const Across a = across(p);
-    Across b = across(q);
+    const Across<double> a = across(p);
+    Across<double> b = across(q);
     for (std::int32_t k = face.begin + 2; k < face.end; ++k) {
       const Vec3<double> r = corner(k);
-      const Across c = across(r), s{a.u + b.u + c.u, a.v + b.v + c.v};
+      const Across<double> c = across(r), s{a.u + b.u + c.u, a.v + b.v + c.v};
       const double area = 0.5 * length(cross(q - p, r - p));
       sum.area += area;
       first = first + area * (p + q + r);
@@ -316,7 +291,7 @@ Patch Clipper::patch(const Vec3<double>& n) const {
   }
   if (!(sum.area > 0)) return {};
   const Vec3<double> middle = (1 / (3 * sum.area)) * first;
-  const Across m = across(middle);
+  const Across<double> m = across(middle);
   sum.middle = apex + middle;
   sum.uu = uu / 12 - sum.area * m.u * m.u;
   sum.vv = vv / 12 - sum.area * m.v * m.v;
@@ -324,9 +299,9 @@ Patch Clipper::patch(const Vec3<double>& n) const {
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     if (!face.on_b) continue;
-    Across a = across(corner(face.end - 1) - middle);
+    Across<double> a = across(corner(face.end - 1) - middle);
     for (std::int32_t k = face.begin; k < face.end; ++k) {
-      const Across b = across(corner(k) - middle);
+      const Across<double> b = across(corner(k) - middle);
       sum.reach += reach_of_edge(a, b);
       a = b;
     }

@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
+
+#include "base/simd.h"
 
 namespace floe {
 namespace {
@@ -30,6 +33,18 @@ Nearest nearest(std::span<const Vec3<double>> a, std::span<const Vec3<double>> b
 }
 
 }  // namespace
+
+double lowest_along(const VertexLists& vertices, const Vec3<double>& n) {
+  FewLanes lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < vertices.number; k += few_lanes) {
+    const auto list = [&](const double* from) {
+      return FewLanes(from + k, std::experimental::element_aligned);
+    };
+    const Vec3<FewLanes> r{list(vertices.x), list(vertices.y), list(vertices.z)};
+    lowest = std::experimental::min(lowest, dot(n, r));
+  }
+  return std::experimental::hmin(lowest);
+}
 
 double gap_along(std::span<const Vec3<double>> a, std::span<const Vec3<double>> b,
                  const Vec3<double>& axis) {

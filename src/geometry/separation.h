@@ -5,8 +5,12 @@
 #include <span>
 
 #include "floe/base/rotation.h"
+#include "geometry/vertex_lists.h"
 
 namespace floe {
+
+/// Returns the least n . r of vertices r [m, if n is a unit vector].
+double lowest_along(const VertexLists& vertices, const Vec3<double>& n);
 
 /// Width of the gap between the points of A and those of B along a unit vector that points from B
 /// to A [m]; negative if their extents overlap.

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "geometry/separation.h"
+#include "support/graph_overlap.h"
 #include "support/polyhedra.h"
 #include "support/record.h"
 
@@ -116,14 +117,8 @@ struct Largest {
 
 constexpr double tolerance = 1e-10;
 
-void expect_exact(const Pair& pair, Clipper& clipper, const std::string& what, Largest& largest) {
-  const auto a = test::placed(pair.shapes, 0, pair.q, pair.x);
-  const auto b = test::placed(pair.shapes, 1, {1, 0, 0, 0}, {0, 0, 0});
-  std::vector<HalfSpace> planes;
-  append_half_spaces(pair.shapes, 1, planes);
-  const Overlap o = clipper.overlap(pair.shapes, 0, a, planes);
-  const Reference r =
-      exact_overlap(planes_of(pair.shapes, 0, a), planes_of(pair.shapes, 1, b), o.centroid);
+void expect_exact(const Pair& pair, const Overlap& o, const Reference& r, const std::string& what,
+                  Largest& largest) {
   const double scale = scale_of(pair), l = std::cbrt(scale);
   for (const double number : {o.volume, o.centroid.x, o.centroid.y, o.centroid.z, o.area.x,
                               o.area.y, o.area.z, o.moment.x, o.moment.y, o.moment.z})
@@ -140,6 +135,42 @@ void expect_exact(const Pair& pair, Clipper& clipper, const std::string& what, L
   expect(length(o.moment + cross(o.centroid, o.area) - r.moment) / scale, largest.moment);
 }
 
+/// Both clippers, and how often each way was gone.
+struct Clippers {
+  Clipper loops;
+  GraphClipper graph;
+  int pairs = 0, full = 0, replayed = 0;
+  int other_bits = 0;  ///< of a replay than of a full pass
+};
+
+/// Compares the overlaps of all ways with the exact one: Clipper, the full pass of GraphClipper,
+/// and its replay of cuts that were recorded at the same place and a little off it.
+void expect_exact(const Pair& pair, Clippers& clippers, const Vec3<double>& off,
+                  const std::string& what, Largest& largest) {
+  const auto a = test::placed(pair.shapes, 0, pair.q, pair.x);
+  const auto b = test::placed(pair.shapes, 1, {1, 0, 0, 0}, {0, 0, 0});
+  std::vector<HalfSpace> planes;
+  append_half_spaces(pair.shapes, 1, planes);
+  const Overlap o = clippers.loops.overlap(pair.shapes, 0, a, planes);
+  const Reference r =
+      exact_overlap(planes_of(pair.shapes, 0, a), planes_of(pair.shapes, 1, b), o.centroid);
+  expect_exact(pair, o, r, what, largest);
+  ++clippers.pairs;
+  const test::GraphBody body(pair.shapes, 0);
+  CutRecord record;
+  const auto full = body.overlap(clippers.graph, pair.q, pair.x, planes, record);
+  if (!full) return;
+  ++clippers.full;
+  ASSERT_FALSE(clippers.graph.replayed());
+  expect_exact(pair, *full, r, what + ", graph", largest);
+  for (const Vec3<double>& away : {Vec3<double>{}, off}) {
+    if (!body.overlap(clippers.graph, pair.q, pair.x + away, planes, record)) continue;
+    const auto again = body.overlap(clippers.graph, pair.q, pair.x, planes, record);
+    clippers.replayed += clippers.graph.replayed() ? 1 : 0;
+    clippers.other_bits += test::same_bits(*again, *full) ? 0 : 1;
+  }
+}
+
 void record_error(const std::string& pairs, const std::string& what, double error) {
   test::verify({.section = "Overlap of polyhedra against exact numbers",
                 .quantity = pairs + ": largest error of the " + what,
@@ -148,9 +179,19 @@ void record_error(const std::string& pairs, const std::string& what, double erro
                 .tolerance = tolerance});
 }
 
+/// \param full      least part of the pairs for which GraphClipper has room
+/// \param replayed  least part of its overlaps that are replays
+void expect_replays(const Clippers& clippers, double full, double replayed) {
+  EXPECT_EQ(clippers.other_bits, 0);
+  EXPECT_GT(clippers.full, full * clippers.pairs);
+  EXPECT_GT(clippers.replayed, replayed * 2 * clippers.full);
+  std::printf("%d pairs, %d by graph, %d of %d replayed\n", clippers.pairs, clippers.full,
+              clippers.replayed, 2 * clippers.full);
+}
+
 TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
   test::Random random(7);
-  Clipper clipper;
+  Clippers clippers;
   Largest largest;
   const int count = test::full_form() ? 90000 : 1400;
   for (int k = 0; k < count; ++k) {
@@ -160,9 +201,11 @@ TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
                           {random.uniform(0.1, 1), random.uniform(0.3, 2), random.uniform(0.3, 2)});
     pair.q = random.rotation(random.uniform(0, 3));
     pair.x = random.vector(1.2);
-    expect_exact(pair, clipper, "pair " + std::to_string(k), largest);
+    const Vec3<double> off = random.vector(1e-3);
+    expect_exact(pair, clippers, off, "pair " + std::to_string(k), largest);
     if (HasFatalFailure()) break;
   }
+  expect_replays(clippers, 0.9, 0.7);
   const std::string pairs = test::text("%d random pairs", count);
   record_error(pairs, "volume over the smaller body's, V", largest.volume);
   record_error(pairs, "volume's first moment over V^(4/3)", largest.first);
@@ -173,7 +216,7 @@ TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
 /// Boxes of which faces, edges or vertices fall together, all but so, or that hold each other.
 TEST(Overlap, DegeneratePositionsAgreeWithExactNumbers) {
   test::Random random(8);
-  Clipper clipper;
+  Clippers clippers;
   Largest largest;
   const int count = test::full_form() ? 10000 : 600;
   const std::array<double, 6> nearly{0, 1e-16, 1e-14, 1e-12, 1e-9, 1e-6};
@@ -204,13 +247,14 @@ TEST(Overlap, DegeneratePositionsAgreeWithExactNumbers) {
     const double turns = std::floor(random.uniform(0, 4));
     pair.q = exp_rotation({0, 0, random_shape ? 0 : turns * quarter});
     // A little off.
-    const double off = nearly[static_cast<std::size_t>(random.uniform(0, 5.999))];
-    pair.x = pair.x + off * random.direction();
-    pair.q = product(random.rotation(nearly[static_cast<std::size_t>(random.uniform(0, 5.999))]),
-                     pair.q);
-    expect_exact(pair, clipper, "pair " + std::to_string(k), largest);
+    const auto little = [&] { return nearly[static_cast<std::size_t>(random.uniform(0, 5.999))]; };
+    pair.x = pair.x + little() * random.direction();
+    pair.q = product(random.rotation(little()), pair.q);
+    const Vec3<double> off = little() * random.direction();
+    expect_exact(pair, clippers, off, "pair " + std::to_string(k), largest);
     if (HasFatalFailure()) break;
   }
+  expect_replays(clippers, 0.9, 0.2);
   const std::string pairs = test::text("%d pairs of which faces, edges or corners meet", count);
   record_error(pairs, "volume over the smaller body's, V", largest.volume);
   record_error(pairs, "volume's first moment over V^(4/3)", largest.first);
