@@ -53,7 +53,7 @@ struct CutRecord {
     std::uint8_t plane;    ///< its place in the order of planes
     std::uint8_t points;   ///< number of new points of this cut and those before it
   };
-  static constexpr std::size_t most_cuts = 16, most_points = 48;
+  static constexpr std::size_t most_cuts = 24, most_points = 96;
 
   std::uint8_t cuts = 0;                      ///< number; 0: there is no record
   std::uint8_t first = 0;                     ///< B's plane that cuts first
