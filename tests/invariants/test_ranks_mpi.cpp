@@ -77,7 +77,9 @@ TEST(Ranks, StripsRunTowardsWhereTheWorkGathers) {
   // part in plan is none: both are as without one.
   const Part curve = partition(lattice, PETSC_COMM_WORLD);
   EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 0, 1}).global, curve.global);
-  if (size() > 2) EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 1, 0}).global, curve.global);
+  if (size() > 2) {
+    EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 1, 0}).global, curve.global);
+  }
 }
 
 class EveryDivision : public testing::TestWithParam<Vec3<double>> {};
