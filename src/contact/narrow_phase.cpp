@@ -114,8 +114,10 @@ Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const P
 /// nearly touch, then for an axis between edges.
 double NarrowPhase::gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b,
                         double enough, int tries) {
+  double last = pair.face < 0 ? gap_along_axis(solids, pair, a, b) : 0;
+  if (last > enough) return last;
   const Faces faces(solids, pair, a, b);
-  const double last = pair.face >= 0 ? faces.gap(pair.face) : gap_along_axis(solids, pair, a, b);
+  if (pair.face >= 0) last = faces.gap(pair.face);
   if (last > enough) return last;
   const auto [face, width] = faces.widest(std::max(last, 0.0));
   if (face >= 0) {

@@ -24,18 +24,19 @@ constexpr std::size_t obstacle_number(std::int32_t index) {
 /// Returns the index of obstacle k.
 constexpr std::int32_t obstacle_index(std::size_t k) { return -1 - static_cast<std::int32_t>(k); }
 
-/// A pair of the list.
+/// A pair of the list. Every step looks at all of them, so they are small.
 struct Pair {
   std::int32_t a = 0, b = 0;              ///< global bodies; b < 0: obstacle -1 - b
   std::int32_t slot_a = -1, slot_b = -1;  ///< slots of the bodies; -1 for an obstacle
-  bool counted = false;         ///< this rank owns A, and so counts the energies of the pair
-  bool newly_eligible = false;  ///< the first overlap of the pair counts as stress-free
-  bool broken = false;          ///< a beam between A and B broke: they have new faces
-  bool offloaded = false;       ///< another rank computes the overlap of the pair
-  std::int32_t cuts = -1;       ///< place of the record of its cuts (NarrowPhase); -1: none
-  std::int16_t face = -1;       ///< of the last gap: number of a plane of B, then of A; -1: axis
-  Vec3<double> axis{};          ///< of the last gap that no face had, a unit vector from B to A
-  double safe = 0;  ///< the pair has a gap while the travels of A and B add up to less [m]
+  bool counted : 1 = false;               ///< this rank owns A, and so counts the pair's energies
+  bool newly_eligible : 1 = false;        ///< the first overlap of the pair counts as stress-free
+  bool broken : 1 = false;                ///< a beam between A and B broke: they have new faces
+  bool offloaded : 1 = false;             ///< another rank computes the overlap of the pair
+  std::int16_t face = -1;  ///< of the last gap: number of a plane of B, then of A; -1: axis
+  std::int32_t cuts = -1;  ///< place of the record of its cuts (NarrowPhase); -1: none
+  Vec3<double> axis{};     ///< of the last gap that no face had, a unit vector from B to A
+  double safe = 0;         ///< the pair has a gap while the travels of A and B add up to less [m]
 };
+static_assert(sizeof(Pair) == 56);
 
 }  // namespace floe

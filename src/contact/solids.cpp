@@ -59,20 +59,19 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
   for (const Obstacle& o : obstacles_)
     extents_.push_back({.radius = o.radius(),
                         .width = least_width(o.vertices, o.planes),
-                        .lists = add_lists(o.vertices)});
+                        .first_coordinate = add_lists(o.vertices)});
   for (const Body& body : bodies_) thinnest_ = std::min(thinnest_, body.width);
   for (const Extents& obstacle : extents_) thinnest_ = std::min(thinnest_, obstacle.width);
 }
 
-Solids::Lists Solids::add_lists(std::span<const Vec3<double>> vertices) {
-  constexpr std::size_t padding = VertexLists::padding;
-  const std::size_t length = (vertices.size() + padding - 1) / padding * padding;
-  const Lists lists{.first = coordinates_.size(), .length = length, .number = vertices.size()};
+/// Returns the place of the first coordinate.
+std::size_t Solids::add_lists(std::span<const Vec3<double>> vertices) {
+  const std::size_t first = coordinates_.size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t k = 0; k < length; ++k)
+    for (std::size_t k = 0; k < VertexLists::padded(vertices.size()); ++k)
       coordinates_.push_back(vertices[std::min(k, vertices.size() - 1)][axis]);
   }
-  return lists;
+  return first;
 }
 
 /// Returns the place of the graph of a body in graphs_, or -1.
@@ -94,7 +93,7 @@ void Solids::add(std::int32_t body, double mass, Graphs& known) {
     added.radius = std::max(added.radius, length(item(shapes_.vertices, v)));
   }
   const auto first = static_cast<std::size_t>(added.first_vertex);
-  added.lists = add_lists(
+  added.first_coordinate = add_lists(
       std::span(shapes_.vertices).subspan(first, static_cast<std::size_t>(added.vertices)));
   added.graph = add_graph(body, known);
   append_half_spaces(shapes_, body, planes_);

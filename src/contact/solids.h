@@ -42,10 +42,11 @@ class Solids {
   }
   /// Returns the vertices by coordinates.
   VertexLists vertex_lists(std::int32_t index) const {
-    const Lists& lists =
-        is_obstacle(index) ? extents_[obstacle_number(index)].lists : item(bodies_, index).lists;
-    const double* x = coordinates_.data() + lists.first;
-    return {.x = x, .y = x + lists.length, .z = x + 2 * lists.length, .number = lists.number};
+    const std::size_t first = is_obstacle(index) ? extents_[obstacle_number(index)].first_coordinate
+                                                 : item(bodies_, index).first_coordinate;
+    const std::size_t number = vertices(index).size(), length = VertexLists::padded(number);
+    const double* x = coordinates_.data() + first;
+    return {.x = x, .y = x + length, .z = x + 2 * length, .number = number};
   }
   /// Returns the graph of the surface of a body; null if it has too many vertices.
   const EdgeGraph* graph(std::int32_t body) const {
@@ -98,25 +99,21 @@ class Solids {
   const Faces& faces(std::int32_t body) const { return item(faces_, body); }
 
  private:
-  struct Lists {
-    std::size_t first = 0, length = 0;  ///< of x, y and z in coordinates_
-    std::size_t number = 0;             ///< of vertices
-  };
   /// What an evaluation needs of a body, side by side in memory.
   struct Body {
     std::int32_t first_vertex = 0, vertices = 0;
     std::int32_t first_plane = 0, planes = 0;
-    std::int32_t graph = -1;  ///< in graphs_
-    Lists lists;
+    std::size_t first_coordinate = 0;  ///< in coordinates_: lists of x, y, z
+    std::int32_t graph = -1;           ///< in graphs_
     double size = 0, mass = 0, radius = 0, width = 0;
     InverseInertia inverse;
   };
   struct Extents {
     double radius = 0, width = 0;
-    Lists lists;
+    std::size_t first_coordinate = 0;
   };
 
-  Lists add_lists(std::span<const Vec3<double>> vertices);
+  std::size_t add_lists(std::span<const Vec3<double>> vertices);
   using Graphs = std::map<EdgeGraph, std::int32_t>;
   std::int32_t add_graph(std::int32_t body, Graphs& known);
   void add(std::int32_t body, double mass, Graphs& known);

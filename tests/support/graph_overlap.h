@@ -21,8 +21,7 @@ struct GraphBody {
     const auto b = static_cast<std::size_t>(body);
     const auto first = static_cast<std::size_t>(shapes.vertex_of[b]);
     const std::size_t number = static_cast<std::size_t>(shapes.vertex_of[b + 1]) - first;
-    const std::size_t length =
-        (number + VertexLists::padding - 1) / VertexLists::padding * VertexLists::padding;
+    const std::size_t length = VertexLists::padded(number);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < length; ++k)
         coordinates.push_back(shapes.vertices[first + std::min(k, number - 1)][axis]);

@@ -185,8 +185,6 @@ void expect_replays(const Clippers& clippers, double full, double replayed) {
   EXPECT_EQ(clippers.other_bits, 0);
   EXPECT_GT(clippers.full, full * clippers.pairs);
   EXPECT_GT(clippers.replayed, replayed * 2 * clippers.full);
-  std::printf("%d pairs, %d by graph, %d of %d replayed\n", clippers.pairs, clippers.full,
-              clippers.replayed, 2 * clippers.full);
 }
 
 TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
