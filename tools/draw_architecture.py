@@ -35,10 +35,12 @@ ROLES = {
     "submersion": ("submerged parts,", "waves"),
     "water": ("buoyancy, drag,", "added mass"),
     "contact_force": ("contact as a force:", "exchange, sharing"),
+    "fracture_laws": ("strengths, damage,", "tips of cracks"),
     "fracture": ("beams that damage", "and break"),
     "model": ("part, forces, prescribed", "unknowns, Newton"),
     "run": ("steps around an integrator,", "ledger, checkpoints"),
     "statics": ("equilibrium,", "load steps"),
+    "paths": ("equilibria along a path,", "load factor unknown"),
     "stability": ("stable step", "of explicit runs"),
     "leapfrog": ("update of bodies,", "works of forces"),
     "explicit": ("the step, runs by leapfrog", "and Runge-Kutta"),
@@ -46,7 +48,8 @@ ROLES = {
     "output": ("history, frames,", "fields"),
     "run_folder": ("output folder,", "its lock and files"),
     "scene": ("table of keys,", "restart"),
-    "simulation": ("from a scene to a model,", "and from a run to summary.json"),
+    "scene_model": ("from a scene to a lattice", "and a model"),
+    "simulation": ("from a model to a run,", "its plan and summary.json"),
 }
 # Names of libraries in CMakeLists.txt and on the picture.
 LIBRARIES = {"PkgConfig::HDF5": "HDF5", "PkgConfig::YAML": "libyaml", "Eigen3::Eigen": "Eigen",

@@ -11,8 +11,8 @@
 #include "floe/base/petsc.h"
 #include "fracture/fracture.h"
 #include "fracture/lanes.h"
-#include "fracture/strengths.h"
-#include "fracture/tip_beams.h"
+#include "fracture_laws/strengths.h"
+#include "fracture_laws/tip_beams.h"
 
 namespace floe {
 namespace {

@@ -1,4 +1,4 @@
-#include "fracture/tip_beams.h"
+#include "fracture_laws/tip_beams.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/collectives.h"
 #include "floe/base/item.h"
-#include "fracture/strengths.h"
+#include "fracture_laws/strengths.h"
 
 namespace floe {
 

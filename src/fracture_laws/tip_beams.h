@@ -8,8 +8,8 @@
 
 #include "floe/fracture/fracture_options.h"
 #include "floe/lattice/state.h"
-#include "fracture/crack_tips.h"
-#include "fracture/law.h"
+#include "fracture_laws/crack_tips.h"
+#include "fracture_laws/law.h"
 #include "lattice/archive.h"
 #include "lattice/partition.h"
 
