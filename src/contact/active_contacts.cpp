@@ -5,7 +5,7 @@
 namespace floe {
 
 void ActiveContacts::start(std::size_t slots) {
-  contacts_.clear();
+  size_ = 0;
   touching_ = 0;
   on_bodies_.resize(slots);
 }

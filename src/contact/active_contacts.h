@@ -43,6 +43,7 @@ struct TermWrenches {
 /// A contact of an evaluation.
 struct ActiveContact {
   std::int32_t pair = 0;  ///< index in the list
+  bool deep = false;      ///< is_deep()
   Vec3<double> centre{};  ///< of the overlap, from the centroid of A [m]
   ContactTrial trial;
   Friction springs{};  ///< of friction, within the limit of the last forces
@@ -61,10 +62,11 @@ class ActiveContacts {
 
   /// Begins an evaluation. \param slots  number of involved bodies
   void start(std::size_t slots);
-  /// Adds a contact, whose members are to be set.
+  /// Adds a contact, of which all members are to be set: they are those of an earlier one.
   ActiveContact& add(bool counted) {
     touching_ += counted ? 1 : 0;
-    return contacts_.emplace_back();
+    if (size_ == room_.size()) room_.resize(2 * size_ + 16);
+    return room_[size_++];
   }
   /// Sets the forces of all contacts anew, and with them the wrenches on bodies and obstacles.
   /// \param pair_of   function from an index to the pair of the list
@@ -75,10 +77,10 @@ class ActiveContacts {
   void add_sums(const Places& places, auto pair_of, auto force_of,
                 std::span<ContactWrench> wrenches) const;
   /// Forgets the contacts; forces on obstacles stay.
-  void clear() { contacts_.clear(); }
+  void clear() { size_ = 0; }
 
   /// Returns the contacts, in list order.
-  std::span<const ActiveContact> contacts() const { return contacts_; }
+  std::span<const ActiveContact> contacts() const { return std::span(room_).first(size_); }
   /// Returns the number of counted contacts.
   std::int64_t touching() const { return touching_; }
   /// Returns the wrench on an involved body.
@@ -96,7 +98,8 @@ class ActiveContacts {
  private:
   void begin_forces();
 
-  std::vector<ActiveContact> contacts_;
+  std::vector<ActiveContact> room_;         ///< the contacts, then room for more
+  std::size_t size_ = 0;                    ///< number of contacts
   std::vector<TermWrenches> on_bodies_;     ///< by slot
   std::vector<TermWrenches> on_obstacles_;  ///< about the origins of their frames
   std::int64_t touching_ = 0;
@@ -114,7 +117,7 @@ inline void add_pair(const Vec3<double>& force, const Vec3<double>& couple,
 
 void ActiveContacts::act(const Places& places, auto pair_of, auto force_of) {
   begin_forces();
-  for (ActiveContact& active : contacts_) {
+  for (ActiveContact& active : std::span(room_).first(size_)) {
     if (active.is_enclosed()) continue;
     const Pair& pair = pair_of(active.pair);
     const ContactForce contact = force_of(active, pair);
@@ -135,7 +138,7 @@ void ActiveContacts::act(const Places& places, auto pair_of, auto force_of) {
 void ActiveContacts::add_sums(const Places& places, auto pair_of, auto force_of,
                               std::span<ContactWrench> wrenches) const {
   ContactWrench on_obstacles;
-  for (const ActiveContact& active : contacts_) {
+  for (const ActiveContact& active : contacts()) {
     if (active.is_enclosed()) continue;
     const Pair& pair = pair_of(active.pair);
     const ContactForce contact = force_of(active, pair);

@@ -126,6 +126,7 @@ void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
   find_trial(law, pair_constants(solids_, options_, pair, wet), overlap, met.depth,
              places_.motion(pair, overlap.centroid), mobility, last, 0.5 * (a.spin + b.spin),
              memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible, active.trial);
+  active.deep = is_deep(solids_, pair, active.trial);
 }
 
 /// Returns the energy that the counted contacts store.
@@ -148,8 +149,7 @@ void Contacts::commit() {
   history_.start();
   for (const ActiveContact& active : active_.contacts()) {
     const Pair& pair = list_.pair(active.pair);
-    if (pair.counted)
-      events_.note(active, is_deep(solids_, pair, active.trial), pair, places_.time());
+    if (pair.counted) events_.note(active, pair, places_.time());
     history_.add({.a = pair.a, .b = pair.b, .pair = active.pair, .memory = active.memory()});
   }
   if (wears()) find_crushed();

@@ -19,11 +19,10 @@ struct ContactEvent {
 class ContactEvents {
  public:
   /// Notes the events of a contact.
-  /// \param deep  whether is_deep() holds for it
   /// \param time  of the evaluation [s]
-  void note(const ActiveContact& active, bool deep, const Pair& pair, double time) {
+  void note(const ActiveContact& active, const Pair& pair, double time) {
     ContactEvent& first = active.is_enclosed() ? enclosed_ : pressed_through_;
-    if (first.happened || !(active.is_enclosed() || deep)) return;
+    if (first.happened || !(active.is_enclosed() || active.deep)) return;
     first = {.happened = true, .time = time, .a = pair.a, .b = pair.b};
   }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace floe {
@@ -54,6 +55,18 @@ Obstacle half_space(const Vec3<double>& point, const Vec3<double>& normal) {
   o.point = point;
   o.planes = {{(1 / std::sqrt(dot(normal, normal))) * normal, 0}};
   return o;
+}
+
+Vec3<double> way_to_nearest(const std::vector<Obstacle>& obstacles, const Vec3<double>& from) {
+  Vec3<double> shortest{};
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& o : obstacles) {
+    Vec3<double> way = o.point - from;
+    if (o.vertices.empty()) way = dot(o.planes[0].normal, way) * o.planes[0].normal;
+    const double distance = length(way);
+    if (distance < least) least = distance, shortest = way;
+  }
+  return {shortest.x, shortest.y, 0};
 }
 
 Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>& point) {

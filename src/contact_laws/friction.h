@@ -25,13 +25,13 @@ struct FrictionSprings {
 inline Vec3<double> carried(const FrictionSprings& last, const Vec3<double>& normal,
                             double stiffness) {
   const Vec3<double>& f = last.force;
-  const double before = length(f);
-  if (before == 0) return {};
+  const double before2 = dot(f, f);
+  if (before2 == 0) return {};
   const Vec3<double> in_plane = f - dot(f, normal) * normal;
-  const double size = length(in_plane);
-  if (size == 0) return {};
+  const double size2 = dot(in_plane, in_plane);
+  if (size2 == 0) return {};
   const double falls = stiffness < last.stiffness ? stiffness / last.stiffness : 1.0;
-  return (falls * before / size) * in_plane;
+  return (falls * std::sqrt(before2 / size2)) * in_plane;
 }
 
 /// The spring of friction against a spin about the normal.

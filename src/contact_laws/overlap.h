@@ -15,9 +15,8 @@ struct OverlapLaw {
   explicit OverlapLaw(const ContactOptions& options) : constants(options) {}
 
   ElasticTerm term(const ContactState& state) const {
-    return {.rate = state.pair.stiffness,
-            .couple = {},
-            .root = std::sqrt(state.pair.stiffness * state.area)};
+    return {
+        .rate = state.pair.stiffness, .couple = {}, .stiffness = state.pair.stiffness * state.area};
   }
 
   /// Returns the energy that the elastic force stores [J].

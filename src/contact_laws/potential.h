@@ -22,7 +22,7 @@ struct PotentialLaw {
     const double stiffness = state.pair.stiffness, reference = state.pair.area;
     return {.rate = stiffness * state.area / reference,
             .couple = (stiffness / reference) * state.overlap.moment,
-            .root = std::sqrt(stiffness / reference) * state.area};
+            .stiffness = stiffness / reference * state.area * state.area};
   }
 
   /// Returns the energy that the elastic force stores [J].

@@ -74,7 +74,7 @@ struct ContactState {
 struct ElasticTerm {
   double rate = 0;        ///< force per volume [N/m^3]
   Vec3<double> couple{};  ///< couple about the centroid of the overlap per volume [N m/m^3]
-  double root = 0;        ///< square root of the stiffness along n [(N/m)^1/2]
+  double stiffness = 0;   ///< along n [N/m]
 };
 
 /// The dashpots of a contact: coefficients with which they act over a step.

@@ -42,43 +42,47 @@ inline double touched_for(const ContactState& state, double approach) {
   return std::min(dt, state.overlap.volume / (state.area * approach));
 }
 
-/// Returns the coefficient with which a dashpot c acts over a step on a velocity that c itself
-/// slows down: c/(1 + (dt/2) c yields).
-/// \param yields  relative acceleration per force of the dashpot
-/// \param counts  part of the step in which it acts
-inline double over_step(double c, double yields, double dt, double counts) {
-  return counts * c / (1 + 0.5 * dt * c * yields);
-}
+/// A dashpot c = 2 zeta sqrt(stiffness/yields) as it acts over a step on a velocity that c itself
+/// slows down: with c/(1 + (dt/2) c yields).
+struct StepDashpot {
+  double slows = 0;      ///< 1 + (dt/2) c yields
+  double over_step = 0;  ///< c/slows
+
+  /// \param yields  relative acceleration per force of the dashpot
+  StepDashpot(double damping_ratio, double stiffness, double yields, double dt) {
+    const double rate = 2 * damping_ratio * std::sqrt(stiffness * yields);  // c yields
+    slows = 1 + 0.5 * dt * rate;
+    over_step = rate / (yields * slows);
+  }
+};
 
 /// Returns the dashpots of a contact: 2 zeta sqrt(m_eff k) of the viscous pressure along n, and of
 /// friction 2 zeta sqrt(m_t k_t) against slip, 1/m_t the mean over the directions across n, and
 /// alike against spin.
-/// \param root     square root of the stiffness along n
-/// \param springs  stiffnesses of the springs of friction
-/// \param touched  part of the last step in which the pair touched [s]
-inline Dashpots dashpots_of(double damping_ratio, const ContactState& state, double root,
-                            const PairHistory& springs, double touched) {
+/// \param stiffness     along n
+/// \param springs       stiffnesses of the springs of friction
+/// \param touched       part of the last step in which the pair touched [s]
+/// \param inverse_area  1/|S|
+inline Dashpots dashpots_of(double damping_ratio, const ContactState& state, double stiffness,
+                            const PairHistory& springs, double touched, double inverse_area) {
   const Patch& patch = state.overlap.patch;
-  const LastStep& last = state.last;
+  const double dt = state.last.dt;
   const Vec3<double>& n = state.normal;
   const Vec3<double> middle = patch.area > 0 ? patch.middle : state.overlap.centroid;
-  const double yields = state.mobility.along(middle, n);
-  const double c = 2 * damping_ratio * root / std::sqrt(yields);
+  const StepDashpot along(damping_ratio, stiffness, state.mobility.along(middle, n), dt);
   Dashpots d;
-  d.counts = last.touched || !(last.dt > 0) ? 1.0 : (touched + 0.5 * last.dt) / last.dt;
-  d.normal = over_step(c, yields, last.dt, d.counts);
+  d.counts = state.last.touched || !(dt > 0) ? 1.0 : (touched + 0.5 * dt) / dt;
+  d.normal = d.counts * along.over_step;
   d.arm = middle - state.overlap.centroid;
-  d.area = c / state.area;
-  d.widest = std::sqrt(std::max(patch.largest(), 0.0) / state.area);
+  d.area = along.slows * along.over_step * inverse_area;
+  d.widest = std::sqrt(std::max(patch.largest(), 0.0) * inverse_area);
   d.turning = state.mobility.turning();
   if (state.pair.friction > 0) {
-    const double slides = state.mobility.across(state.overlap.centroid, n);
-    d.slip = over_step(2 * damping_ratio * std::sqrt(springs.springs.stiffness / slides), slides,
-                       last.dt, 1);
-    const double turns = dot(n, d.turning * n);
+    const double slides = state.mobility.across(state.overlap.centroid, n),
+                 turns = dot(n, d.turning * n);
+    d.slip = StepDashpot(damping_ratio, springs.springs.stiffness, slides, dt).over_step;
     if (turns > 0)
-      d.twist = over_step(2 * damping_ratio * std::sqrt(springs.twist.stiffness / turns), turns,
-                          last.dt, 1);
+      d.twist = StepDashpot(damping_ratio, springs.twist.stiffness, turns, dt).over_step;
   }
   return d;
 }
@@ -115,9 +119,10 @@ inline void find_trial_along(const SharedConstants& constants, const ContactStat
   trial.couple = pressed * term.couple;
   trial.yield = yield;
   trial.friction = state.pair.friction;
-  trial.reach = patch.reach / state.area;
-  const double stiffness = 0.6 * term.root * term.root,
-               twist = stiffness * ((patch.uu + patch.vv) / state.area);
+  const double inverse_area = 1 / state.area;
+  trial.reach = patch.reach * inverse_area;
+  const double stiffness = 0.6 * term.stiffness,
+               twist = stiffness * ((patch.uu + patch.vv) * inverse_area);
   const double touched = touched_for(state, approach);
   trial.springs = advanced_springs(state, stiffness, twist, memory, touched);
   trial.memory.springs.stiffness = stiffness;
@@ -128,7 +133,8 @@ inline void find_trial_along(const SharedConstants& constants, const ContactStat
   trial.pair = state.pair;
   trial.dt = state.last.dt;
   if (constants.damping_ratio == 0) return;
-  trial.dashpots = dashpots_of(constants.damping_ratio, state, term.root, trial.memory, touched);
+  trial.dashpots = dashpots_of(constants.damping_ratio, state, term.stiffness, trial.memory,
+                               touched, inverse_area);
   trial.patch = patch;
 }
 
@@ -152,8 +158,8 @@ inline Vec3<double> rocking_couple(const ContactTrial& trial, const Vec3<double>
   if (!(w2 > 0)) return {};
   const Dashpots& d = trial.dashpots;
   const Vec3<double> tw = trial.patch.rocking(across);
-  const double yields = dot(across, tw) * dot(across, d.turning * across) / (w2 * w2);
-  return -over_step(d.area, yields, trial.dt, d.counts) * tw;
+  const double slows = 0.5 * trial.dt * d.area * dot(across, tw) * dot(across, d.turning * across);
+  return (-d.counts * d.area * w2 * w2 / (w2 * w2 + slows)) * tw;
 }
 
 /// Returns the couple of the viscous pressure under its limits. Where the force along the normal is

@@ -8,17 +8,15 @@
 namespace floe {
 namespace {
 
-/// Returns x at one corner of each of `few_lanes` entries.
-template <class Entry>
-[[gnu::always_inline]] inline FewLanes gather(const double* x, const Entry* entries,
-                                              std::uint8_t Entry::*corner) {
-  return FewLanes([&](auto k) { return x[entries[k].*corner]; });
+/// Returns x at one corner of each of `few_lanes` triples.
+[[gnu::always_inline]] inline FewLanes gather(const double* x, const Triple* triples,
+                                              std::uint8_t Triple::*corner) {
+  return FewLanes([&](auto k) { return x[triples[k].*corner]; });
 }
 
 /// Returns one corner of each of `few_lanes` triangles, from the apex.
-[[gnu::always_inline]] inline Vec3<FewLanes> corners(const Points& points,
-                                                     const Facets::Triangle* triangles,
-                                                     std::uint8_t Facets::Triangle::*corner,
+[[gnu::always_inline]] inline Vec3<FewLanes> corners(const Points& points, const Triple* triangles,
+                                                     std::uint8_t Triple::*corner,
                                                      const Vec3<double>& apex) {
   return {gather(points.x.data(), triangles, corner) - apex.x,
           gather(points.y.data(), triangles, corner) - apex.y,
@@ -76,11 +74,11 @@ struct Sums {
 Sums sum_triangles(const Points& points, const Facets& facets, bool with_patch) {
   const Vec3<double> apex = point(points, facets.apex);
   Sums sums;
-  for (std::size_t k = 0; k < facets.triangles; k += few_lanes) {
-    const Facets::Triangle* triangles = facets.triangle.data() + k;
-    const Vec3<FewLanes> p = corners(points, triangles, &Facets::Triangle::p, apex);
-    const Vec3<FewLanes> q = corners(points, triangles, &Facets::Triangle::q, apex);
-    const Vec3<FewLanes> r = corners(points, triangles, &Facets::Triangle::r, apex);
+  for (std::size_t k = 0; k < facets.triangles.size(); k += few_lanes) {
+    const Triple* triangles = facets.triangles.data() + k;
+    const Vec3<FewLanes> p = corners(points, triangles, &Triple::a, apex);
+    const Vec3<FewLanes> q = corners(points, triangles, &Triple::b, apex);
+    const Vec3<FewLanes> r = corners(points, triangles, &Triple::c, apex);
     const Vec3<FewLanes> twice = cross(q - p, r - p);
     const Vec3<FewLanes> sum = p + q + r;
     const FewLanes v = dot(p, twice);
@@ -104,13 +102,13 @@ struct VerticesAcross {
 double sum_reach(const Facets& facets, const VerticesAcross& vertices,
                  const Across<double>& middle) {
   FewLanes reach = zero;
-  for (std::size_t k = 0; k < facets.rim; k += few_lanes) {
-    const Facets::Edge* edges = facets.edge.data() + k;
-    const auto across = [&](std::uint8_t Facets::Edge::*end) {
+  for (std::size_t k = 0; k < facets.rim.size(); k += few_lanes) {
+    const Triple* edges = facets.rim.data() + k;
+    const auto across = [&](std::uint8_t Triple::*end) {
       return Across<FewLanes>{gather(vertices.u.data(), edges, end) - middle.u,
                               gather(vertices.v.data(), edges, end) - middle.v};
     };
-    reach += reach_of_edge(across(&Facets::Edge::a), across(&Facets::Edge::b));
+    reach += reach_of_edge(across(&Triple::a), across(&Triple::b));
   }
   return std::experimental::reduce(reach);
 }

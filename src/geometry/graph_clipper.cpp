@@ -38,11 +38,11 @@ FewLanes height(const HalfSpace& plane, const Points& points, std::size_t slot) 
 
 FewLanes load_anywhere(const double* p) { return {p, std::experimental::element_aligned}; }
 
-/// Fills a list up to a whole number of registers.
-template <class List, class Entry>
-std::uint8_t pad(List& list, std::size_t size, const Entry& entry) {
-  while (size % few_lanes != 0) list[size++] = entry;
-  return byte(size);
+/// Fills the list from `begin` to `end` up to a whole number of registers with the apex; returns
+/// the new end.
+Triple* pad(const Triple* begin, Triple* end, std::uint8_t apex) {
+  while ((end - begin) % static_cast<std::ptrdiff_t>(few_lanes) != 0) *end++ = {apex, apex, apex};
+  return end;
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ bool GraphClipper::overlap(const EdgeGraph& a, std::span<const HalfSpace> planes
                      record.planes == all.number() && record.further_of_b == further.b.size();
   replayed_ = known && replay(all, record);
   if (!replayed_ && !clip(a, all, record)) return false;
-  if (alive_ != 0) set_integrals(found, points_, record.facets, with_patch);
+  if (alive_ != 0) set_integrals(found, points_, record.facets(), with_patch);
   return true;
 }
 
@@ -146,36 +146,40 @@ void GraphClipper::settle(std::uint32_t inside) {
   });
 }
 
-/// The inside end has a distance of at most 0, the outside end one above 0, so no divisor vanishes.
-void GraphClipper::make_points(std::span<const NewPoint> points) {
+/// Makes new vertices; returns a mask of them. The inside end has a distance of at most 0, the
+/// outside end one above 0, so no divisor vanishes.
+std::uint64_t GraphClipper::make_points(std::span<const Triple> points) {
+  std::uint64_t made = 0;
   for (const auto [u, v, w] : points) {
     const double t = distance_[u] / (distance_[u] - distance_[v]);  // in [0, 1)
     points_.x[w] = points_.x[u] + t * (points_.x[v] - points_.x[u]);
     points_.y[w] = points_.y[u] + t * (points_.y[v] - points_.y[u]);
     points_.z[w] = points_.z[u] + t * (points_.z[v] - points_.z[u]);
+    made |= bit(w);
   }
+  return made;
 }
 
 /// Repeats the arithmetic of a record. Returns false if a plane leaves other vertices inside.
 bool GraphClipper::replay(const Planes& planes, const CutRecord& record) {
   const CutRecord::Cut* cut = record.cut.data();
   const CutRecord::Cut* const end = cut + record.cuts;
-  const NewPoint* point = record.point.data();
-  const auto repeat = [&] {
-    const NewPoint* const last = record.point.data() + cut->points;
-    make_points({point, last});
+  const Triple* point = record.triple.data();
+  const auto repeat = [&](std::uint64_t inside) {
+    const Triple* const last = record.triple.data() + cut++->points;
+    alive_ = inside | make_points({point, last});
     point = last;
-    alive_ = cut++->left;
   };
   const std::uint32_t placed = placed_inside(planes.b[planes.first]);
   if (placed != cut->inside) return false;
   settle(placed);
-  repeat();
+  repeat(first_bits(count(placed)));
   bool same = true;
   planes.for_each_but_first([&](const HalfSpace& plane, std::size_t number, bool) {
     const bool cuts = cut != end && cut->plane == number;
-    same = left_inside(plane) == (cuts ? cut->inside : alive_);
-    if (same && cuts) repeat();
+    const std::uint64_t inside = left_inside(plane);
+    same = inside == (cuts ? cut->inside : alive_);
+    if (same && cuts) repeat(inside);
     return same && alive_ != 0;
   });
   return same;
@@ -183,7 +187,7 @@ bool GraphClipper::replay(const Planes& planes, const CutRecord& record) {
 
 /// The full pass. Makes a record; returns false if there is no room.
 bool GraphClipper::clip(const EdgeGraph& a, const Planes& planes, CutRecord& record) {
-  record.cuts = 0;
+  record.cuts = record.points = 0;
   record.first = planes.first;
   record.planes = byte(planes.number());
   record.further_of_b = byte(planes.further.b.size());
@@ -200,8 +204,8 @@ bool GraphClipper::clip(const EdgeGraph& a, const Planes& planes, CutRecord& rec
     noted = noted && note_cut(record, inside, number);
     return alive_ != 0;
   });
-  if (!room || !noted) record.cuts = 0;
-  if (room && alive_ != 0) note_facets(record.facets);
+  if (!room || !noted) record.cuts = record.points = 0;
+  if (room && alive_ != 0) note_facets(record);
   return room;
 }
 
@@ -239,11 +243,9 @@ bool GraphClipper::cut(std::uint64_t inside, bool on_b) {
   if (number > free_slots || number > EdgeGraph::most_edges - count(edges_)) return false;
   add_vertices(crossing, inside);
   add_edges(crossing, on_b);
-  alive_ = inside;
-  for (std::size_t k = 0; k < new_; ++k) alive_ |= bit(new_points_[k].w);
+  alive_ = inside | make_points({new_points_.data(), new_});
   of_a_ &= inside;
   edges_ &= ~(outside & ~crossing);
-  make_points({new_points_.data(), new_});
   return true;
 }
 
@@ -255,7 +257,7 @@ void GraphClipper::add_vertices(std::uint64_t crossing, std::uint64_t inside) {
     const std::size_t leaves = 2 * e + (1 - begins_inside), enters = 2 * e + begins_inside;
     const std::size_t w = lowest_bit(free);
     free &= free - 1;
-    new_points_[new_++] = {.u = origin_[leaves], .v = origin_[enters], .w = byte(w)};
+    new_points_[new_++] = {origin_[leaves], origin_[enters], byte(w)};
     origin_[enters] = byte(w);
     star_[w] = bit(e);
   });
@@ -268,7 +270,7 @@ void GraphClipper::add_edges(std::uint64_t crossing, bool on_b) {
   std::uint64_t free = ~edges_;
   std::size_t k = 0;
   for_each_bit(crossing, [&](std::size_t e) {
-    const std::uint8_t w = new_points_[k++].w;
+    const std::uint8_t w = new_points_[k++].c;
     const std::size_t leaves = origin_[2 * e] == w ? 2 * e + 1 : 2 * e;
     std::size_t enters = next_[leaves];
     while ((crossing >> (enters / 2) & 1) == 0) enters = next_[enters];
@@ -292,65 +294,63 @@ void GraphClipper::add_edges(std::uint64_t crossing, bool on_b) {
 
 /// Returns false if there is no room in the record.
 bool GraphClipper::note_cut(CutRecord& record, std::uint32_t inside, std::size_t plane) const {
-  const std::size_t before = record.cuts > 0 ? record.cut[record.cuts - 1U].points : 0;
-  if (record.cuts == CutRecord::most_cuts || before + new_ > CutRecord::most_points) return false;
-  std::copy_n(new_points_.begin(), new_, record.point.begin() + before);
-  record.cut[record.cuts++] = {.inside = inside,
-                               .left = static_cast<std::uint32_t>(alive_),
-                               .plane = byte(plane),
-                               .points = byte(before + new_)};
+  if (record.cuts == CutRecord::most_cuts || record.points + new_ > CutRecord::most_points)
+    return false;
+  std::copy_n(new_points_.begin(), new_, record.triple.begin() + record.points);
+  record.points = byte(record.points + new_);
+  record.cut[record.cuts++] = {.inside = inside, .plane = byte(plane), .points = record.points};
   return true;
 }
 
 /// A vertex of A as apex spares the faces of A at this vertex.
-void GraphClipper::note_facets(Facets& facets) const {
-  facets.slots = byte(static_cast<std::size_t>(std::bit_width(alive_)));
-  facets.apex = byte(lowest_bit(of_a_ != 0 ? of_a_ : alive_));
-  facets.triangles = 0;
-  note_triangles(facets, true);
-  facets.on_b = facets.triangles;
-  note_triangles(facets, false);
-  note_rim(facets);
+void GraphClipper::note_facets(CutRecord& record) const {
+  record.slots = byte(static_cast<std::size_t>(std::bit_width(alive_)));
+  record.apex = byte(lowest_bit(of_a_ != 0 ? of_a_ : alive_));
+  Triple* const begin = record.triple.data() + record.points;
+  Triple* const end_on_b = pad(begin, add_triangles(begin, record.apex, true), record.apex);
+  Triple* const end = pad(end_on_b, add_triangles(end_on_b, record.apex, false), record.apex);
+  record.on_b = byte(static_cast<std::size_t>(end_on_b - begin));
+  record.triangles = byte(static_cast<std::size_t>(end - begin));
+  record.rim = byte(static_cast<std::size_t>(pad(end, add_rim(end), record.apex) - end));
 }
 
-/// Adds the triangles of the faces on B, or of the other faces without the apex.
-void GraphClipper::note_triangles(Facets& facets, bool on_b) const {
+/// Adds the triangles of the faces on B, or of the other faces without the apex, to a list; returns
+/// its end.
+Triple* GraphClipper::add_triangles(Triple* to, std::uint8_t apex, bool on_b) const {
   std::array<std::uint64_t, 2> wanted{edges_, edges_};  // of half-edges 2e and 2e + 1
-  const auto take = [&](std::size_t h) { wanted[h % 2] &= ~bit(h / 2); };
-  std::size_t size = facets.triangles;
+  const auto take = [&](std::size_t h) {
+    wanted[h % 2] &= ~bit(h / 2);
+    return origin_[h];
+  };
   for (std::size_t side = 0; side < 2; ++side) {
     while (wanted[side] != 0) {
       const std::size_t first = 2 * lowest_bit(wanted[side]) + side;
-      const std::size_t begin = size;
-      const std::uint8_t p = origin_[first];
-      take(first);
+      Triple* const begin = to;
       std::size_t h = next_[first];
-      take(h);
-      std::uint8_t q = origin_[h];
-      bool has_apex = p == facets.apex || q == facets.apex;
+      const std::uint8_t p = take(first);
+      std::uint8_t q = take(h);
+      bool has_apex = p == apex || q == apex;
       for (h = next_[h]; h != first; h = next_[h]) {
-        take(h);
-        const std::uint8_t r = origin_[h];
-        has_apex = has_apex || r == facets.apex;
-        facets.triangle[size++] = {p, q, r};
+        const std::uint8_t r = take(h);
+        has_apex = has_apex || r == apex;
+        *to++ = {p, q, r};
         q = r;
       }
       const bool adds = on_b ? on_b_[first] != 0 : on_b_[first] == 0 && !has_apex;
-      if (!adds) size = begin;
+      if (!adds) to = begin;
     }
   }
-  const std::uint8_t apex = facets.apex;
-  facets.triangles = pad(facets.triangle, size, Facets::Triangle{apex, apex, apex});
+  return to;
 }
 
-void GraphClipper::note_rim(Facets& facets) const {
-  std::size_t size = 0;
+/// Adds the rim of the facets on B to a list; returns its end.
+Triple* GraphClipper::add_rim(Triple* to) const {
   for_each_bit(edges_, [&](std::size_t e) {
     if (on_b_[2 * e] == on_b_[2 * e + 1]) return;
     const std::size_t h = on_b_[2 * e] != 0 ? 2 * e : 2 * e + 1;
-    facets.edge[size++] = {origin_[h], origin_[h ^ 1]};
+    *to++ = {origin_[h], origin_[h ^ 1], origin_[h]};
   });
-  facets.rim = pad(facets.edge, size, Facets::Edge{facets.apex, facets.apex});
+  return to;
 }
 
 }  // namespace floe

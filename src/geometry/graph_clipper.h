@@ -62,7 +62,7 @@ class GraphClipper {
   std::uint32_t placed_inside(const HalfSpace& plane);
   std::uint32_t left_inside(const HalfSpace& plane);
   void settle(std::uint32_t inside);
-  void make_points(std::span<const NewPoint> points);
+  std::uint64_t make_points(std::span<const Triple> points);
 
   bool replay(const Planes& planes, const CutRecord& record);
   bool clip(const EdgeGraph& a, const Planes& planes, CutRecord& record);
@@ -71,9 +71,9 @@ class GraphClipper {
   void add_vertices(std::uint64_t crossing, std::uint64_t inside);
   void add_edges(std::uint64_t crossing, bool on_b);
   bool note_cut(CutRecord& record, std::uint32_t inside, std::size_t plane) const;
-  void note_facets(Facets& facets) const;
-  void note_triangles(Facets& facets, bool on_b) const;
-  void note_rim(Facets& facets) const;
+  void note_facets(CutRecord& record) const;
+  Triple* add_triangles(Triple* to, std::uint8_t apex, bool on_b) const;
+  Triple* add_rim(Triple* to) const;
 
   bool replayed_ = false;
   std::size_t vertices_ = 0;  ///< of A
@@ -87,10 +87,10 @@ class GraphClipper {
   PerHalfEdge origin_{}, next_{};
   PerHalfEdge on_b_{};  ///< whether the face of the half-edge is on B
   std::array<std::uint64_t, Points::slots> star_{};
-  std::uint64_t edges_ = 0;                       ///< mask
-  std::uint64_t of_a_ = 0;                        ///< mask of the slots that are for A's vertices
-  std::array<NewPoint, Points::low> new_points_;  ///< of the last cut
-  std::size_t new_ = 0;                           ///< their number
+  std::uint64_t edges_ = 0;                     ///< mask
+  std::uint64_t of_a_ = 0;                      ///< mask of the slots that are for A's vertices
+  std::array<Triple, Points::low> new_points_;  ///< of the last cut
+  std::size_t new_ = 0;                         ///< their number
 };
 
 }  // namespace floe

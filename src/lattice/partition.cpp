@@ -1,6 +1,7 @@
 #include "lattice/partition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "floe/base/item.h"
@@ -11,14 +12,43 @@
 namespace floe {
 namespace {
 
-/// Returns the owner of every body: equal chunks along the Hilbert curve.
-std::vector<std::int32_t> owners(const Lattice& lattice, int ranks) {
-  const std::vector<std::int32_t> along = hilbert_order(lattice.bodies.position);
-  const auto n = static_cast<std::int64_t>(along.size());
-  std::vector<std::int32_t> owner(along.size());
+/// Returns the bodies by their places across a direction in plan; nothing where strips along it
+/// would be less than four bodies wide.
+std::vector<std::int32_t> order_across(const Lattice& lattice, const Vec3<double>& strips,
+                                       int ranks) {
+  constexpr double narrowest = 4;
+  const std::vector<Point3>& places = lattice.bodies.position;
+  const double size = std::hypot(strips.x, strips.y);
+  if (size == 0) return {};
+  std::vector<double> across;
+  Vec3<double> low = places[0], high = low;  // along the strips, across them, unused
+  for (const Point3& p : places) {
+    const double x = (strips.x * p.x + strips.y * p.y) / size,
+                 y = (strips.x * p.y - strips.y * p.x) / size;
+    across.push_back(y);
+    low = {std::min(low.x, x), std::min(low.y, y), 0};
+    high = {std::max(high.x, x), std::max(high.y, y), 0};
+  }
+  const double body =
+      std::sqrt((high.x - low.x) * (high.y - low.y) / static_cast<double>(places.size()));
+  if (!((high.y - low.y) / ranks > narrowest * body)) return {};
+  std::vector<std::int32_t> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return item(across, a) < item(across, b);
+  });
+  return order;
+}
+
+/// Returns the owner of every body: equal parts of strips, or of the Hilbert curve.
+std::vector<std::int32_t> owners(const Lattice& lattice, int ranks, const Vec3<double>& strips) {
+  std::vector<std::int32_t> order = order_across(lattice, strips, ranks);
+  if (order.empty()) order = hilbert_order(lattice.bodies.position);
+  const auto n = static_cast<std::int64_t>(order.size());
+  std::vector<std::int32_t> owner(order.size());
   for (int r = 0; r < ranks; ++r) {
     for (std::int64_t k = n * r / ranks; k < n * (r + 1) / ranks; ++k)
-      item(owner, item(along, k)) = r;
+      item(owner, item(order, k)) = r;
   }
   return owner;
 }
@@ -37,14 +67,14 @@ std::vector<std::int32_t> Part::localise(const std::vector<std::int32_t>& global
   return here;
 }
 
-Part partition(const Lattice& lattice, MPI_Comm comm) {
+Part partition(const Lattice& lattice, MPI_Comm comm, const Vec3<double>& strips) {
   const Timed timed(Event::partition);
   const int me = rank(comm), ranks = size(comm);
   const std::int32_t n = lattice.bodies.size();
   if (ranks > n)
     throw InputError("mpiexec: " + std::to_string(ranks) + " ranks are more than the " +
                      std::to_string(n) + " bodies of the scene");
-  const std::vector<std::int32_t> owner = owners(lattice, ranks);
+  const std::vector<std::int32_t> owner = owners(lattice, ranks, strips);
 
   // Each rank's bodies are numbered in global order, rank after rank: local index and PETSc's block
   // row.

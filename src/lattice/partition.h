@@ -1,6 +1,5 @@
 /// \file
-/// A lattice distributed over ranks. Each rank owns a chunk of the bodies along a Hilbert curve and
-/// computes every beam that touches an owned body, in global order, so that forces have the same
+/// A lattice distributed over ranks. Each rank owns a chunk or a strip of the bodies and computes every beam that touches an owned body, in global order, so that forces have the same
 /// bits for any number of ranks.
 #pragma once
 
@@ -42,13 +41,17 @@ struct Part {
   std::int32_t local_index(std::int32_t global_body) const;
 
  private:
-  friend Part partition(const Lattice&, MPI_Comm);
+  friend Part partition(const Lattice&, MPI_Comm, const Vec3<double>&);
   std::vector<std::int32_t> local_of_;  ///< per global body: local index or -1
 };
 
 /// Distributes a lattice, which must be the same on every rank. Collective.
+/// \param strips  direction in plan along which the work will gather, as that to an obstacle: ranks
+///                own strips along it, of equal numbers of bodies, so that each has its share of the
+///                pile. Zero, or strips less than four bodies wide: chunks along a Hilbert curve,
+///                which have fewer neighbours
 /// \throws InputError if there are more ranks than bodies
-Part partition(const Lattice& lattice, MPI_Comm comm);
+Part partition(const Lattice& lattice, MPI_Comm comm, const Vec3<double>& strips = {});
 
 /// Returns the order of points along a Hilbert curve in the box that holds them. The box may be
 /// flat.

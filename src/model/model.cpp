@@ -79,8 +79,9 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
 }
 
 template <class Space>
-Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries)
-    : part_(partition(lattice, comm)), inertial_mass_(part_.bodies.mass) {
+Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries,
+                    const Vec3<double>& strips)
+    : part_(partition(lattice, comm, strips)), inertial_mass_(part_.bodies.mass) {
   const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
   for (const std::int32_t body : part_.global)
     prescribed_.push_back(bits_of_unknowns<Space>(item(all, body)));

@@ -65,9 +65,11 @@ class Model {
 
   /// Partitions the lattice and places the boundaries. Collective.
   /// \param lattice  whole, the same on every rank; needed during construction only
+  /// \param strips   of partition()
   /// \throws InputError for an unknown set or for two boundaries that prescribe one unknown
   ///   differently
-  Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries);
+  Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries,
+        const Vec3<double>& strips = {});
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 

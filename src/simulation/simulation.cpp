@@ -47,6 +47,16 @@ std::vector<std::string> names_of(const Columns& forces, const Columns& integrat
   return names;
 }
 
+/// Returns the direction of strips of bodies of which each rank owns one: where ice piles up before
+/// an obstacle, every rank then has its share of the pile.
+Vec3<double> strips_of(const Scene& scene, const Lattice& lattice) {
+  if (!scene.forces.contact || scene.obstacles.empty()) return {};
+  const std::vector<Point3>& places = lattice.bodies.position;
+  Vec3<double> sum{};
+  for (const Point3& place : places) sum = sum + place;
+  return way_to_nearest(scene.obstacles, (1.0 / static_cast<double>(places.size())) * sum);
+}
+
 /// Refuses a folder with files of another run, which would be cut back.
 void require_same_run(const Scene& scene, const RunFolder& folder, const std::string& run) {
   if (run.empty())
@@ -146,7 +156,7 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
   Lattice& lattice = setting_.lattice;
   if (!needs_shapes(scene_)) packed_.pack_shapes(lattice);
   loads_ = place_loads(scene_, lattice);
-  model_.emplace(lattice, PETSC_COMM_WORLD, scene_.boundaries);
+  model_.emplace(lattice, PETSC_COMM_WORLD, scene_.boundaries, strips_of(scene_, lattice));
   add_forces(scene_, loads_, *model_, &lattice);
   add_contact(scene_, lattice, *model_);
   if (is_static_) hold_free_motions(scene_, lattice, *model_);

@@ -56,9 +56,37 @@ TEST(Ranks, LatticeIsTheSameBitForBit) {
   EXPECT_EQ(together.shapes.vertices, alone.shapes.vertices);
 }
 
-TEST(Ranks, EveryBodyIsOwnedOnceAndEveryBeamCountedOnce) {
+/// Strips along x have the whole length, and their share of the width.
+TEST(Ranks, StripsRunTowardsWhereTheWorkGathers) {
+  const Lattice lattice = test::sheet(12, 30, 1, true);
+  const auto extent = [&](const Part& part) {
+    Vec3<double> low = part.bodies.position[0], high = low;
+    for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
+      const Point3& x = part.bodies.position[b];
+      low = {std::min(low.x, x.x), std::min(low.y, x.y), 0};
+      high = {std::max(high.x, x.x), std::max(high.y, x.y), 0};
+    }
+    return high - low;
+  };
+  const Part part = partition(lattice, PETSC_COMM_WORLD, {-3, 0, 7});
+  const Vec3<double> strip = extent(part);
+  EXPECT_NEAR(strip.x, 11, 1.1);
+  EXPECT_NEAR(strip.y, 29.0 / size(), 1.1);
+  EXPECT_NEAR(part.owned, part.global_bodies / size(), 1);
+  // Along y a strip of 12/size() bodies would be too narrow for four ranks, a direction without a
+  // part in plan is none: both are as without one.
+  const Part curve = partition(lattice, PETSC_COMM_WORLD);
+  EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 0, 1}).global, curve.global);
+  if (size() > 2) EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 1, 0}).global, curve.global);
+}
+
+class EveryDivision : public testing::TestWithParam<Vec3<double>> {};
+INSTANTIATE_TEST_SUITE_P(Ranks, EveryDivision,
+                         testing::Values(Vec3<double>{}, Vec3<double>{1, 0, 0}));
+
+TEST_P(EveryDivision, OwnsEveryBodyOnceAndCountsEveryBeamOnce) {
   const Lattice lattice = floating_sheet();
-  const Part part = partition(lattice, PETSC_COMM_WORLD);
+  const Part part = partition(lattice, PETSC_COMM_WORLD, GetParam());
   std::vector<int> owners(lattice.bodies.mass.size(), 0), counts(lattice.beams.area.size(), 0);
   for (std::int32_t b = 0; b < part.owned; ++b)
     ++owners[static_cast<std::size_t>(part.global[static_cast<std::size_t>(b)])];

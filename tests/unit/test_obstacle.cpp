@@ -108,5 +108,20 @@ TEST(Shape, HasPlaneFaces) {
   EXPECT_GT(concavity(s, 0), 0.1);
 }
 
+TEST(Obstacle, WayToTheNearestIsInPlan) {
+  const Vec3<double> from{1, 2, -0.5};
+  EXPECT_EQ(way_to_nearest({}, from), (Vec3<double>{0, 0, 0}));
+  const Obstacle leg = cone({11, 2, -8}, 3, 2, 10, 8);
+  EXPECT_EQ(way_to_nearest({leg}, from), (Vec3<double>{10, 0, 0}));
+  // A slope of 45 degrees through (4, ., -0.5): the straight way leads up by as much.
+  const Obstacle slope = half_space({4, 77, -0.5}, {-1, 0, 1});
+  const Vec3<double> way = way_to_nearest({leg, slope}, from);
+  EXPECT_NEAR(way.x, 1.5, 1e-12);
+  EXPECT_NEAR(way.y, 0, 1e-12);
+  EXPECT_EQ(way.z, 0);
+  EXPECT_EQ(way_to_nearest({leg, half_space({0, 0, -2}, {0, 0, 1})}, from),
+            (Vec3<double>{0, 0, 0}));
+}
+
 }  // namespace
 }  // namespace floe

@@ -43,6 +43,9 @@ Obstacle box(const Vec3<double>& centre, const Vec3<double>& size, const Vec3<do
 /// \param facets                      number of sides of the polygons
 Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double height,
               int facets);
+/// Returns the way in plan from a point to the nearest obstacle: to the origin of its frame, or
+/// straight to a half-space [m]; zero without obstacles, and where the nearest is above or below.
+Vec3<double> way_to_nearest(const std::vector<Obstacle>& obstacles, const Vec3<double>& from);
 /// Body `body` of `shapes`, with the origin of its frame at `point` [m].
 Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>& point);
 
