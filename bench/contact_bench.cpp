@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 
 namespace floe {
 namespace {

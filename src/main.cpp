@@ -21,7 +21,8 @@
 #include "program/signals_at_start.h"
 #include "scene/restart.h"
 #include "session/signals.h"
-#include "simulation/build.h"
+#include "simulation/scene_run.h"
+#include "simulation/summary.h"
 
 namespace {
 

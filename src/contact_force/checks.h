@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 #include "forces/force.h"
 
 namespace floe {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "active_contacts/contacts.h"
 #include "base/collectives.h"
-#include "contact/contacts.h"
 #include "contact_force/checks.h"
 #include "contact_force/expiry.h"
 #include "contact_force/halo.h"

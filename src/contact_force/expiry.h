@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 #include "floe/lattice/state.h"
 #include "lattice/archive.h"
 #include "lattice/partition.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "active_contacts/contacts.h"
 #include "base/ghosts.h"
-#include "contact/contacts.h"
 #include "floe/lattice/state.h"
 #include "lattice/partition.h"
 

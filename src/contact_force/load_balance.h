@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "active_contacts/contacts.h"
 #include "base/ghosts.h"
-#include "contact/contacts.h"
 
 namespace floe {
 

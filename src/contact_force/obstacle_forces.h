@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 #include "forces/force.h"
 
 namespace floe {

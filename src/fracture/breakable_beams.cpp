@@ -11,7 +11,8 @@
 #include "floe/base/petsc.h"
 #include "fracture/fracture.h"
 #include "fracture/lanes.h"
-#include "fracture/strengths.h"
+#include "fracture_laws/strengths.h"
+#include "fracture_laws/tip_beams.h"
 
 namespace floe {
 namespace {
@@ -87,9 +88,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     for (std::size_t lane = 0; lane < lanes; ++lane) whole_further_block_.set(lane, whole_further_);
     if (options.propagation == Propagation::energy) {
-      tips_.emplace(std::move(junctions));
+      tips_.emplace(part, options, kinematics == Kinematics::linear, std::move(junctions));
       whole_ = strengths_;
-      doomed_.assign(crack_of_.size(), 0);
       set_all_strengths();
     }
   }
@@ -177,14 +177,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const auto [i, j] = item(part_.beams.bodies, m);
       released_.push_back({item(part_.global, i), item(part_.global, j)});
     }
-    if (tips_ && options_.dynamic) propagate(state);
+    if (tips_ && options_.dynamic) follow(tips_->propagate(newly_broken_, overloaded_, state));
     newly_broken_.clear();
     if (!options_.dynamic) {
       kept_ = cracks_;
       kept_energy_ = dissipated_;
       kept_released_ = released_energy_;
-      broken_before_.insert(broken_before_.end(), lost_.begin(), lost_.end());
-      lost_.clear();
+      if (tips_) tips_->keep();
     }
   }
 
@@ -233,7 +232,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     persist_cracks(archive, part_, mine);
     if constexpr (damped) remember_dashpots(archive);
-    if (tips_) persist_tips(archive, mine);
+    if (tips_) {
+      const TipBeams::Change change = tips_->persist(archive, mine);
+      for (const std::int32_t m : change.doomed) mark(static_cast<std::size_t>(m) / lanes);
+      if (archive.loading()) set_all_strengths();
+    }
     if (archive.loading()) set_cracks(std::move(mine));
   }
 
@@ -282,8 +285,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       }
     }
     most = std::sqrt(largest_over_ranks(most, part_.comm));
-    for (const TipOverload& tip : overloads_at_tips(armed(state), state))
-      most = std::max(most, tip.second);
+    for (const TipOverload& tip : overloads_at_tips(state)) most = std::max(most, tip.s);
     return most;
   }
 
@@ -303,8 +305,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       }
     }
     most = largest_over_ranks(most, part_.comm);
-    for (const TipOverload& tip : overloads_at_tips(armed(state), state))
-      most = std::max(most, tip.second);
+    for (const TipOverload& tip : overloads_at_tips(state)) most = std::max(most, tip.s);
     return most;
   }
 
@@ -312,7 +313,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     constexpr double rounding = 1e-6;  // relative growth of s below this counts as none
     growing_.clear();
     RankedValue worst{0, -1};  // largest s/kappa of the beams that would break
-    const std::vector<TipOverload> at_tips = overloads_at_tips(armed(state), state);
+    const std::vector<TipOverload> at_tips = overloads_at_tips(state);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -341,7 +342,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     growing_.clear();
     softened = on_any_rank(softened, part_.comm);
-    if (tips_ && worst.index >= 0) lose(static_cast<std::int32_t>(worst.index));
+    if (tips_ && worst.index >= 0) follow(tips_->lose(static_cast<std::int32_t>(worst.index)));
     if (worst.index >= 0) return Advance::broke;
     return softened ? Advance::softened : Advance::none;
   }
@@ -353,9 +354,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     newly_broken_.clear();
     for (const Crack& c : kept_) put(c);
     if (tips_) {
-      tips_->reset();
-      for (const std::int32_t beam : broken_before_) (void)tips_->lose(beam);
-      lost_.clear();
+      tips_->retreat();
       set_all_strengths();
     }
     dissipated_ = kept_energy_;
@@ -432,202 +431,45 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const auto at = static_cast<std::size_t>(m);
     return (tips_ ? whole_ : strengths_)[at / lanes].get(at % lanes);
   }
-  bool is_tip(std::int32_t m) const {
-    return tips_ && !broken(m) && tips_->is_tip(item(part_.global_beam, m));
-  }
   void set_strength(std::int32_t m) {
     const std::size_t b = static_cast<std::size_t>(m) / lanes,
                       lane = static_cast<std::size_t>(m) % lanes;
-    const Strength<double> whole = whole_[b].get(lane);
-    Strength<double> first = whole;
-    FurtherStrength<double> further = whole_further_;
-    if (is_tip(m) && cracks_early(m)) {
-      const Strength<double> tip = tip_strength(part_, m, options_);
-      const auto earlier = [](double& of, double at_tip) {
-        of = std::max(of, at_tip / armed_from);
-      };
-      earlier(first.axial, tip.axial), earlier(first.bending_y, tip.bending_y);
-      earlier(first.bending_z, tip.bending_z), earlier(first.shear, tip.shear);
-      earlier(first.torsion, tip.torsion);
-      double transverse = whole.shear * further.transverse;
-      earlier(transverse, tip.shear);
-      // Without friction s under pressure is at least that at initiation.
-      further = {transverse / first.shear, further.pressure, 0};
-    }
-    strengths_[b].set(lane, first);
-    if (kind_ != Criterion::plain) further_[b].set(lane, further);
+    TipBeams::Strengths now{whole_[b].get(lane), whole_further_};
+    if (!broken(m) && tips_->weakens(m, now.first)) now = tips_->armed(m, now);
+    strengths_[b].set(lane, now.first);
+    if (kind_ != Criterion::plain) further_[b].set(lane, now.further);
   }
   void set_all_strengths() {
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) set_strength(m);
   }
-  /// Local index of a global beam, or none.
-  std::int32_t local_beam(std::int32_t global) const {
-    const auto& all = part_.global_beam;
-    const auto found = std::lower_bound(all.begin(), all.end(), global);
-    return found == all.end() || *found != global ? none
-                                                  : static_cast<std::int32_t>(found - all.begin());
-  }
-  /// Notes that a global beam is gone: tips change. To be called alike on all ranks.
-  void lose(std::int32_t global) {
-    if (!tips_->lose(global)) return;
-    lost_.push_back(global);
-    tips_->for_neighbours(global, [this](std::int32_t beam) {
-      if (const std::int32_t m = local_beam(beam); m != none) set_strength(m);
-    });
-  }
-  /// Beams that will break in the next evaluation, whatever their s.
-  void doom(std::int32_t global) {
-    all_doomed_.push_back(global);
-    const std::int32_t m = local_beam(global);
-    if (m == none) return;
-    item(doomed_, m) = 1;
-    mark(static_cast<std::size_t>(m) / lanes);
-  }
-  /// A beam at a tip and its overload s there.
-  using TipOverload = std::pair<std::int32_t, double>;  // global beam, s
-  /// A tip beam is looked at from this s_t on, however wide the crack is open.
-  static constexpr double armed_from = 0.5;
-
-  /// Whether a beam's strength at a tip can be below that of its initiation.
-  bool cracks_early(std::int32_t m) const {
-    const auto at = static_cast<std::size_t>(m);
-    const Strength<double> whole = whole_[at / lanes].get(at % lanes),
-                           tip = tip_strength(part_, m, options_);
-    return tip.axial > whole.axial || tip.bending_y > whole.bending_y;
+  /// Takes over what a change of tips means for local beams.
+  void follow(const TipBeams::Change& change) {
+    for (const std::int32_t m : change.strengths) set_strength(m);
+    for (const std::int32_t m : change.doomed) mark(static_cast<std::size_t>(m) / lanes);
   }
   /// s_t of a local beam by the strengths of tips, 0 if it is not at one.
   double stress_at_tip(std::int32_t m, const State<Spatial>& state) const {
-    if (!is_tip(m) || !cracks_early(m)) return 0;
+    if (broken(m) || !tips_->weakens(m, whole_strength(m))) return 0;
     return std::sqrt(criterion(tip_strength(part_, m, options_),
                                elastic_stress(constants(m), strains(m, state))));
   }
-  /// Statics: tip beams of this rank with s_t > armed_from, and their s_t.
-  std::vector<std::pair<double, std::int32_t>> armed(const State<Spatial>& state) const {
-    std::vector<std::pair<double, std::int32_t>> all;
-    for (std::size_t b = 0; tips_ && b < blocks_.size(); ++b) {
+  /// Statics: tip beams of this rank with s_t > TipBeams::armed_from, and their s_t.
+  std::vector<ArmedBeam> armed(const State<Spatial>& state) const {
+    std::vector<ArmedBeam> all;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = tip_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         const auto m = static_cast<std::int32_t>(b * lanes + lane);
         if (m >= part_.beams.size() || !(s2[lane] > 1)) continue;
-        if (const double s = stress_at_tip(m, state); s > armed_from) all.emplace_back(s, m);
+        if (const double s = stress_at_tip(m, state); s > TipBeams::armed_from)
+          all.push_back({s, m});
       }
     }
     return all;
   }
-  /// Square of the opening that counts as much as a unit turn of the faces against each other, with
-  /// Poisson's ratio of the beam [m^2].
-  double bent_opening(std::int32_t m) const {
-    const double nu = item(part_.beams.young, m) / (2 * item(part_.beams.shear_modulus, m)) - 1,
-                 h = item(part_.beams.height, m);
-    return h * h / 12 * (3 + nu) / (1 + nu);
-  }
-  static double overload_of(std::int32_t beam, const std::vector<TipOverload>& all) {
-    const auto at = std::lower_bound(all.begin(), all.end(), TipOverload(beam, 0));
-    return at != all.end() && at->first == beam ? at->second : 0.0;
-  }
-  /// Poses of bodies of the whole lattice. Collective. \param bodies  sorted, alike on all ranks
-  std::vector<BodyPose> poses_of(const std::vector<std::int32_t>& bodies,
-                                 const State<Spatial>& state) const {
-    constexpr std::size_t size = 7;
-    std::vector<double> values(size * bodies.size(), 0.0);
-    const auto owned = part_.global.begin() + part_.owned;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const auto found = std::lower_bound(part_.global.begin(), owned, bodies[k]);
-      if (found == owned || *found != bodies[k]) continue;
-      const double* r = record(state, static_cast<std::int32_t>(found - part_.global.begin()));
-      std::copy_n(r, 3, &values[size * k]);
-      std::copy_n(r + Spatial::rotation, 4, &values[size * k + 3]);
-    }
-    sum_over_ranks(std::span<double>(values), part_.comm);  // all but one are 0: no rounding
-    std::vector<BodyPose> poses;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const double* v = &values[size * k];
-      poses.push_back({{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}});
-    }
-    return poses;
-  }
-  /// Overloads of beams at tips, those of all ranks: s^2 = s_o min(s_o, s_t) with s_t by the beam's
-  /// stress and s_o^2 = G/G_f by the opening of the crack behind it, at either end of its facet.
-  /// Collective. \param mine  s_t and local beam. \return sorted by beam
-  std::vector<TipOverload> overloads_at_tips(
-      const std::vector<std::pair<double, std::int32_t>>& mine, const State<Spatial>& state) const {
-    if (!tips_) return {};
-    std::vector<double> rows;
-    for (const auto& [s, m] : mine)
-      rows.insert(rows.end(), {static_cast<double>(item(part_.global_beam, m)), s,
-                               item(part_.beams.young, m), bent_opening(m)});
-    rows = all_gathered(rows, part_.comm);
-    if (rows.empty()) return {};
-    struct Tip {
-      std::int32_t beam;
-      double s, young, bent;
-      std::vector<CrackBehind> cracks;
-    };
-    std::vector<Tip> beams;
-    std::vector<std::int32_t> bodies;
-    for (std::size_t k = 0; k + 4 <= rows.size(); k += 4) {
-      const auto beam = static_cast<std::int32_t>(rows[k]);
-      beams.push_back({beam, rows[k + 1], rows[k + 2], rows[k + 3], tips_->behind(beam)});
-      tips_->append_bodies(beams.back().cracks, bodies);
-    }
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    const std::vector<BodyPose> poses = poses_of(bodies, state);
-    const auto pose_of = [&](std::int32_t body) {
-      return item(poses, std::lower_bound(bodies.begin(), bodies.end(), body) - bodies.begin());
-    };
-    constexpr bool linear = kinematics == Kinematics::linear;
-    std::vector<TipOverload> all;
-    for (const Tip& tip : beams) {
-      double most = 0;
-      for (const CrackBehind& crack : tip.cracks) {
-        const double released =
-            tip.young * tips_->opening(crack, tip.bent, linear, pose_of) / options_.energy;
-        const double s_open = std::sqrt(released);
-        most = std::max(most, s_open * std::min(s_open, tip.s));
-      }
-      if (most > 0) all.emplace_back(tip.beam, std::sqrt(most));
-    }
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
-  }
-  /// Dynamics: the breaks of a step become known to all ranks. Of the overloaded beams at tips
-  /// those break that are at a tip when their turn comes, by falling s: they go in the next
-  /// evaluation. Collective.
-  void propagate(const State<Spatial>& state) {
-    for (const std::int32_t m : all_doomed_) {
-      if (const std::int32_t here = local_beam(m); here != none) item(doomed_, here) = 0;
-    }
-    all_doomed_.clear();
-    if (!on_any_rank(!newly_broken_.empty() || !overloaded_.empty(), part_.comm)) return;
-    std::vector<std::int32_t> broken_here;
-    for (const std::int32_t m : newly_broken_) broken_here.push_back(item(part_.global_beam, m));
-    for (const std::int32_t beam : all_gathered(broken_here, part_.comm)) lose(beam);
-    std::vector<TipOverload> turns = overloads_at_tips(overloaded_, state);
-    std::sort(turns.begin(), turns.end(), [](const TipOverload& a, const TipOverload& b) {
-      return std::pair(-a.second, a.first) < std::pair(-b.second, b.first);
-    });
-    for (const auto& [beam, s] : turns) {
-      if (s <= 1 || !tips_->is_tip(beam)) continue;
-      lose(beam);
-      doom(beam);
-    }
-    lost_.clear();
-  }
-  /// \param cracks  those of all ranks when loading
-  void persist_tips(Archive& archive, const std::vector<Crack>& cracks) {
-    std::vector<double> doomed(all_doomed_.begin(), all_doomed_.end());
-    archive.common("doomed", doomed);
-    if (!archive.loading()) return;
-    for (const Crack& c : cracks) {
-      if (c.broken()) (void)tips_->lose(c.beam);
-    }
-    for (const double beam : doomed) {
-      (void)tips_->lose(static_cast<std::int32_t>(beam));
-      doom(static_cast<std::int32_t>(beam));
-    }
-    set_all_strengths();
+  /// Statics: overloads of beams at tips, those of all ranks, sorted by beam. Collective.
+  std::vector<TipOverload> overloads_at_tips(const State<Spatial>& state) const {
+    return tips_ ? tips_->overloads(armed(state), state) : std::vector<TipOverload>{};
   }
 
   BeamStrains<double> strains(std::int32_t m, const State<Spatial>& state) const {
@@ -742,10 +584,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       const auto m = static_cast<std::int32_t>(at);
       const Crack* c = crack(m);
       const double passed = kappa(m);
-      const bool falls = tips_ && item(doomed_, m) != 0;
+      const bool falls = tips_ && tips_->is_doomed(m);
       if (options_.dynamic && at_tips[lane] > 1 && !falls) {
-        if (const double s = stress_at_tip(m, state); s > armed_from)
-          overloaded_.emplace_back(s, m);
+        if (const double s = stress_at_tip(m, state); s > TipBeams::armed_from)
+          overloaded_.push_back({s, m});
       }
       if (options_.dynamic && falls && !broken(m)) {
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state, true));
@@ -828,7 +670,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t m = b * lanes; m < std::min((b + 1) * lanes, crack_of_.size()); ++m) {
       const Crack* c = crack(static_cast<std::int32_t>(m));
       if (c != nullptr && !c->broken()) damaged_[b] = 1;
-      if (tips_ && doomed_[m] != 0) damaged_[b] = 1;
+      if (tips_ && tips_->is_doomed(static_cast<std::int32_t>(m))) damaged_[b] = 1;
     }
   }
 
@@ -868,15 +710,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   double dissipated_ = 0, kept_energy_ = 0;  ///< by counted beams; the same at the last commit [J]
   /// Statics, on rank 0: energy that breaks released; the same at the last commit [J].
   double released_energy_ = 0, kept_released_ = 0;
-  std::optional<CrackTips> tips_;         ///< with Propagation::energy
-  std::vector<StrengthBlock> whole_;      ///< strengths at initiation, also of beams at tips
-  std::vector<std::uint8_t> doomed_;      ///< per local beam: breaks in the next evaluation
-  std::vector<std::int32_t> all_doomed_;  ///< the same of all ranks, global
-  std::vector<std::int32_t> lost_,
-      broken_before_;  ///< statics: global, since and before the commit
-  /// Dynamics: s_t and local beam of tip beams in the last evaluation, from armed_from on.
-  std::vector<std::pair<double, std::int32_t>> overloaded_;
-  double dt_ = 0;  ///< length of the last step [s]
+  std::optional<TipBeams> tips_;       ///< with Propagation::energy
+  std::vector<StrengthBlock> whole_;   ///< strengths at initiation, also of beams at tips
+  std::vector<ArmedBeam> overloaded_;  ///< dynamics: in the last evaluation, a by-product
+  double dt_ = 0;                      ///< length of the last step [s]
 };
 
 template <Kinematics kinematics, bool damped, template <class> class Frame>

@@ -11,7 +11,7 @@
 
 #include "beams/beam_force.h"
 #include "floe/fracture/fracture_options.h"
-#include "fracture/crack_tips.h"
+#include "fracture_laws/crack_tips.h"
 
 namespace floe {
 
@@ -82,18 +82,5 @@ class BreakableForce {
 /// \throws InputError if the lattice does not give the sides of the sections
 BreakableForce make_breakable_beams(const Part& part, const BeamOptions& beams,
                                     const FractureOptions& fracture, Junctions junctions = {});
-
-/// Largest s of the beams of all ranks under given section forces, undamaged and without scatter of
-/// strengths. Collective.
-/// \param sections  one per local beam
-double overload(const Part& part, const std::vector<BeamSection>& sections,
-                FractureOptions fracture);
-
-/// Weibull factor of the strengths of a beam: (A_ref/A)^(1/m) (-ln U)^(1/m)/Gamma(1 + 1/m), with U
-/// uniform in (0, 1) from the seed and the beam.
-/// \param beam        global index
-/// \param modulus     m
-/// \param area_ratio  A/A_ref
-double weibull_factor(std::uint64_t seed, std::int32_t beam, double modulus, double area_ratio);
 
 }  // namespace floe

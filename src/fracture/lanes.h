@@ -4,7 +4,7 @@
 #pragma once
 
 #include "beams/lanes.h"
-#include "fracture/law.h"
+#include "fracture_laws/law.h"
 
 namespace floe {
 

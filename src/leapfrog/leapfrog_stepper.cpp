@@ -196,8 +196,7 @@ template <bool added>
 /// The bodies of the last block, if they do not fill it, are stepped in a block of their own that
 /// is filled up with the last of them.
 std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
-                                                const Wrenches<Spatial>& wrenches,
-                                                double dt) const {
+                                                const Wrenches<Spatial>& wrenches, double dt) {
   constexpr std::size_t n = Spatial::record, w = Spatial::wrench;
   const auto owned = static_cast<std::size_t>(part_.owned);
   const std::size_t whole = owned / lanes, left = owned % lanes;
@@ -229,7 +228,7 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
           hmax(largest.spin2)};
 }
 
-void LeapfrogStepper::swap_kicked(State<Spatial>& state) const {
+void LeapfrogStepper::swap_kicked(State<Spatial>& state) {
   if (masses_.empty()) return;
   for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
     if (model_.prescribed()[b] == 0)

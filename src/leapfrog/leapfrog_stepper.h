@@ -33,7 +33,7 @@ class LeapfrogStepper {
 
   /// Exchanges the velocities after a step with those after its kick, with which forces do their
   /// work. They differ only for bodies with added mass by direction, whose axes turn in the drift.
-  void swap_kicked(State<Spatial>& state) const;
+  void swap_kicked(State<Spatial>& state);
 
   /// Kinetic energy of this rank's bodies, and the boundaries' work on them since the start, at t_n
   /// [J].
@@ -74,7 +74,7 @@ class LeapfrogStepper {
   static Extremes step_blocks(std::span<const Block> blocks, const MassBlock* masses,
                               double* records, const double* wrenches, double* kicked, double dt);
   std::array<double, 2> step_all(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
-                                 double dt) const;
+                                 double dt);
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
                  const Wrenches<Spatial>& wrenches, std::span<const double> now,
                  std::span<const double> next, double dt);
@@ -92,7 +92,7 @@ class LeapfrogStepper {
   std::vector<Block> blocks_;
   std::vector<MassBlock> masses_;  ///< empty: masses are alike in all directions
   /// Velocities after the last kick, of bodies with added inertia [m/s].
-  mutable std::vector<double> kicked_;
+  std::vector<double> kicked_;
   std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
   std::vector<std::int32_t> rows_;          ///< per local body: its index in held_, or -1
   std::vector<double> saved_;               ///< records of held_ before a step

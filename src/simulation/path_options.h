@@ -2,8 +2,8 @@
 /// Settings of a static run along a path, from the scene.
 #pragma once
 
-#include "simulation/build.h"
-#include "statics/path.h"
+#include "paths/path.h"
+#include "simulation/scene_run.h"
 
 namespace floe {
 

@@ -1,38 +1,19 @@
 #include "simulation/plan.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "floe/base/petsc.h"
-#include "floe/files/log.h"
-#include "run/expected_cost.h"
-#include "simulation/build.h"
+#include "scene_model/amounts.h"
 
 namespace floe {
 namespace {
 
-std::string text(const char* format, auto... values) {
-  std::array<char, 400> line{};
-  std::snprintf(line.data(), line.size(), format, values...);
-  return line.data();
-}
-
-/// Formats a count with all digits as far as these are useful.
-std::string count(double value) { return text(value < 1e9 ? "%.0f" : "%.4g", value); }
-
+using amounts::bytes, amounts::count, amounts::text;
 /// Formats "1 frame", "2 frames".
 std::string counted(double value, const std::string& what) {
   return count(value) + " " + what + (value == 1 ? "" : "s");
-}
-
-std::string bytes(double value) {
-  constexpr std::array units{"kB", "MB", "GB", "TB"};
-  std::size_t unit = 0;
-  for (value /= 1e3; value >= 1e3 && unit + 1 < units.size(); ++unit) value /= 1e3;
-  return text("%.3g %s", value, units[unit]);
 }
 
 std::string duration(double seconds) {
@@ -107,28 +88,6 @@ std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize&
                              : duration(plan.seconds_a_step) + " a step") +
              " (by " + plan.measured + ")";
   return lines + "\n";
-}
-
-void check_size(const Scene& scene, double free, int ranks) {
-  const auto bodies = static_cast<double>(number_of_cells(scene.sheet));
-  double needed = lattice_bytes(bodies, ranks);
-  if (scene.integrator != Integrator::explicit_) {
-    const bool flat = scene.integrator == Integrator::quasistatic && !scene.forces.gravity &&
-                      !scene.forces.fracture && scene.planar != Planarity::never;
-    const double unknowns = bodies * (flat ? Planar::unknowns : Spatial::unknowns);
-    needed += factorisation_cost(unknowns, ranks).bytes;
-  }
-  constexpr double honest = 3;  // factor to which estimates are good
-  const double most = scene.limit.memory > 0 ? 1e9 * scene.limit.memory : honest * free;
-  const std::string what =
-      "sheet: about " + count(bodies) + " bodies would take about " + bytes(needed) + " of memory";
-  if (needed > most)
-    throw InputError(what + ", " +
-                     (scene.limit.memory > 0 ? "at most " + bytes(most) + " are taken"
-                                             : bytes(free) + " are free") +
-                     " (limit: memory)");
-  if (rank() == 0 && needed > free)
-    warn(what + " (to a factor of 3), " + bytes(free) + " are free");
 }
 
 }  // namespace floe

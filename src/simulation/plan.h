@@ -1,6 +1,8 @@
 /// \file
-/// Expected output and memory of a run.
+/// Expected steps and output of a run.
 #pragma once
+
+#include <string>
 
 #include "floe/run/result.h"
 #include "floe/scene.h"
@@ -15,11 +17,10 @@ struct PlannedOutput {
 /// Estimates the output of a run.
 PlannedOutput planned_output(const Scene& scene, const RunPlan& plan, const OutputSize& size);
 
-/// Checks, before a sheet is meshed, whether there is enough memory for the run, by an estimate.
-/// Warns on rank 0 if the run takes more memory than is free.
-/// \param free  free memory [B]; must be the same on all ranks
-/// \throws InputError if the run takes more than the scene's limit, or, without a limit, more than
-///   three times what is free
-void check_size(const Scene& scene, double free, int ranks);
+/// Returns the lines that describe the plan of a run and what it needs.
+/// \param memory  of all ranks, at present [bytes]
+/// \throws InputError if the run needs more than the scene's limits allow
+std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize& size,
+                      double memory);
 
 }  // namespace floe

@@ -17,9 +17,12 @@
 #include "run/run.h"
 #include "run_folder/run_folder.h"
 #include "scene/restart.h"
+#include "scene_model/scene_model.h"
 #include "session/run_place.h"
 #include "session/signals.h"
-#include "simulation/build.h"
+#include "simulation/plan.h"
+#include "simulation/scene_run.h"
+#include "simulation/summary.h"
 
 namespace floe {
 namespace {

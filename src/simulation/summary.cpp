@@ -1,3 +1,5 @@
+#include "simulation/summary.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include "floe/beams/moduli.h"
 #include "floe/files/log.h"
 #include "floe/session/version.h"
-#include "simulation/build.h"
 
 namespace floe {
 namespace {

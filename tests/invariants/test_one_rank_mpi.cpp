@@ -14,7 +14,7 @@
 #include "explicit/explicit.h"
 #include "floe/base/petsc.h"
 #include "implicit/implicit.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"
 

@@ -11,7 +11,7 @@
 
 #include "explicit/explicit.h"
 #include "explicit/step.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/frames.h"
 
 namespace floe::test {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "implicit/implicit.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/static_solution.h"
 
 namespace floe::test {

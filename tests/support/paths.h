@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "statics/path.h"
+#include "paths/path.h"
 #include "support/frames.h"
 #include "support/static_solution.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 
 namespace floe::test {
 

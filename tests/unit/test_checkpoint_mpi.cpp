@@ -14,7 +14,7 @@
 #include "leapfrog/leapfrog_work.h"
 #include "run/checkpoint.h"
 #include "run/work_ledger.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/lattices.h"
 #include "support/roles.h"
 

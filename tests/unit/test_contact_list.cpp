@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 #include "support/blocks.h"
 
 namespace floe {

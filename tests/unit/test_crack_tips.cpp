@@ -1,5 +1,5 @@
 // Junctions of facets, and which beams are at a crack's tip.
-#include "fracture/crack_tips.h"
+#include "fracture_laws/crack_tips.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "floe/options/given.h"
 #include "run/expected_cost.h"
-#include "simulation/plan.h"
+#include "scene_model/size_check.h"
 
 namespace floe {
 namespace {

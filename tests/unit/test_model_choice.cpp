@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "floe/base/petsc.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"
 

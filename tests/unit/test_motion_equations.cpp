@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "run/numbers.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
 #include "support/static_solution.h"

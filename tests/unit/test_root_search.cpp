@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "statics/root_search.h"
+#include "paths/root_search.h"
 
 namespace floe {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "scene/units.h"
-#include "simulation/lattice_command.h"
+#include "scene_model/lattice_command.h"
 
 namespace floe {
 namespace {

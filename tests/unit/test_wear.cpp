@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 #include "support/blocks.h"
 
 namespace floe {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/box.h"
 #include "support/dynamics.h"
 #include "support/record.h"

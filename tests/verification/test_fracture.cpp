@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "fracture_laws/strengths.h"
 #include "support/force_checks.h"
 #include "support/one_beam.h"
 #include "support/record.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "fracture/strengths.h"
+#include "fracture_laws/strengths.h"
 #include "support/one_beam.h"
 #include "support/record.h"
 

@@ -10,7 +10,7 @@
 #include "contact_laws/restitution.h"
 #include "explicit/explicit.h"
 #include "fracture/fracture.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/blocks.h"
 #include "support/record.h"
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fracture_laws/strengths.h"
 #include "support/record.h"
 #include "support/static_solution.h"
 

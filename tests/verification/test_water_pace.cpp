@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 #include "support/box.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"

@@ -1,4 +1,4 @@
-#include "contact/crushing.h"
+#include "active_contacts/crushing.h"
 
 #include <tuple>
 #include <utility>

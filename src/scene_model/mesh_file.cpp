@@ -1,4 +1,4 @@
-#include "simulation/mesh_file.h"
+#include "scene_model/mesh_file.h"
 
 #include <algorithm>
 #include <array>

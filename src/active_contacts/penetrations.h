@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/active_contacts.h"
+#include "active_contacts/active_contacts.h"
 #include "contact/pair_list.h"
 #include "contact/places.h"
 #include "contact/solids.h"

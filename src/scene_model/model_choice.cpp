@@ -4,7 +4,7 @@
 
 #include "explicit/explicit.h"
 #include "floe/base/petsc.h"
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 
 namespace floe {
 namespace {

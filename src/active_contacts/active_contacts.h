@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "contact/energies.h"
+#include "active_contacts/energies.h"
 #include "contact/pair.h"
 #include "contact/places.h"
 #include "contact_laws/response.h"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "contact/active_contacts.h"
+#include "active_contacts/active_contacts.h"
 
 namespace floe {
 

@@ -1,4 +1,4 @@
-#include "statics/path_equilibrium.h"
+#include "paths/path_equilibrium.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include "floe/base/item.h"
 #include "floe/files/log.h"
 #include "model/newton.h"
+#include "paths/root_search.h"
 #include "session/signals.h"
-#include "statics/root_search.h"
 
 namespace floe {
 namespace {

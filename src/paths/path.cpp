@@ -1,4 +1,4 @@
-#include "statics/path.h"
+#include "paths/path.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 
 #include "base/format.h"
 #include "floe/files/log.h"
+#include "paths/path_equilibrium.h"
 #include "run/expected_cost.h"
-#include "statics/path_equilibrium.h"
 
 namespace floe {
 namespace {

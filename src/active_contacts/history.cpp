@@ -1,4 +1,4 @@
-#include "contact/history.h"
+#include "active_contacts/history.h"
 
 #include <algorithm>
 #include <tuple>

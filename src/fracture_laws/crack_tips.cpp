@@ -1,4 +1,4 @@
-#include "fracture/crack_tips.h"
+#include "fracture_laws/crack_tips.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,24 +1,14 @@
-#include "simulation/build.h"
+#include "scene_model/scene_model.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "contact_force/contact.h"
-#include "explicit/explicit.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
-#include "floe/mesh/cuts.h"
 #include "forces/gravity.h"
-#include "implicit/implicit.h"
-#include "run/expected_cost.h"
 #include "scene/reading.h"
-#include "session/signals.h"
-#include "simulation/lattice_command.h"
-#include "simulation/mesh_file.h"
-#include "simulation/path_options.h"
-#include "simulation/plan.h"
 #include "water/added_mass.h"
 #include "water/buoyancy.h"
 #include "water/drag.h"
@@ -28,74 +18,6 @@ namespace {
 
 constexpr std::uint8_t z_rx_ry =
     0b011100;  ///< bits of the components out of the plane, of x y z rx ry rz
-
-/// Height of a sheet's mid-plane [m]: a floating sheet has the draft h rho_i/rho_w, one without
-/// buoyancy lies at z = 0.
-double mid_plane(const Scene& scene) {
-  if (!scene.forces.buoyancy) return 0;
-  const double relative_density = scene.ice.density / scene.water_density;
-  if (relative_density >= 1)
-    throw InputError("ice: density: " + text_of(scene.ice.density) +
-                     " must be < water: density, or the sheet sinks");
-  return scene.thickness * (0.5 - relative_density);
-}
-
-/// Makes cells end on the scene's cuts. \return what became of each cut
-std::vector<FittedCut> fit_cuts(const Scene& scene, MPI_Comm comm, Tessellation& cells,
-                                MeshReport& report) {
-  std::vector<CutLine> lines;
-  for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
-  FittedCells fitted = fit_to_cuts(scene.sheet, std::move(cells), lines, comm);
-  cells = std::move(fitted.cells);
-  double length = 0, followed = 0;
-  std::vector<std::string> apart;
-  for (std::size_t k = 0; k < fitted.cuts.size(); ++k) {
-    const FittedCut& cut = fitted.cuts[k];
-    length += cut.length, followed += cut.followed;
-    if (std::abs(cut.followed - cut.length) > 1e-6 * cut.length)
-      apart.push_back(scene.cuts[k].name);
-  }
-  if (!apart.empty())
-    report.cuts = "cut: " + apart.front() +
-                  (apart.size() > 1 ? " and " + std::to_string(apart.size() - 1) + " more" : "") +
-                  ": the cells do not end on " + (apart.size() > 1 ? "them" : "it") +
-                  " everywhere (" + text_of(followed) + " of " + text_of(length) +
-                  " m of all cuts), but the cuts follow the cells: they are short, or near each "
-                  "other or the outline, for sheet: element_size: " +
-                  text_of(scene.sheet.element_size);
-  return std::move(fitted.cuts);
-}
-
-Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
-                   std::vector<FittedCut>& cuts) {
-  const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor,
-                             scene.torsion};
-  check_size(scene, free_memory(comm), size(comm));
-  Tessellation cells;
-  {
-    const Timed timed(Event::mesh);
-    Progress progress("mesh", scene.sheet.iterations);
-    const auto show = [&](int iteration, double move) {
-      stop_if_asked(comm);
-      char note[48];
-      std::snprintf(note, sizeof note, "largest move %.2g l", move);
-      progress.update(iteration, note);
-    };
-    cells = scene.mesh_file.empty()
-                ? tessellate(scene.sheet, comm, show)
-                : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show, report.keep);
-  }
-  report.largest_move = cells.largest_move;  // of the relaxation, as are the iterations
-  report.iterations = cells.iterations;
-  if (!scene.cuts.empty() && scene.fit_cuts) {
-    const Timed timed(Event::mesh);
-    cuts = fit_cuts(scene, comm, cells, report);
-  }
-  report.energy_ratio = cells.energy_ratio;
-  report.degenerate = cells.degenerate;
-  const Timed timed(Event::lattice);
-  return make_sheet(cells, section);
-}
 
 /// Marks the bodies that the water surface cuts when they are at rest.
 std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
@@ -117,102 +39,6 @@ std::vector<std::uint8_t> bodies_at_surface(const Lattice& lattice) {
 }
 
 }  // namespace
-
-Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
-  if (!scene.has_sheet) require_lattice_file(scene, comm);
-  std::vector<FittedCut> fitted(scene.cuts.size());
-  Lattice lattice =
-      scene.has_sheet ? mesh_sheet(scene, comm, report, fitted) : read_lattice(scene.lattice_file);
-  const Timed timed(Event::lattice);
-  if (scene.forces.beam && lattice.beams.size() == 0)
-    throw InputError(scene.has_sheet
-                         ? "sheet: element_size: the sheet has a single cell and no beam"
-                         : "forces: beam: '" + scene.lattice_file + "' has no beams");
-  if (!scene.forces.beam) lattice.beams = {};  // loose bodies
-  if (scene.calibrate != Calibrate::none)
-    report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
-  if (scene.forces.fracture && (scene.fracture.calibrate || scene.fracture.flexural_strength > 0))
-    report.strength = calibrate_strength(scene, lattice, comm);
-  for (std::size_t k = 0; k < scene.cuts.size(); ++k) {
-    const Cut& c = scene.cuts[k];
-    const std::int32_t before = lattice.beams.size();
-    cut(lattice, c.from, c.to, fitted[k].pairs);
-    if (lattice.beams.size() == before && !c.may_miss)
-      throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
-  }
-  if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
-  auto& all = lattice.sets["all"];
-  all.resize(static_cast<std::size_t>(lattice.bodies.size()));
-  std::iota(all.begin(), all.end(), 0);
-  for (const Region& region : scene.regions)
-    add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
-  return lattice;
-}
-
-void set_initial(const Scene& scene, Lattice& lattice) {
-  Bodies& bodies = lattice.bodies;
-  std::vector<const Initial*> of_body(scene.initials.empty() ? 0 : bodies.position.size());
-  for (const Initial& initial : scene.initials) {
-    bodies.velocity.resize(bodies.position.size(), Point3{});
-    bodies.angular_velocity.resize(bodies.position.size(), Point3{});
-    for (const std::int32_t body : lattice.set(initial.set, "initial: " + initial.name + ": set")) {
-      const Initial*& other = item(of_body, body);
-      if (other != nullptr)
-        throw InputError("initial: " + initial.name + ": set: body " + std::to_string(body) +
-                         " has its motion from 'initial: " + other->name +
-                         "' already; sets of two sections must not overlap");
-      other = &initial;
-      item(bodies.velocity, body) = initial.velocity;
-      item(bodies.angular_velocity, body) = initial.angular_velocity;
-    }
-  }
-}
-
-std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/checkpoint.h5"; }
-
-template <class Space>
-std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
-                              const OutOfPlane* out_of_plane, const RunHooks& hooks,
-                              ObserverOf<Space> observer) {
-  if (scene.path_control.arc)
-    return make_path_run(model, path_options(scene, model, hooks), std::move(observer),
-                         out_of_plane);
-  if (scene.integrator == Integrator::quasistatic)
-    return make_quasistatic_run(model,
-                                {.end = scene.time.end,
-                                 .dt = scene.time.dt,
-                                 .most_steps = scene.limit.steps,
-                                 .on_plan = hooks.on_plan},
-                                std::move(observer), out_of_plane);
-  ExplicitOptions options;
-  options.end = scene.time.end;
-  options.dt = scene.time.dt;
-  options.velocity_limit = scene.limit.velocity;
-  options.energy_limit = scene.limit.energy_error;
-  options.history = scene.output.history;
-  options.fields = scene.output.fields;
-  options.most_steps = scene.limit.steps;
-  options.on_plan = hooks.on_plan;
-  options.checkpoint = {.file = scene.check_only ? "" : checkpoint_file(scene),
-                        .every = scene.checkpoint.every,
-                        .at_end = scene.checkpoint.at_end,
-                        .stop_file = scene.output.dir + "/STOP",
-                        .restart = scene.checkpoint.restart,
-                        .lattice = hooks.lattice_id,
-                        .obstacles = fingerprint(scene.obstacles),
-                        .options = scene.options_yaml,
-                        .scene = scene.path,
-                        .wall_time = scene.checkpoint.wall_time,
-                        .prepare = hooks.prepare,
-                        .others = hooks.others};
-  if constexpr (std::is_same_v<Space, Spatial>) {
-    if (scene.integrator == Integrator::implicit)
-      return make_implicit_run(model, options, std::move(observer));
-  }
-  options.safety = scene.time.safety;
-  options.allow_unstable = scene.time.allow_unstable;
-  return make_explicit_run(model, options, std::move(observer));
-}
 
 namespace {
 
@@ -383,10 +209,6 @@ OutOfPlane out_of_plane(const Scene& scene, const Lattice& lattice,
   return rest;
 }
 
-template std::unique_ptr<Run> make_run(const Scene&, Model<Spatial>&, const OutOfPlane*,
-                                       const RunHooks&, Observer<Spatial>);
-template std::unique_ptr<Run> make_run(const Scene&, Model<Planar>&, const OutOfPlane*,
-                                       const RunHooks&, Observer<Planar>);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spatial>&,
                          const Lattice*);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&,

@@ -1,4 +1,4 @@
-#include "fracture/strengths.h"
+#include "fracture_laws/strengths.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "contact/stiffness.h"
+#include "active_contacts/stiffness.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "simulation/lattice_command.h"
+#include "scene_model/lattice_command.h"
 
 #include <algorithm>
 #include <filesystem>

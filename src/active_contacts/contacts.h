@@ -17,17 +17,17 @@
 #include <span>
 #include <vector>
 
-#include "contact/active_contacts.h"
-#include "contact/crushing.h"
-#include "contact/energies.h"
-#include "contact/events.h"
-#include "contact/history.h"
+#include "active_contacts/active_contacts.h"
+#include "active_contacts/crushing.h"
+#include "active_contacts/energies.h"
+#include "active_contacts/events.h"
+#include "active_contacts/history.h"
+#include "active_contacts/penetrations.h"
+#include "active_contacts/stiffness.h"
 #include "contact/narrow_phase.h"
 #include "contact/pair_list.h"
-#include "contact/penetrations.h"
 #include "contact/places.h"
 #include "contact/solids.h"
-#include "contact/stiffness.h"
 #include "contact/wear.h"
 #include "contact_laws/laws.h"
 

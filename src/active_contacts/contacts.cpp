@@ -1,4 +1,4 @@
-#include "contact/contacts.h"
+#include "active_contacts/contacts.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "contact/penetrations.h"
+#include "active_contacts/penetrations.h"
 
 #include <algorithm>
 

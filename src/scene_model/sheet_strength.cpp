@@ -1,3 +1,5 @@
+#include "scene_model/sheet_strength.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -6,8 +8,9 @@
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
+#include "fracture_laws/strengths.h"
+#include "scene_model/scene_model.h"
 #include "session/signals.h"
-#include "simulation/build.h"
 
 namespace floe {
 namespace {

@@ -1,4 +1,4 @@
-#include "contact/active_contacts.h"
+#include "active_contacts/active_contacts.h"
 
 #include <algorithm>
 
