@@ -1,6 +1,7 @@
 /// \file
-/// A lattice distributed over ranks. Each rank owns a chunk or a strip of the bodies and computes every beam that touches an owned body, in global order, so that forces have the same
-/// bits for any number of ranks.
+/// A lattice distributed over ranks. Each rank owns a chunk or a strip of the bodies and computes
+/// every beam that touches an owned body, in global order, so that forces have the same bits for
+/// any number of ranks.
 #pragma once
 
 #include <mpi.h>
@@ -47,9 +48,9 @@ struct Part {
 
 /// Distributes a lattice, which must be the same on every rank. Collective.
 /// \param strips  direction in plan along which the work will gather, as that to an obstacle: ranks
-///                own strips along it, of equal numbers of bodies, so that each has its share of the
-///                pile. Zero, or strips less than four bodies wide: chunks along a Hilbert curve,
-///                which have fewer neighbours
+///                own strips along it, of equal numbers of bodies, so that each has its share of
+///                the pile. Zero, or strips less than four bodies wide: chunks along a Hilbert
+///                curve, which have fewer neighbours
 /// \throws InputError if there are more ranks than bodies
 Part partition(const Lattice& lattice, MPI_Comm comm, const Vec3<double>& strips = {});
 

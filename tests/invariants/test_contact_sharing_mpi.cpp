@@ -16,11 +16,11 @@ TEST(SharedPairs, AreWorkedOutWhereThereIsTime) {
   for (const auto& row : shared_pairs(even)) {
     for (const std::int64_t count : row) EXPECT_EQ(count, 0);
   }
-  // 0.7 of the work of a pair can go: 1500 (0.3 + 0.7 x) = 0.7 * 1500 (1 - x), x = 2/7.
-  EXPECT_NEAR(static_cast<double>(shared_pairs(one_sided)[0][1]), 1500 * 5 / 7.0, 1);
+  // 0.6 of the work of a pair can go: 1500 (0.4 + 0.6 x) = 0.6 * 1500 (1 - x), x = 1/6.
+  EXPECT_NEAR(static_cast<double>(shared_pairs(one_sided)[0][1]), 1500 * 5 / 6.0, 1);
   const auto shares = shared_pairs(three);
   EXPECT_EQ(shares[0][1], shares[0][2]);
-  const auto time = [](double pairs, double gone) { return pairs - 0.7 * gone; };
+  const auto time = [](double pairs, double gone) { return pairs - 0.6 * gone; };
   EXPECT_NEAR(time(1000, static_cast<double>(shares[0][1] + shares[0][2])), 400, 2);
 }
 

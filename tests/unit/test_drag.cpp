@@ -8,11 +8,11 @@
 
 #include "leapfrog/leapfrog_work.h"
 #include "model/model.h"
+#include "submersion/immersion.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
 #include "support/roles.h"
 #include "water/buoyancy.h"
-#include "submersion/immersion.h"
 
 namespace floe {
 namespace {
