@@ -88,6 +88,11 @@ std::pair<std::int16_t, double> Faces::widest(double least) const {
   return found;
 }
 
+double gap_along_axis(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b) {
+  const auto [low, high] = reaches(solids, pair, a, b, pair.axis);
+  return low + dot(pair.axis, a.x - b.x) - high;
+}
+
 void to_world(Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
   p.middle = axes.to_world(p.middle) + origin;
   p.u = axes.to_world(p.u);
@@ -105,30 +110,31 @@ Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const P
                            : -lowest_along(solids.vertex_lists(pair.b), -along_b)};
 }
 
+/// Looks first where the pair was separated last, then at the faces, which separate most pairs that
+/// nearly touch, then for an axis between edges.
 double NarrowPhase::gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b,
-                        int tries) {
-  const Vec3<double> apart = a.x - b.x;
-  const auto [low, high] = reaches(solids, pair, a, b, pair.axis);
-  const double found = low + dot(pair.axis, apart) - high;
-  if (found > 0 || tries == 0 || solids.is_half_space(pair.b)) return found;
-  place(solids.vertices(pair.a), a.axes, apart, vertices_a_);
+                        double enough, int tries) {
+  const Faces faces(solids, pair, a, b);
+  const double last = pair.face >= 0 ? faces.gap(pair.face) : gap_along_axis(solids, pair, a, b);
+  if (last > enough) return last;
+  const auto [face, width] = faces.widest(std::max(last, 0.0));
+  if (face >= 0) {
+    pair.face = face;
+    return width;
+  }
+  if (last > 0 || solids.is_half_space(pair.b)) return last;
+  pair.face = -1;
+  place(solids.vertices(pair.a), a.axes, a.x - b.x, vertices_a_);
   vertices_b_.clear();
   for (const Vec3<double>& r : solids.vertices(pair.b)) vertices_b_.push_back(b.axes.to_world(r));
   return separate(vertices_a_, vertices_b_, pair.axis, tries);
 }
 
-/// Looks first along what separated the pair last, then at the faces, which separate most pairs
-/// that nearly touch, then for an axis between edges.
 bool NarrowPhase::has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b) {
   constexpr int tries = 8;
   constexpr double margin = 1e-6;  // for the rounding of travels
   const double least = rounding * solids.radius(pair.a);
-  const Faces faces(solids, pair, a, b);
-  double found = pair.face >= 0 ? faces.gap(pair.face) : gap(solids, pair, a, b, 0);
-  if (!(found > least)) {
-    std::tie(pair.face, found) = faces.widest(least);
-    if (pair.face < 0) found = gap(solids, pair, a, b, tries);
-  }
+  const double found = gap(solids, pair, a, b, least, tries);
   if (!(found > least)) return false;
   pair.safe = (a.travelled + b.travelled) + (1 - margin) * found;
   return true;

@@ -34,10 +34,12 @@ class NarrowPhase {
   /// \param with_patch  whether overlaps have their Overlap::patch
   explicit NarrowPhase(bool with_patch) : with_patch_(with_patch) {}
 
-  /// Returns the gap of a pair along its axis, or along a better axis that replaces it [m]. Not
-  /// positive: no gap was found, which does not prove an overlap.
-  /// \param tries  largest number of further axes
-  double gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b, int tries);
+  /// Returns a gap of a pair, at the face or along the axis of its last gap or at a better one that
+  /// replaces it [m]. Not positive: no gap was found, which does not prove an overlap.
+  /// \param enough  a gap that is wider is not bettered [m]
+  /// \param tries   largest number of axes after all faces
+  double gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b, double enough,
+             int tries);
 
   /// Whether a pair is known to have a gap. A gap that is found counts until the travels of A and B
   /// may have closed it.

@@ -97,7 +97,7 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
   const double distance = length(apart);
   pair.axis = distance > 0 ? (1 / distance) * apart : Vec3<double>{0, 0, 1};
   if (search.solids.is_half_space(pair.b)) pair.axis = search.solids.planes(pair.b)[0].normal;
-  if (search.narrow.gap(search.solids, pair, a, b, tries) <= reach_) pairs_.push_back(pair);
+  if (search.narrow.gap(search.solids, pair, a, b, reach_, tries) <= reach_) pairs_.push_back(pair);
 }
 
 /// Lists the involved bodies and gives pairs the slots of their bodies.

@@ -18,9 +18,8 @@ struct Across {
   T u, v;
 };
 
-/// Returns two unit vectors that with n are a right-handed basis u, v, n (Duff et al. 2017, "Building
-/// an orthonormal basis, revisited", J. Comput. Graph. Tech. 6).
-/// \param n  unit vector
+/// Returns two unit vectors that with n are a right-handed basis u, v, n (Duff et al. 2017,
+/// "Building an orthonormal basis, revisited", J. Comput. Graph. Tech. 6). \param n  unit vector
 inline std::pair<Vec3<double>, Vec3<double>> basis_across(const Vec3<double>& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1 / (sign + n.z), b = n.x * n.y * a;

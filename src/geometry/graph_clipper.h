@@ -28,12 +28,12 @@ namespace floe {
 class GraphClipper {
  public:
   /// Places A in B's frame for overlap().
-  /// \param axes, x  axes and origin of the frame of the vertices in B's frame
-  /// \param number   at most EdgeGraph::most_vertices
+  /// \param vertices  of A in its own frame, at most EdgeGraph::most_vertices
+  /// \param axes, x   axes and origin of A's frame in B's frame
   void place(const VertexLists& vertices, const Triad<double>& axes, const Vec3<double>& x);
 
-  /// Sets the overlap of A, placed, and B, unless there is none. Returns false if it has more
-  /// vertices, edges or planes on its way than there is room for: a task for Clipper.
+  /// Sets the overlap of A, placed, and B, unless there is none. Returns false if there are more
+  /// planes, or at some cut more vertices or edges, than there is room for: a task for Clipper.
   /// \param a           graph of A
   /// \param planes      B's half-spaces
   /// \param with_patch  whether to integrate over the facets on B for Overlap::patch
@@ -78,7 +78,7 @@ class GraphClipper {
   bool replayed_ = false;
   std::size_t vertices_ = 0;  ///< of A
   Points points_;
-  Vec3<double> origin_of_a_{};
+  Vec3<double> origin_of_a_{};                                ///< in B's frame [m]
   alignas(64) std::array<double, Points::slots> distance_{};  ///< from the plane that cuts last
   std::uint64_t alive_ = 0;                                   ///< mask of the vertices
 

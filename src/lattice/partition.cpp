@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "floe/base/item.h"
@@ -21,17 +22,18 @@ std::vector<std::int32_t> order_across(const Lattice& lattice, const Vec3<double
   const double size = std::hypot(strips.x, strips.y);
   if (size == 0) return {};
   std::vector<double> across;
-  Vec3<double> low = places[0], high = low;  // along the strips, across them, unused
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  Point2 low{infinite, infinite}, high{-infinite, -infinite};  // along the strips, across them
   for (const Point3& p : places) {
     const double x = (strips.x * p.x + strips.y * p.y) / size,
                  y = (strips.x * p.y - strips.y * p.x) / size;
     across.push_back(y);
-    low = {std::min(low.x, x), std::min(low.y, y), 0};
-    high = {std::max(high.x, x), std::max(high.y, y), 0};
+    low = {std::min(low[0], x), std::min(low[1], y)};
+    high = {std::max(high[0], x), std::max(high[1], y)};
   }
-  const double body =
-      std::sqrt((high.x - low.x) * (high.y - low.y) / static_cast<double>(places.size()));
-  if (!((high.y - low.y) / ranks > narrowest * body)) return {};
+  const double wide = high[1] - low[1],
+               body = std::sqrt((high[0] - low[0]) * wide / static_cast<double>(places.size()));
+  if (!(wide / ranks > narrowest * body)) return {};
   std::vector<std::int32_t> order(places.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {

@@ -1,6 +1,8 @@
 // Lanes as registers hold them, and the transposes between records and lanes.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/simd.h"
@@ -50,6 +52,26 @@ TEST(Lanes, GatherAndScatterAreExact) {
       }
     }
   }
+}
+
+TEST(Lanes, FewLanesTellWhichAreNotAboveZeroAndSum) {
+  EXPECT_EQ(few_lanes, lanes < 4 ? lanes : 4U);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::array<double, 8> of{-1, 0, -0.0, 1e-300, nan, -1e-300, 2, -2};
+  alignas(64) std::array<double, few_lanes> numbers;
+  for (std::size_t k = 0; k < 64; ++k) {
+    for (std::size_t lane = 0; lane < few_lanes; ++lane) numbers[lane] = of[(k + lane * k / 8) % 8];
+    const std::uint64_t mask = not_above_zero(load_few(numbers.data()));
+    for (std::size_t lane = 0; lane < few_lanes; ++lane)
+      EXPECT_EQ(mask >> lane & 1, numbers[lane] <= 0 ? 1U : 0U);
+    EXPECT_EQ(mask >> few_lanes, 0U);
+  }
+  const auto counted = [](double times) {
+    return FewLanes([&](auto k) { return times * (k + 1); });
+  };
+  const Row sums = lane_sums(counted(1), counted(10), counted(100), counted(1000));
+  const double whole = 0.5 * few_lanes * (few_lanes + 1);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(sums[k], std::pow(10, k) * whole);
 }
 
 TEST(Lanes, RowsAddToMemoryNumberByNumber) {
