@@ -235,12 +235,16 @@ std::int32_t CrackTips::goes_on(std::int32_t junction, std::int32_t facet) const
 CrackBehind CrackTips::behind_junction(std::int32_t junction) const {
   CrackBehind crack{.facets = {}, .size = 0, .tip = item(junctions_.places, junction)};
   std::int32_t facet = goes_on(junction, Junctions::none);
-  while (facet != Junctions::none) {
-    crack.facets[crack.size++] = facet;
+  for (std::size_t k = 0; facet != Junctions::none && k < CrackBehind::farthest; ++k) {
+    if (crack.size < CrackBehind::most) crack.facets[crack.size++] = facet;
     const auto& ends = item(junctions_.facets, facet).junctions;
     junction = ends[0] == junction ? ends[1] : ends[0];
-    if (junction == Junctions::none || crack.size == CrackBehind::most) break;
+    if (junction == Junctions::none) break;  // the outline
     facet = goes_on(junction, facet);
+    if (facet == Junctions::none && item(lost_, junction) == 1) {
+      const Point2& other = item(junctions_.places, junction);
+      crack.length = std::hypot(other[0] - crack.tip[0], other[1] - crack.tip[1]);
+    }
   }
   return crack;
 }
@@ -290,9 +294,10 @@ double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
     if (!linear && turn.w < 0) psi = -psi;
     const Vec3<double> up = linear ? Vec3<double>{0, 0, 1} : triad(i.q).e3;
     psi = psi - dot(psi, up) * up;
-    slides = slides + (side * f.width * std::sqrt(r)) * jump;
-    turns = turns + (side * f.width * std::sqrt(r)) * psi;
-    weight += f.width * r;
+    const double shape2 = r * std::max(0.0, 1 - r / crack.length);
+    slides = slides + (side * f.width * std::sqrt(shape2)) * jump;
+    turns = turns + (side * f.width * std::sqrt(shape2)) * psi;
+    weight += f.width * shape2;
     const std::int32_t next = k + 1 < crack.size ? crack.facets[k + 1] : Junctions::none;
     if (next == Junctions::none) break;
     for (const std::int32_t end : f.junctions) {
@@ -301,6 +306,7 @@ double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
         nearer = item(junctions_.places, end);
     }
   }
+  if (weight == 0) return 0;
   const double square = dot(slides, slides) + bent * dot(turns, turns);
   return std::numbers::pi / 32 * square / (weight * weight);
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -49,9 +50,13 @@ Junctions find_junctions(const Lattice& lattice);
 /// The gone facets behind a tip, the nearest first.
 struct CrackBehind {
   static constexpr std::size_t most = 8, least = 3;
+  static constexpr std::size_t farthest = 64;  ///< facets within which the other tip is looked for
   std::array<std::int32_t, most> facets;
   std::size_t size = 0;
   Point2 tip;  ///< [m], at rest
+  /// Distance of the crack's other tip [m]; infinite where the crack comes from the outline or
+  /// another crack, or is longer than `farthest` facets.
+  double length = std::numeric_limits<double>::infinity();
 };
 
 /// BodyPose of a body: displacement [m] and rotation from rest.
@@ -78,8 +83,8 @@ class CrackTips {
   /// Appends the bodies beside these cracks, with repetitions.
   void append_bodies(std::span<const CrackBehind> cracks, std::vector<std::int32_t>& bodies) const;
   /// (pi/32) |c|^2, times E the energy release rate that a crack's opening shows [m]: c is the fit
-  /// of c sqrt(r) to the jumps over its facets, r their distance from the tip (model.md,
-  /// "Fracture").
+  /// of c sqrt(r (1 - r/L)) to the jumps over its facets, r their distance from the tip, L the
+  /// distance of its other tip (model.md, "Fracture").
   /// \param bent     weight of the faces' turn against each other, h^2/12 (3 + nu)/(1 + nu) [m^2]
   /// \param linear   rotations are linearised
   /// \param pose_of  of a global body

@@ -180,6 +180,33 @@ TEST(CrackTips, OpeningIsFittedByTheRootOfTheDistance) {
             1e-28);
 }
 
+/// An inner crack of the length L opens as an ellipse, by c sqrt(r (1 - r/L)) (Griffith 1921), and
+/// has the same (pi/32) c^2 whether eight of its facets reach to its other tip or not.
+TEST(CrackTips, AnInnerCrackOpensAsAnEllipse) {
+  for (const double half : {3.0, 4.0, 8.0}) {
+    Lattice lattice = test::sheet(12, 30, 1);
+    cut(lattice, {0, -half}, {0, half});
+    const CrackTips cracks(find_junctions(lattice));
+    int ends = 0;
+    for (const std::int32_t m : tips(cracks, lattice.beams.size())) {
+      const std::vector<CrackBehind> behind = cracks.behind(m);
+      ASSERT_EQ(behind.size(), 1U);
+      const CrackBehind& crack = behind.front();
+      EXPECT_NEAR(crack.length, 2 * half, 1.5);
+      const Vec3<double> c{2e-4, 0, 0};
+      const double fitted = cracks.opening(crack, 1, false, [&](std::int32_t body) {
+        const Point3& x = item(lattice.bodies.position, body);
+        const double r = std::hypot(x.x - crack.tip[0], x.y - crack.tip[1]);
+        const double shape = std::sqrt(r * std::max(0.0, 1 - r / crack.length));
+        return BodyPose{(x.x > 0 ? 0.5 : -0.5) * shape * c, {1, 0, 0, 0}};
+      });
+      EXPECT_NEAR(fitted / (std::numbers::pi / 32 * 4e-8), 1, 0.15) << half;
+      ++ends;
+    }
+    EXPECT_GE(ends, 2);
+  }
+}
+
 /// Faces that turn against each other count by the given weight. A turn about the vertical is none
 /// of theirs.
 TEST(CrackTips, FacesThatBendApartCountByTheirTurn) {
