@@ -11,8 +11,8 @@
 namespace floe {
 namespace {
 
-/// Part of the time of a contact that its overlap takes (profile of the pile of input/ice_slope.yaml:
-/// 37 and 23 % of a step); the rest stays on the rank of the pair.
+/// Part of the time of a contact that its overlap takes (profile of the pile of
+/// input/ice_slope.yaml: 37 and 23 % of a step); the rest stays on the rank of the pair.
 constexpr double part_of_overlap = 0.6;
 /// Sharing fewer pairs is not worth a message.
 constexpr double fewest = 64;
