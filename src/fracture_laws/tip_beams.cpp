@@ -153,6 +153,7 @@ TipBeams::Change TipBeams::propagate(const std::vector<std::int32_t>& broken,
   all_doomed_.clear();
   if (!on_any_rank(!broken.empty() || !overloaded.empty(), part_.comm)) return change;
   std::vector<std::int32_t> broken_here;
+  broken_here.reserve(broken.size());
   for (const std::int32_t m : broken) broken_here.push_back(item(part_.global_beam, m));
   for (const std::int32_t beam : all_gathered(broken_here, part_.comm)) lose(beam, change);
   std::vector<TipOverload> turns = overloads(overloaded, state);

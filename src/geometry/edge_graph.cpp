@@ -60,7 +60,7 @@ bool add_face(Builder& builder, const Shapes& shapes, std::int32_t face, std::in
     if (!first) first = h;
     last = h;
   }
-  if (last) builder.follow(*last, *first);
+  if (last && first) builder.follow(*last, *first);
   return true;
 }
 

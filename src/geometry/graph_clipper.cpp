@@ -212,7 +212,7 @@ bool GraphClipper::clip(const EdgeGraph& a, const Planes& planes, CutRecord& rec
 /// Begins the graph as that of A before the first cut. The vertices that stay are settled.
 void GraphClipper::start(const EdgeGraph& a, std::uint32_t inside) {
   settle(inside);
-  for (std::size_t h = 0; h < 2U * a.edges; ++h) origin_[h] = byte(low + a.origin[h]);
+  for (std::size_t h = 0; h < 2 * std::size_t{a.edges}; ++h) origin_[h] = byte(low + a.origin[h]);
   next_ = a.next;
   on_b_ = {};
   edges_ = a.edges < 64 ? first_bits(a.edges) : ~std::uint64_t{0};
