@@ -148,7 +148,10 @@ TipBeams::Change TipBeams::propagate(const std::vector<std::int32_t>& broken,
                                      const State<Spatial>& state) {
   Change change;
   for (const std::int32_t m : all_doomed_) {
-    if (const std::int32_t here = local_beam(m); here != none) item(doomed_, here) = 0;
+    const std::int32_t here = local_beam(m);
+    if (here == none) continue;
+    item(doomed_, here) = 0;
+    change.doomed.push_back(here);
   }
   all_doomed_.clear();
   if (!on_any_rank(!broken.empty() || !overloaded.empty(), part_.comm)) return change;

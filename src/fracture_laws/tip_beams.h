@@ -40,7 +40,7 @@ class TipBeams {
   /// Local beams that a change concerns, with repetitions.
   struct Change {
     std::vector<std::int32_t> strengths;  ///< their strengths are to be set anew
-    std::vector<std::int32_t> doomed;     ///< they will break in the next evaluation
+    std::vector<std::int32_t> doomed;     ///< now, or no longer: is_doomed() changed
   };
   /// Strengths of one beam.
   struct Strengths {
