@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "active_contacts/energies.h"
-#include "contact/pair.h"
+#include "contact/pair_list.h"
 #include "contact/places.h"
 #include "contact_laws/response.h"
 
@@ -69,12 +69,11 @@ class ActiveContacts {
     return room_[size_++];
   }
   /// Sets the forces of all contacts anew, and with them the wrenches on bodies and obstacles.
-  /// \param pair_of   function from an index to the pair of the list
   /// \param force_of  function from contact and pair to the contact's force
-  void act(const Places& places, auto pair_of, auto force_of);
+  void act(const PairList& list, const Places& places, auto force_of);
   /// Adds the sums of the terms of all contacts to the wrenches on bodies only, and sets no forces.
   /// \param wrenches  by slot
-  void add_sums(const Places& places, auto pair_of, auto force_of,
+  void add_sums(const PairList& list, const Places& places, auto force_of,
                 std::span<ContactWrench> wrenches) const;
   /// Forgets the contacts; forces on obstacles stay.
   void clear() { size_ = 0; }
@@ -115,11 +114,12 @@ inline void add_pair(const Vec3<double>& force, const Vec3<double>& couple,
   on_b.moment = on_b.moment - (cross(arm_b, force) + couple);
 }
 
-void ActiveContacts::act(const Places& places, auto pair_of, auto force_of) {
+void ActiveContacts::act(const PairList& list, const Places& places, auto force_of) {
   begin_forces();
   for (ActiveContact& active : std::span(room_).first(size_)) {
+    active.springs = {};
     if (active.is_enclosed()) continue;
-    const Pair& pair = pair_of(active.pair);
+    const Pair& pair = list.pair(active.pair);
     const ContactForce contact = force_of(active, pair);
     active.springs = contact.springs;
     const Vec3<double>& arm_a = active.centre;
@@ -135,12 +135,12 @@ void ActiveContacts::act(const Places& places, auto pair_of, auto force_of) {
   }
 }
 
-void ActiveContacts::add_sums(const Places& places, auto pair_of, auto force_of,
+void ActiveContacts::add_sums(const PairList& list, const Places& places, auto force_of,
                               std::span<ContactWrench> wrenches) const {
   ContactWrench on_obstacles;
   for (const ActiveContact& active : contacts()) {
     if (active.is_enclosed()) continue;
-    const Pair& pair = pair_of(active.pair);
+    const Pair& pair = list.pair(active.pair);
     const ContactForce contact = force_of(active, pair);
     add_pair(contact.force(), contact.whole_couple(), active.centre,
              active.centre + (places.of_a(pair).x - places.of_b(pair).x),

@@ -58,15 +58,14 @@ void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
   active_.start(list_.involved().size());
   std::visit([&](const auto& law) { evaluate_pairs(law, offloaded); }, law_);
-  const auto pair_of = [&](std::int32_t index) -> const Pair& { return list_.pair(index); };
   const auto force_of = [](const ActiveContact& active, const Pair&) {
     return without_dashpots(active.trial);
   };
   if (damps()) {
     std::fill(wrenches.begin(), wrenches.end(), ContactWrench{});
-    active_.add_sums(places_, pair_of, force_of, wrenches);
+    active_.add_sums(list_, places_, force_of, wrenches);
   } else {
-    active_.act(places_, pair_of, force_of);
+    active_.act(list_, places_, force_of);
     write_sums(active_, wrenches);
   }
 }
@@ -74,11 +73,9 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverla
 void Contacts::damp(std::span<const Acceleration> accelerations,
                     std::span<ContactWrench> wrenches) {
   places_.predict(solids_, 0.5 * last_dt_, accelerations);
-  active_.act(
-      places_, [&](std::int32_t index) -> const Pair& { return list_.pair(index); },
-      [&](const ActiveContact& active, const Pair& pair) {
-        return with_dashpots(active.trial, places_.predicted_motion(pair, active.centre));
-      });
+  active_.act(list_, places_, [&](const ActiveContact& active, const Pair& pair) {
+    return with_dashpots(active.trial, places_.predicted_motion(pair, active.centre));
+  });
   write_sums(active_, wrenches);
 }
 

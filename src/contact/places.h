@@ -76,7 +76,6 @@ class Places {
              std::span<const MovingPose> bodies, double time, double motion);
 
   const Placed& of_slot(std::int32_t slot) const { return item(bodies_, slot); }
-  const Placed& of_obstacle(std::size_t k) const { return obstacles_[k]; }
   /// Returns what the body in a slot opposes to contacts.
   const BodyMobility& mobility(std::int32_t slot) const { return item(mobility_, slot); }
   const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
