@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "base/collectives.h"
@@ -88,6 +89,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     for (std::size_t lane = 0; lane < lanes; ++lane) whole_further_block_.set(lane, whole_further_);
     if (options.propagation == Propagation::energy) {
+      if (junctions.facet_of.empty() && !crack_of_.empty())
+        throw std::invalid_argument("make_breakable_beams: propagation: energy needs junctions");
       tips_.emplace(part, options, kinematics == Kinematics::linear, std::move(junctions));
       whole_ = strengths_;
       set_all_strengths();

@@ -158,8 +158,8 @@ Junctions find_junctions(const Lattice& lattice) {
   if (lattice.beams.size() == 0) return found;
   if (lattice.shapes.empty())
     throw InputError(
-        "fracture: propagation: energy needs the vertices of the facets between bodies: the "
-        "lattice file has no /shapes");
+        "fracture: propagation: energy (the default) needs the vertices of the facets between "
+        "bodies, and the lattice file has no /shapes: add them, or take propagation: strength");
   double mean = 0;
   for (const double length : lattice.beams.length) mean += length;
   mean /= static_cast<double>(lattice.beams.bodies.size());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "contact_force/contact.h"
 #include "floe/base/item.h"
@@ -119,11 +120,11 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
   const Part& part = model.part();
   if constexpr (std::is_same_v<Space, Spatial>) {  // fracture, and forces along z
     if (scene.forces.fracture) {
+      const bool by_energy = scene.fracture.propagation == Propagation::energy;
+      if (by_energy && lattice == nullptr)
+        throw std::invalid_argument("add_forces: propagation: energy looks at the whole lattice");
       BreakableForce breakable = make_breakable_beams(
-          part, scene.beam, scene.fracture,
-          lattice != nullptr && scene.fracture.propagation == Propagation::energy
-              ? find_junctions(*lattice)
-              : Junctions{});
+          part, scene.beam, scene.fracture, by_energy ? find_junctions(*lattice) : Junctions{});
       model.set_fracture(breakable.fracture);
       model.set_beams(std::move(breakable.force), scene.beam.kinematics);
     }
@@ -173,7 +174,7 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
 
 bool needs_shapes(const Scene& scene) {
   return scene.forces.buoyancy || scene.forces.drag || scene.forces.contact ||
-         scene.fracture.propagation == Propagation::energy;
+         (scene.forces.fracture && scene.fracture.propagation == Propagation::energy);
 }
 
 template <class Space>

@@ -30,6 +30,7 @@ Scene sheet_of(double x, double y, double element, std::uint64_t seed) {
 /// Largest criterion s of a beam in the solution's last state.
 double overload(const Scene& scene, const test::StaticSolution& s) {
   FractureOptions options;
+  options.propagation = Propagation::strength;
   options.tensile_strength = options.shear_strength = sigma_t;
   return make_breakable_beams(s.model->part(), scene.beam, options).fracture->overload(s.last());
 }

@@ -147,7 +147,7 @@ TEST(ContactOfBrokenBeams, AddsNoEnergy) {
   scene.fracture.tensile_strength = scene.fracture.shear_strength = 1e5;
   scene.contact.damping_ratio = scene.contact.friction = 0;
   Model<Spatial> model(lattice, PETSC_COMM_SELF, {});
-  add_forces(scene, {}, model);
+  add_forces(scene, {}, model, &lattice);
   add_contact(scene, lattice, model);
   ExplicitOptions options;
   options.end = 0.08, options.dt = 2e-5, options.history = 2e-5;

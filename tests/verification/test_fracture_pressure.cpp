@@ -18,6 +18,7 @@ constexpr double tension = 6e5, shear = 5e5, compression = 3e6, g = 15, g_shear 
 
 FractureOptions options(double compressive_strength, bool dynamic = true) {
   FractureOptions o;
+  o.propagation = Propagation::strength;  // a single beam has no cracks
   o.tensile_strength = tension, o.shear_strength = shear;
   o.compressive_strength = compressive_strength;
   o.energy = g, o.energy_shear = g_shear;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "fracture_laws/crack_tips.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
 #include "support/random.h"
@@ -38,6 +39,7 @@ Scene strip_scene() {
   Scene scene;
   scene.forces.beam = scene.forces.fracture = true;
   scene.fracture.dynamic = false;
+  scene.fracture.propagation = Propagation::strength;  // a row of beams has no cracks
   scene.time.dt = 0.01;
   Boundary root;
   root.name = root.set = "root";
@@ -56,7 +58,7 @@ struct Failure {
 Failure until_failure(const Scene& scene, const Lattice& lattice) {
   const std::vector<PlacedLoad> loads = place_loads(scene, lattice);
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, loads, model);
+  add_forces(scene, loads, model, &lattice);
   hold_free_motions(scene, lattice, model);
   double last = 0;
   const RunResult result =
@@ -124,6 +126,7 @@ std::pair<double, double> scattered_strips(int elements, double modulus, int see
   double sum = 0, squares = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     FractureOptions options;
+    options.propagation = Propagation::strength;
     options.tensile_strength = options.shear_strength = strength;
     options.weibull_modulus = modulus;
     options.seed = static_cast<std::uint64_t>(seed);
@@ -201,7 +204,7 @@ TEST(FractureOfStrips, WhatNoBeamDissipatesIsReleased) {
   tip.ramp.seconds = 1;
   scene.boundaries.push_back(tip);
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, {}, model);
+  add_forces(scene, {}, model, &lattice);
   double stretch = 0, fracture = 0, released = 0, broken = 0;
   const RunResult run = run_quasistatic(model, {1, 0.01}, [&](const Accepted<Spatial>& a) {
     const bool whole = broken == 0;
@@ -264,7 +267,7 @@ Pulled pull(double damping, double safety) {
     scene.boundaries.push_back(b);
   }
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, {}, model);
+  add_forces(scene, {}, model, &lattice);
   ExplicitOptions options;
   options.end = 0.1;
   options.safety = safety;
@@ -292,8 +295,8 @@ TEST(FractureOfSheets, IntactBreakableBeamsAreBeams) {
   BeamOptions beams;
   beams.damping_ratio = 0.3;
   const auto plain = make_beam_force<Spatial>(part, beams);
-  const auto breakable =
-      make_breakable_beams(part, beams, {.tensile_strength = 1e12, .shear_strength = 1e12});
+  const auto breakable = make_breakable_beams(
+      part, beams, {.tensile_strength = 1e12, .shear_strength = 1e12}, find_junctions(lattice));
   State<Spatial> state(static_cast<std::size_t>(part.local));
   test::Random random(3);
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {

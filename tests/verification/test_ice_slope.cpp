@@ -82,7 +82,7 @@ Pushed run(const Case& c) {
   const Scene scene = push(c);
   const Lattice lattice = strip(c.thickness);
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, {}, model);
+  add_forces(scene, {}, model, &lattice);
   add_contact(scene, lattice, model);
   ExplicitOptions options;
   options.end = c.end;

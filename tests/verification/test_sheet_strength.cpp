@@ -54,7 +54,7 @@ double first_break(Scene scene, const Lattice& lattice, std::size_t axis, bool b
     scene.boundaries.push_back(b);
   }
   Model<Spatial> model(lattice, PETSC_COMM_SELF, scene.boundaries);
-  add_forces(scene, {}, model);
+  add_forces(scene, {}, model, &lattice);
   hold_free_motions(scene, lattice, model);
   double stress = 0;
   (void)run_quasistatic(
@@ -318,6 +318,7 @@ ScatteredSheet scattered_sheet(double length, double modulus, int seeds) {
   double sum = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     FractureOptions options;
+    options.propagation = Propagation::strength;
     options.tensile_strength = options.shear_strength = strength;
     options.weibull_modulus = modulus;
     options.seed = static_cast<std::uint64_t>(seed);
