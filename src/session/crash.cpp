@@ -61,8 +61,9 @@ RunPlace& run_place() {
 void end_crashed(const char* what) noexcept {
   // A second crash inside this function ends the process by the system's default action.
   for (const int signal : crashes) ::signal(signal, SIG_DFL);
-  // The crash may have been in the allocator, so the code after the printed line may hang.
-  constexpr unsigned patience = 10;  // [s]
+  // The crash may have been in the allocator, so the code after the printed line may hang. On a
+  // machine that is busy with other things that code takes its time, so this is long.
+  constexpr unsigned patience = 60;  // [s]
   ::signal(SIGALRM, when_words_hang);
   ::alarm(patience);
   std::array<char, 2000> line{};
