@@ -52,6 +52,18 @@ void append_corners(const Lattice& lattice, std::int32_t body, double tolerance,
   }
 }
 
+/// Mean of GJ/(EI_y), each beam by its width and length: what the lattice's Poisson's ratio in
+/// bending follows from (model.md, section 3).
+double mean_twist(const Beams& b) {
+  double sum = 0, weights = 0;
+  for (std::size_t m = 0; m < b.bodies.size(); ++m) {
+    const double weight = b.width[m] * b.length[m];
+    sum += weight * b.shear_modulus[m] * b.torsion[m] / (b.young[m] * b.inertia_y[m]);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
 /// Global beams by their bodies, sorted.
 std::vector<std::pair<std::array<std::int32_t, 2>, std::int32_t>> by_bodies(const Beams& beams) {
   std::vector<std::pair<std::array<std::int32_t, 2>, std::int32_t>> all;
@@ -183,6 +195,7 @@ Junctions find_junctions(const Lattice& lattice) {
                    [](const Meeting& a, const Meeting& b) { return a.bodies < b.bodies; });
 
   add_facets(lattice, meetings, found);
+  found.twist = mean_twist(lattice.beams);
   return found;
 }
 
@@ -287,12 +300,13 @@ double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
     const Point3 across = f.arm[0] - f.arm[1];
     const double side = tx * across.y - ty * across.x > 0 ? 1.0 : -1.0;
     const double r = std::hypot(f.middle.x - crack.tip[0], f.middle.y - crack.tip[1]);
-    const Vec3<double> jump = displaced(j, f.arm[1]) - displaced(i, f.arm[0]);
+    const Vec3<double> up = linear ? Vec3<double>{0, 0, 1} : triad(i.q).e3;
+    Vec3<double> jump = displaced(j, f.arm[1]) - displaced(i, f.arm[0]);
+    jump = jump - dot(jump, up) * up;  // the deflection's goes with r^(3/2), not with K
     const Quat<double> turn = product(j.q, conjugate(i.q));
     Vec3<double> psi{2 * turn.x, 2 * turn.y, 2 * turn.z};
     if (linear) psi = {2 * (j.q.x - i.q.x), 2 * (j.q.y - i.q.y), 2 * (j.q.z - i.q.z)};
     if (!linear && turn.w < 0) psi = -psi;
-    const Vec3<double> up = linear ? Vec3<double>{0, 0, 1} : triad(i.q).e3;
     psi = psi - dot(psi, up) * up;
     const double shape2 = r * std::max(0.0, 1 - r / crack.length);
     slides = slides + (side * f.width * std::sqrt(shape2)) * jump;

@@ -33,6 +33,7 @@ struct Junctions {
   /// Junction k has the facets facets_at[first[k]] to facets_at[first[k + 1] - 1], three or more.
   std::vector<std::int32_t> first, facets_at;
   std::vector<std::int32_t> facet_of;  ///< per global beam: its facet, or none
+  double twist = 1;                    ///< g: mean of GJ/(EI_y), each beam by its width and length
 
   std::int32_t size() const { return static_cast<std::int32_t>(places.size()); }
   std::span<const std::int32_t> at(std::int32_t junction) const {
@@ -69,6 +70,8 @@ struct BodyPose {
 class CrackTips {
  public:
   explicit CrackTips(Junctions junctions);
+
+  const Junctions& junctions() const { return junctions_; }
 
   /// Whether exactly one facet at an end of this beam's facet is gone, and the beam is not.
   /// \param beam  global index

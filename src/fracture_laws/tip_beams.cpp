@@ -44,12 +44,11 @@ TipBeams::Strengths TipBeams::armed(std::int32_t m, const Strengths& whole) cons
 }
 
 // -- Overloads
-/// Square of the opening that counts as much as a unit turn of the faces against each other, with
-/// Poisson's ratio of the beam [m^2].
+/// Square of the opening that counts as much as a unit turn of the faces against each other, of
+/// the plate that the lattice is [m^2].
 double TipBeams::bent_opening(std::int32_t m) const {
-  const double nu = item(part_.beams.young, m) / (2 * item(part_.beams.shear_modulus, m)) - 1,
-               h = item(part_.beams.height, m);
-  return h * h / 12 * (3 + nu) / (1 + nu);
+  const double g = tips_.junctions().twist, nu = (1 - g) / (3 + g), h = item(part_.beams.height, m);
+  return h * h / 48 * (3 + g) * (1 - nu) * (3 + nu);
 }
 
 /// Poses of bodies of the whole lattice. Collective. \param bodies  sorted, alike on all ranks

@@ -180,6 +180,24 @@ TEST(CrackTips, OpeningIsFittedByTheRootOfTheDistance) {
             1e-28);
 }
 
+/// One side may be lifted against the other, however far, also where the sheet lies at a slope:
+/// that is no opening.
+TEST(CrackTips, FacesThatAreLiftedDoNotOpen) {
+  const CutSheet sheet;
+  const Quat<double> slope = exp_rotation({0.2, -0.3, 0});
+  for (const bool linear : {false, true}) {
+    const Quat<double> turn = linear ? Quat<double>{1, 0, 0, 0} : slope;
+    const Vec3<double> up = linear ? Vec3<double>{0, 0, 1} : triad(turn).e3;
+    EXPECT_LT(sheet.opening(
+                  [&](const Point3& x) {
+                    const Vec3<double> lifted = (x.x > 0 ? 0.5 : -0.5) * up;
+                    return BodyPose{rotate(turn, x) - x + lifted, turn};
+                  },
+                  1, linear),
+              1e-28);
+  }
+}
+
 /// An inner crack of the length L opens as an ellipse, by c sqrt(r (1 - r/L)) (Griffith 1921), and
 /// has the same (pi/32) c^2 whether eight of its facets reach to its other tip or not.
 TEST(CrackTips, AnInnerCrackOpensAsAnEllipse) {
