@@ -89,15 +89,18 @@ struct LaneBodies {
 
 /// Loads the records of the given bodies into lanes.
 template <bool with_velocity>
-LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& bodies) {
-  const auto four = [&](std::size_t offset) {
-    return gather_four([&](std::size_t lane) {
+[[gnu::always_inline]] inline LaneBodies gather(const double* records,
+                                                const std::array<std::int32_t, lanes>& bodies) {
+  const auto four = [&](std::size_t offset) __attribute__((always_inline)) {
+    return gather_four([&](std::size_t lane) __attribute__((always_inline)) {
       return records + static_cast<std::size_t>(bodies[lane]) * Spatial::record + offset;
     });
   };
   const auto [ux, uy, uz, qw] = four(0);
   const auto [qx, qy, qz, vx] = four(4);
-  LaneBodies b{{ux, uy, uz}, {}, {}, {qw, qx, qy, qz}};
+  LaneBodies b;  // what is not asked for stays undefined: zeros would lie in memory
+  b.u = {ux, uy, uz};
+  b.q = {qw, qx, qy, qz};
   if constexpr (with_velocity) {
     const auto [vy, vz, wx, wy] = four(8);
     const auto last = four(12);
