@@ -102,16 +102,17 @@ struct Between {
 /// h as a series in x = square/4. From asin(s)/(s sqrt(1 - s^2)) = sum g_k s^2k, g_k = 4^k k!^2/(2k
 /// + 1)! (Abramowitz & Stegun 4.4.40, times 1/sqrt(1 - s^2); Gradshteyn & Ryzhik 1.645.2), which is
 /// g at s = sin(phi/4):  h = -g_1 - sum (g_k+1 - g_k) x^k. Below series_limit (a relative rotation
-/// of 7 degrees) the first omitted term is 3e-17.
+/// of 11 degrees) the first omitted term is 6e-18.
 template <class T>
 T remainder_series(const T& square) {
   // Estrin's scheme: the dependency chain of Horner's scheme would be twice as long.
   const T square2 = T(square * square);
   const T low = T(T((2.0 / 60.0) * square) - 2.0 / 3.0),
-          high = T(T((16.0 / 20160.0) * square) + 8.0 / 1680.0);
-  return T(low + T(square2 * T(high + T((128.0 / 887040.0) * square2))));
+          middle = T(T((16.0 / 20160.0) * square) + 8.0 / 1680.0),
+          high = T(T((256.0 / 9225216.0) * square) + 128.0 / 887040.0);
+  return T(low + T(square2 * T(middle + T(square2 * high))));
 }
-inline constexpr double series_limit = 0.004;  ///< of Between::square
+inline constexpr double series_limit = 0.01;  ///< of Between::square
 
 template <class T>
 Quat<T> operator-(const Quat<T>& a, const Quat<T>& b) {
@@ -144,7 +145,7 @@ Between<T> between(const Quat<T>& a, const Quat<T>& b) {
   r.h = T(T(1.0 - g) * sum) / r.square;
   return r;
 }
-/// Computes large turns lane by lane: such lanes are rare (a beam bent by 7 degrees).
+/// Computes large turns lane by lane: such lanes are rare (a beam bent by 11 degrees).
 /// \param numbers  a, then b, difference, square and h of Between, which change
 [[gnu::noinline, gnu::cold]] inline void large_turns(std::array<Lanes, 14>& numbers) {
   for (std::size_t k = 0; k < lanes; ++k) {

@@ -21,6 +21,12 @@ namespace floe {
 template <template <class> class Frame>
 inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
 
+/// Copies the numbers of a lane from another block.
+template <class Values>
+void copy_lane(Values& to, std::size_t lane, const Values& from, std::size_t other) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k][lane] = from[k][other];
+}
+
 /// Constants of a block of beams, number by number and lane by lane: frame, l0, six stiffnesses.
 template <template <class> class Frame>
 struct alignas(64) BeamBlock {
@@ -38,6 +44,12 @@ struct alignas(64) BeamBlock {
       for (const double value : {e1.x, e1.y, e1.z, e2.x, e2.y, e2.z, e3.x, e3.y, e3.z}) put(value);
     }
     for (const double value : {c.l0, c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz}) put(value);
+  }
+  /// Takes over the beam in lane `other` of another block.
+  void take(std::size_t lane, const BeamBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
+    i[lane] = from.i[other];
+    j[lane] = from.j[other];
   }
   template <class C, template <class> class Any>
   static BeamConstants<C, Any> with_frame(Any<C> frame, auto at) {
@@ -78,6 +90,10 @@ struct alignas(64) DashpotBlock {
     const std::array<double, 6> all{c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz};
     for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
     counts[lane] = counts_here ? 1.0 : 0.0;
+  }
+  void take(std::size_t lane, const DashpotBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
+    counts[lane] = from.counts[other];
   }
 };
 
@@ -142,8 +158,8 @@ struct Unbreakable {};
 /// \param dashpots  null unless damped
 /// \param records   of the local bodies, Spatial::record doubles each
 /// \param wrenches  of the local bodies, Spatial::wrench doubles each
-/// \param strength  hook of beams that may break: if strength.gives_way(elastic forces), the block
-///                  goes to strength.add() instead; strength.store() gets the forces of dashpots
+/// \param strength  hook of beams that may break: if strength.gives_way(forces, strains), the block
+///                  goes to strength.add() instead
 /// \returns the power lost in the dashpots of the beams that this rank counts, per lane [W]
 template <Kinematics kinematics, bool damped, template <class> class Frame,
           class Strength = Unbreakable>
@@ -157,7 +173,7 @@ template <Kinematics kinematics, bool damped, template <class> class Frame,
   const BeamStrains<Lanes> s = Kernel::strains(beam, j.u - i.u, i.q, j.q);
   BeamStress<Lanes> stress = elastic_stress(beam, s);
   if constexpr (!std::is_same_v<Strength, Unbreakable>) {
-    if (strength.gives_way(stress)) [[unlikely]]
+    if (strength.gives_way(stress, s)) [[unlikely]]
       return strength.add();
   }
   Lanes lost(0.0);
@@ -169,9 +185,7 @@ template <Kinematics kinematics, bool damped, template <class> class Frame,
         dashpot(1) * rate.qy,
         dashpot(2) * rate.qz,
         {dashpot(3) * rate.c.x, dashpot(4) * rate.c.y, dashpot(5) * rate.c.z}};
-    const Lanes counts = load(dashpots->counts.data());
-    lost = counts * power(viscous, rate);
-    if constexpr (!std::is_same_v<Strength, Unbreakable>) strength.store(viscous, rate, counts);
+    lost = load(dashpots->counts.data()) * power(viscous, rate);
     stress = {stress.n + viscous.n, stress.qy + viscous.qy, stress.qz + viscous.qz,
               stress.c + viscous.c};
   }

@@ -173,24 +173,28 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
 
   /// Enters beam m as it is at rest, undamaged. Bounds of stiffness stay.
   void set(std::int32_t m, const BeamOptions& options) {
-    const auto k = static_cast<std::size_t>(m);
+    const std::size_t k = slot(m);
     Block& block = blocks_[k / lanes];
     const Constants c = Beam::make(part_, m, options.shear);
     block.set(k % lanes, c);
-    const auto [i, j] = part_.beams.bodies[k];
+    const auto [i, j] = item(part_.beams.bodies, m);
     block.i[k % lanes] = i;
     block.j[k % lanes] = j;
     if constexpr (damped) {
       const BeamStiffness springs = beam_stiffness(part_.beams, m, options.shear);
       dashpots_[k / lanes].set(k % lanes, beam_damping(part_, m, springs, options),
-                               part_.counts_here[k] != 0);
+                               item(part_.counts_here, m) != 0);
     }
   }
+  /// Where beam m lies: in lane slot % lanes of block slot / lanes.
+  std::size_t slot(std::int32_t m) const {
+    return static_cast<std::size_t>(slots_.empty() ? m : item(slots_, m));
+  }
   Constants constants(std::int32_t m) const {
-    return blocks_[static_cast<std::size_t>(m) / lanes].get(static_cast<std::size_t>(m) % lanes);
+    return blocks_[slot(m) / lanes].get(slot(m) % lanes);
   }
   Dashpots dashpots(std::int32_t m) const {
-    return dashpots_[static_cast<std::size_t>(m) / lanes].get(static_cast<std::size_t>(m) % lanes);
+    return dashpots_[slot(m) / lanes].get(slot(m) % lanes);
   }
   static const double* record(const State<Space>& state, std::int32_t body) {
     return state.record(static_cast<std::size_t>(body));
@@ -205,8 +209,9 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
   const Part& part_;
   std::vector<Block> blocks_;
   std::vector<DashpotBlock> dashpots_;
-  std::vector<double> stiffness_;  ///< per local body: bound, summed over its beams [N/m]
-  double power_lost_ = 0;          ///< in dashpots, in the last evaluation [W]
+  std::vector<std::int32_t> slots_;  ///< per local beam; empty: beams lie in their order
+  std::vector<double> stiffness_;    ///< per local body: bound, summed over its beams [N/m]
+  double power_lost_ = 0;            ///< in dashpots, in the last evaluation [W]
 };
 
 }  // namespace floe
