@@ -159,7 +159,7 @@ struct Unbreakable {};
 /// \param records   of the local bodies, Spatial::record doubles each
 /// \param wrenches  of the local bodies, Spatial::wrench doubles each
 /// \param strength  hook of beams that may break: if strength.gives_way(forces, strains), the block
-///                  goes to strength.add() instead
+///                  goes to strength.add() instead; strength.store() gets the forces of dashpots
 /// \returns the power lost in the dashpots of the beams that this rank counts, per lane [W]
 template <Kinematics kinematics, bool damped, template <class> class Frame,
           class Strength = Unbreakable>
@@ -185,7 +185,9 @@ template <Kinematics kinematics, bool damped, template <class> class Frame,
         dashpot(1) * rate.qy,
         dashpot(2) * rate.qz,
         {dashpot(3) * rate.c.x, dashpot(4) * rate.c.y, dashpot(5) * rate.c.z}};
-    lost = load(dashpots->counts.data()) * power(viscous, rate);
+    const Lanes counts = load(dashpots->counts.data());
+    lost = counts * power(viscous, rate);
+    if constexpr (!std::is_same_v<Strength, Unbreakable>) strength.store(viscous, rate, counts);
     stress = {stress.n + viscous.n, stress.qy + viscous.qy, stress.qz + viscous.qz,
               stress.c + viscous.c};
   }

@@ -82,6 +82,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         further_(kind_ == Criterion::general ? blocks_.size() : 0),
         damaged_(blocks_.size(), 0),
         crack_of_(part.beams.bodies.size(), none),
+        viscous_(damped ? blocks_.size() : 0),
+        viscous_now_(viscous_),
         limits_(blocks_.size()) {
     const auto all = strengths(part, options);
     for (LimitBlock& limit : limits_) limit.values.fill(boundless);
@@ -117,16 +119,18 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   [[gnu::flatten]] void add_by(const State<Spatial>& state, Wrenches<Spatial>& wrenches) {
     growing_.clear();
     overloaded_.clear();
-    more_before_ = 0;
     const double* records = state.records.data();
     double* values = wrenches.values.data();
-    Lanes lost(0.0);
+    Lanes lost(0.0), lost_before(0.0);
     for (std::size_t k = 0; k < live_.size(); ++k) {
       const std::size_t b = live_[k],
                         soon = live_[std::min(k + Base::blocks_ahead, live_.size() - 1)];
       prefetch(blocks_[soon]);
       prefetch(limits_[soon]);
-      if constexpr (damped) prefetch(dashpots_[soon]);
+      if constexpr (damped) {
+        prefetch(dashpots_[soon]);
+        prefetch(viscous_[soon]);
+      }
       const BeamBlock<Frame>* block = &blocks_[b];
       const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
       const LimitBlock* limit = &limits_[b];
@@ -143,13 +147,18 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
           again = true;
           return Lanes(0.0);
         };
-        lost += add_block<kinematics, damped>(
-            *block, dashpots, records, values,
-            BreakableBlock<kind, decltype(give_way)>{
-                *limit, strengths_[b], further_of(kind, further_, b), crushes_, give_way});
+        lost +=
+            add_block<kinematics, damped>(*block, dashpots, records, values,
+                                          BreakableBlock<kind, decltype(give_way)>{
+                                              *limit, strengths_[b], further_of(kind, further_, b),
+                                              crushes_, give_way, damped ? &viscous_[b] : nullptr,
+                                              damped ? &viscous_now_[b] : nullptr, &lost_before});
       } while (again);
     }
-    if constexpr (damped) this->power_lost_ = reduce(lost);
+    if constexpr (damped) {
+      this->power_lost_ = reduce(lost);
+      power_before_ = reduce(lost_before);
+    }
   }
 
   /// Adds the tangent at the damage of the last commit; for a beam that softens this is the secant.
@@ -166,7 +175,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
 
   /// Makes the damage of the last evaluation (dynamics) or of advance() (statics) history.
   void commit(const State<Spatial>& state, double dt) override {
-    power_before_ = this->power_lost_;
+    if constexpr (damped) std::swap(viscous_, viscous_now_);
     for (const Growth& g : growing_) take(g);
     growing_.clear();
     if (std::exchange(packed_, false)) order_blocks();
@@ -186,13 +195,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
   }
 
-  /// The power of the dashpots jumps when beams break, so the power of the last commit's forces is
-  /// told with the present rates: the mean of the powers of its dashpots at both rates, which
-  /// differs from the product by 1/2 c (change of rate)^2, of second order.
+  /// The forces of dashpots jump when beams break. Those at the start of the last step are kept,
+  /// since the energy balance of leapfrog is exact for linear strains with both.
   LaterPowers later_powers() const override { return LaterPowers::in_next_evaluation; }
-  void kept_powers(std::span<double> out) const override {
-    out.front() = -0.5 * (power_before_ + (this->power_lost_ + more_before_));
-  }
+  void kept_powers(std::span<double> out) const override { out.front() = -power_before_; }
 
   void report(const State<Spatial>& state, std::span<const double> works,
               Columns& columns) const override {
@@ -233,7 +239,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       mine.back().beam = item(part_.global_beam, c.beam);
     }
     persist_cracks(archive, part_, mine);
-    if constexpr (damped) archive.share("power_damping", power_before_);
+    if constexpr (damped) remember_dashpots(archive);
     if (tips_) {
       const TipBeams::Change change = tips_->persist(archive, mine);
       for (const std::int32_t m : change.doomed) mark(this->slot(m) / lanes);
@@ -585,8 +591,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const std::int32_t m = beam_at(b, lane);
       if (m == none) continue;
-      const Crack* const before = crack(m);
-      const Crack* c = before;
+      const Crack* c = crack(m);
       const double passed = kappa(m);
       const bool falls = tips_ && tips_->is_doomed(m);
       if (options_.dynamic && at_tips[lane] > 1 && !falls) {
@@ -601,30 +606,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         growing_.push_back(growth(m, std::sqrt(s2[lane]), state));
         c = &growing_.back().crack;
       }
-      if (c == nullptr) continue;
-      left[lane] = softening(*c, strains(m, state));
-      if (c != before) tell_loss(m, before, left[lane], state);
+      if (c != nullptr) left[lane] = softening(*c, strains(m, state));
     }
     soft_block_ = softened(blocks_[b], left);
     if constexpr (damped) soft_dashpots_ = softened(dashpots_[b], left);
-  }
-
-  /// Adds to more_before_ what the dashpots of beam m would lose more at the present rates with the
-  /// damage before this evaluation.
-  void tell_loss(std::int32_t m, const Crack* before, const Softening& now,
-                 const State<Spatial>& state) {
-    if constexpr (damped) {
-      if (!counts_here(m)) return;
-      const auto [i, j] = item(part_.beams.bodies, m);
-      const BeamStrains<double> e = strains(m, state);
-      const Softening then = before != nullptr ? softening(*before, e) : Softening{};
-      const BeamStress<double> r = rates(constants(m), e, record(state, i), record(state, j));
-      const auto c = this->dashpots(m);
-      more_before_ +=
-          (then.axial - now.axial) * c[0] * r.n * r.n +
-          (then.rest - now.rest) * (c[1] * r.qy * r.qy + c[2] * r.qz * r.qz + c[3] * r.c.x * r.c.x +
-                                    c[4] * r.c.y * r.c.y + c[5] * r.c.z * r.c.z);
-    }
   }
 
   /// Makes a growth of damage history.
@@ -633,6 +618,26 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if (g.crack.broken()) newly_broken_.push_back(g.crack.beam);
     if (!counts_here(g.crack.beam)) return;
     dissipated_ += g.dissipated;
+  }
+
+  /// Saves or loads the forces of dashpots at the start of the last step, which the losses of the
+  /// next step depend on.
+  void remember_dashpots(Archive& archive) {
+    std::vector<std::int32_t> beams;
+    for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
+      if (archive.loading() || counts_here(m)) beams.push_back(m);
+    }
+    std::vector<double> rows;
+    const auto each = [&](auto visit) {
+      for (const std::int32_t m : beams) {
+        for (auto& values : viscous_[this->slot(m) / lanes].values)
+          visit(values[this->slot(m) % lanes]);
+      }
+    };
+    each([&](float value) { rows.push_back(static_cast<double>(value)); });
+    archive.beam_rows("viscous", beams, rows, 6);
+    std::size_t k = 0;
+    each([&](float& value) { value = static_cast<float>(rows[k++]); });
   }
 
   /// Enters a crack. A broken beam has no stiffness, joins a body to itself and goes to the end of
@@ -657,6 +662,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       block.j[lane] = block.i[lane];
       if constexpr (damped) {
         for (auto& values : dashpots_[b].values) values[lane] = 0;
+        for (auto* viscous : {&viscous_, &viscous_now_})  // either may stay where none computes it
+          for (auto& values : (*viscous)[b].values) values[lane] = 0;
       }
       pack(m / group);
     } else {
@@ -716,6 +723,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if constexpr (damped) permute(dashpots_, first, moves);
     permute(strengths_, first, moves);
     permute(limits_, first, moves);
+    if constexpr (damped) permute(viscous_, first, moves), permute(viscous_now_, first, moves);
     if (!further_.empty()) permute(further_, first, moves);
     if (tips_) permute(whole_, first, moves);
     std::array<std::int32_t, group> beams{};
@@ -782,12 +790,13 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       kept_;  ///< in the order of their initiation; statics: at the last commit
   std::vector<std::int32_t> newly_broken_;  ///< local beams, since the last commit
   std::vector<std::array<std::int32_t, 2>> released_;
+  std::vector<ViscousBlock> viscous_;      ///< forces of dashpots at the start of the last step
+  std::vector<ViscousBlock> viscous_now_;  ///< in the last evaluation, a by-product
+  double power_before_ = 0;                ///< of viscous_ at the rates of the last evaluation [W]
   std::vector<LimitBlock> limits_;
   std::vector<std::int32_t> beams_at_;  ///< per slot; empty while no beam has broken
   std::vector<std::uint32_t> live_;     ///< blocks with a beam that is not broken
   bool packed_ = false;                 ///< the order has changed since live_ was made
-  double power_before_ = 0;             ///< lost in dashpots at the last commit [W]
-  double more_before_ = 0;  ///< by the dashpots of the last commit at the present rates [W]
   const LimitBlock unbreakable_ = [] {
     LimitBlock limit;
     limit.values.fill(boundless);

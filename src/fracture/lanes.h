@@ -69,6 +69,26 @@ Lanes block_criterion(const BeamBlock<Frame>& block, const StrengthBlock& streng
       elastic_stress(beam, BeamKernel<kinematics>::strains(beam, j.u - i.u, i.q, j.q)));
 }
 
+/// Section forces of the dashpots of a block [N, N m], in single precision.
+struct alignas(64) ViscousBlock {
+  std::array<std::array<float, lanes>, 6> values{};
+
+  BeamStress<Lanes> get() const {
+    const auto at = [&](std::size_t k) {
+      return Lanes(values[k].data(), std::experimental::element_aligned);
+    };
+    return {at(0), at(1), at(2), {at(3), at(4), at(5)}};
+  }
+  void set(const BeamStress<Lanes>& s) {
+    const std::array<Lanes, 6> all{s.n, s.qy, s.qz, s.c.x, s.c.y, s.c.z};
+    for (std::size_t k = 0; k < all.size(); ++k)
+      all[k].copy_to(values[k].data(), std::experimental::element_aligned);
+  }
+  void take(std::size_t lane, const ViscousBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
+  }
+};
+
 /// What beams may hold before their strength must be looked at: twice the strain energy [J].
 struct alignas(64) LimitBlock {
   std::array<double, lanes> values;
@@ -97,7 +117,8 @@ inline double overload_per_energy(const BeamConstants<double>& beam, const Stren
   return std::max(sigma2, tau2);
 }
 
-/// The strength hook of add_block() for beams that may break.
+/// The strength hook of add_block() for beams that may break. The last three are null without
+/// dashpots.
 template <Criterion kind, class Add>
 struct BreakableBlock {
   const LimitBlock& limit;
@@ -105,7 +126,15 @@ struct BreakableBlock {
   const FurtherBlock* further;  ///< null for Criterion::plain
   bool crushes;                 ///< beams have a compressive strength
   Add add;                      ///< called instead of adding the block; returns the power lost
+  const ViscousBlock* before = nullptr;  ///< forces of dashpots at the start of the last step
+  ViscousBlock* now = nullptr;           ///< receives the present forces of dashpots
+  Lanes* lost_before = nullptr;          ///< sum of the power of `before` at the present rates [W]
 
+  void store(const BeamStress<Lanes>& viscous, const BeamStress<Lanes>& rate,
+             const Lanes& counts) const {
+    *lost_before += counts * power(before->get(), rate);
+    now->set(viscous);
+  }
   bool gives_way(const BeamStress<Lanes>& elastic, const BeamStrains<Lanes>& s) const {
     // The strain energy tells of most blocks that they hold, with half the operations and without
     // the strengths.

@@ -429,7 +429,7 @@ TEST(FractureOfSheets, TheLedgerCloses) {
          .value = fine.error / fine.fracture,
          .reference = 0,
          .tolerance = 2e-2});
-    constexpr double rounding = 1e-6;
+    constexpr double rounding = 1e-6;  // dashpots' forces are kept as floats
     EXPECT_LT(fine.error / fine.fracture, std::max(automatic.error / automatic.fracture, rounding));
     EXPECT_LT(finer.error / finer.fracture, std::max(fine.error / fine.fracture, rounding));
   }
