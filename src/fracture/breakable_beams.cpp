@@ -121,6 +121,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     overloaded_.clear();
     const double* records = state.records.data();
     double* values = wrenches.values.data();
+    const bool far = Base::bodies_are_far(state);
     Lanes lost(0.0), lost_before(0.0);
     for (std::size_t k = 0; k < live_.size(); ++k) {
       const std::size_t b = live_[k],
@@ -130,6 +131,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       if constexpr (damped) {
         prefetch(dashpots_[soon]);
         prefetch(viscous_[soon]);
+      }
+      if (far) {
+        const std::size_t next = std::min(k + Base::blocks_ahead / 2, live_.size() - 1);
+        Base::prefetch_bodies(blocks_[live_[next]], records, values);
       }
       const BeamBlock<Frame>* block = &blocks_[b];
       const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
