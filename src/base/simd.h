@@ -13,6 +13,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <experimental/simd>
+#include <type_traits>
+#include <utility>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -193,11 +195,11 @@ inline void subtract_pair(double* p, detail::Two pair) {
 /// lane.
 /// \param at  function from the lane to the address of its four doubles
 template <class At>
-std::array<Lanes, 4> gather_four(At at) {
+[[gnu::always_inline]] inline std::array<Lanes, 4> gather_four(At at) {
   using namespace detail;
 #if defined(__AVX512F__)
   // Puts pairs of records side by side, so that the lanes come out in order.
-  const auto pair = [&](std::size_t low, std::size_t high) {
+  const auto pair = [&](std::size_t low, std::size_t high) __attribute__((always_inline)) {
     return __builtin_shufflevector(load_row(at(low)), load_row(at(high)), 0, 1, 2, 3, 4, 5, 6, 7);
   };
   const Eight a = pair(0, 2), b = pair(1, 3), c = pair(4, 6), d = pair(5, 7);
@@ -213,7 +215,8 @@ std::array<Lanes, 4> gather_four(At at) {
 #elif defined(__AVX__)
   // Halves of records 0 and 2, and of 1 and 3, side by side: the loads build these, so that one
   // shuffle per result is left.
-  const auto pair = [&](std::size_t low, std::size_t high, std::size_t half) {
+  const auto pair = [&](std::size_t low, std::size_t high, std::size_t half)
+      __attribute__((always_inline)) {
     return __builtin_shufflevector(load_vector<Two>(at(low) + half),
                                    load_vector<Two>(at(high) + half), 0, 1, 2, 3);
   };
@@ -267,8 +270,16 @@ Row row_of(const Pairs& first, const Pairs& second) {
 #endif
 }
 
-/// Transposes four vectors of lanes to four doubles per record. \param rows  one row per lane,
-/// filled
+/// Transposes four vectors of lanes to four doubles per record, and hands them on.
+/// \param put  function called with std::integral_constant of the lane and with its row
+inline void scatter_four(const std::array<Lanes, 4>& in, auto put) {
+  const Pairs first(in[0], in[1]), second(in[2], in[3]);
+  [&]<std::size_t... lane>(std::index_sequence<lane...>) {
+    (put(std::integral_constant<std::size_t, lane>{}, row_of<lane>(first, second)), ...);
+  }
+  (std::make_index_sequence<lanes>{});
+}
+/// The same into an array. \param rows  one row per lane, filled
 inline void scatter_four(const std::array<Lanes, 4>& in, std::array<Row, lanes>& rows) {
   using namespace detail;
 #if defined(__AVX512F__)

@@ -8,16 +8,17 @@
 /// components in world axes would be rounded to 1e-16 of l0.
 ///
 ///     d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
-///     a, b = q_i, q_j with vector parts in T     the triads that the bodies carry, seen from T
-///     r = a* b = (w, v), with the sign for w >= 0
-///     psi = 2 atan2(|v|, w) v/|v|                relative rotation [rad]
-///     m = (a + b)/|a + b|, E = R_m^T e           the chord in the mean triad
-///     Delta = d.(2 (l0, 0, 0) + d)/(l + l0)      elongation [m], exact at any rotation and strain
-///     gamma_y = l0 E_2/l, gamma_z = l0 E_3/l     the chord against the mean triad, as a length [m]
-///     U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2
+///     a, b = q_i, q_j, of the two signs of b that with |b - a| <= |b + a|
+///     tau = Im((a + b)* (b - a))/|a + b|^2       tan(phi/4) about the axis of the relative
+///     rotation psi = 4 atan(|tau|) tau/|tau|              relative rotation [rad], phi = |psi| m =
+///     (a + b)/|a + b|, E = R_m^T e           the chord in the mean triad Delta = d.(2 (l0, 0, 0) +
+///     d)/(l + l0)      elongation [m], exact at any rotation and strain gamma_y = l0 E_2/l,
+///     gamma_z = l0 E_3/l     the chord against the mean triad, as a length [m] U = 1/2 (kn Delta^2
+///     + ksz gamma_y^2 + ksy gamma_z^2
 ///              + kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
 ///
-/// With g = asin|v|/|v| = (phi/2)/sin(phi/2), phi = |psi|:  psi = 2 g v.
+/// With x = |b - a|^2/4 = sin^2(phi/4):  |a + b|^2 = 4 (1 - x), |tau|^2 = x/(1 - x). With
+/// g = (phi/2)/sin(phi/2):  psi = 4 g (1 - x) tau. tau and m have their vector parts in T.
 #pragma once
 
 #include <array>
@@ -78,9 +79,9 @@ struct BeamStrains {
   T l, inverse_l;             ///< present length of the chord [m], and 1/l
   Vec3<T> chord;              ///< E, components of the chord in the mean triad [m]
   Triad<T> mean;              ///< R_m, in the triad at rest
-  Vec3<T> v;                  ///< vector part of the relative rotation
-  T g, h;                     ///< g; h = (1 - g)/|v|^2
-  T half_tau;                 ///< tau/2 = half_tau v, half_tau = 1/(2 (1 + w)) = 1/|a + b|^2
+  Vec3<T> e;                  ///< the chord in the triad at rest [m]
+  Vec3<T> tau;                ///< tan(phi/4) about the axis of the relative rotation
+  T g, h;                     ///< g; h = (1 - g)/|tau|^2
 };
 
 /// Derivative of U with respect to u_j (= minus that to u_i) [N] and to the spins of i and j [N m].
@@ -89,75 +90,113 @@ struct BeamGradient {
   Vec3<T> force, moment_i, moment_j;
 };
 
-/// Functions of s2 = |v|^2 that rotations need: h = (1 - asin(s)/s)/s2 and inverse_sum =
-/// 1/|a + b| = 1/sqrt(2 (1 + w)), with w = sqrt(1 - s2). Below |v| = 0.1 (a relative rotation of 11
-/// degrees) they are summed as series, whose first omitted terms are 1e-17; above it the closed
-/// forms are used.
+/// A relative rotation, by the quaternions a and b of the two ends.
 template <class T>
-struct HalfAngle {
-  T h, inverse_sum;
+struct Between {
+  Quat<T> b;           ///< with the sign for which |b - a| <= |b + a|
+  Quat<T> difference;  ///< b - a
+  T square;            ///< |b - a|^2 = 4 x
+  T h;                 ///< (1 - g)/|tau|^2
 };
+
+/// h as a series in x = square/4. From asin(s)/(s sqrt(1 - s^2)) = sum g_k s^2k, g_k = 4^k k!^2/(2k
+/// + 1)! (Abramowitz & Stegun 4.4.40, times 1/sqrt(1 - s^2); Gradshteyn & Ryzhik 1.645.2), which is
+/// g at s = sin(phi/4):  h = -g_1 - sum (g_k+1 - g_k) x^k. Below series_limit (a relative rotation
+/// of 11 degrees) the first omitted term is 6e-18.
 template <class T>
-HalfAngle<T> half_angle_series(const T& s2) {
-  // Estrin's scheme: a block waits for these sums, and the dependency chain of Horner's scheme
-  // would be twice as long.
-  const T x2 = T(s2 * s2), x4 = T(x2 * x2);
-  const auto sum = [&](double c0, double c1, double c2, double c3, double c4, double c5, double c6,
-                       double c7) {
-    const T low = T(T(c1 * s2) + c0) + T(x2 * T(T(c3 * s2) + c2)),
-            high = T(T(c5 * s2) + c4) + T(x2 * T(T(c7 * s2) + c6));
-    return T(low + T(x4 * high));
-  };
-  // asin(s)/s = sum c_k s^2k, c_k = (2k)!/(4^k k!^2 (2k+1)) (Abramowitz & Stegun 4.4.40)
-  const T arc = sum(1.0 / 6.0, 3.0 / 40.0, 5.0 / 112.0, 35.0 / 1152.0, 63.0 / 2816.0,
-                    231.0 / 13312.0, 143.0 / 10240.0, 6435.0 / 557056.0);
-  // 1/sqrt(2 (1 + sqrt(1 - s2))) = 1/2 C(s2/4)^(1/2), C the generating function of the Catalan
-  // numbers: terms
-  // binomial(2k + 1/2, k)/(4k + 1) (s2/4)^k/2 (Graham, Knuth & Patashnik, (5.60))
-  const T inverse = sum(0.5, 1.0 / 16.0, 7.0 / 256.0, 33.0 / 2048.0, 715.0 / 65536.0,
-                        4199.0 / 524288.0, 52003.0 / 8388608.0, 334305.0 / 67108864.0);
-  return {T(-arc), inverse};
+T remainder_series(const T& square) {
+  // Estrin's scheme: the dependency chain of Horner's scheme would be twice as long.
+  const T square2 = T(square * square);
+  const T low = T(T((2.0 / 60.0) * square) - 2.0 / 3.0),
+          middle = T(T((16.0 / 20160.0) * square) + 8.0 / 1680.0),
+          high = T(T((256.0 / 9225216.0) * square) + 128.0 / 887040.0);
+  return T(low + T(square2 * T(middle + T(square2 * high))));
 }
-inline constexpr double series_limit = 0.01;  ///< of s2
-/// \param w  cosine of half the relative rotation, >= 0
+inline constexpr double series_limit = 0.01;  ///< of Between::square
+
 template <class T>
-HalfAngle<T> half_angle(const T& s2, const T& w) {
-  using std::atan2;
-  using std::sqrt;
-  if (s2 < series_limit) return half_angle_series(s2);
-  const T s = sqrt(s2);
-  return {T(T(1.0 - T(atan2(s, w) / s)) / s2), T(1.0 / sqrt(T(2.0 * T(1.0 + w))))};
+Quat<T> operator-(const Quat<T>& a, const Quat<T>& b) {
+  return {T(a.w - b.w), T(a.x - b.x), T(a.y - b.y), T(a.z - b.z)};
 }
-/// Computes the closed forms in the lanes that need them, one by one: such lanes are rare (a beam
-/// bent by 11 degrees).
-[[gnu::noinline, gnu::cold]] inline void half_angle_one_by_one(const Lanes& s2, const Lanes& w,
-                                                               HalfAngle<Lanes>& f) {
-  for (std::size_t k = 0; k < lanes; ++k) {
-    if (s2[k] < series_limit) continue;
-    const HalfAngle<double> one = half_angle(double(s2[k]), double(w[k]));
-    f.h[k] = one.h;
-    f.inverse_sum[k] = one.inverse_sum;
-  }
-}
-inline HalfAngle<Lanes> half_angle(const Lanes& s2, const Lanes& w) {
-  HalfAngle<Lanes> f = half_angle_series(s2);
-  if (all_of(s2 < series_limit)) [[likely]]
-    return f;
-  half_angle_one_by_one(s2, w, f);
-  return f;
+template <class T>
+T dot(const Quat<T>& a, const Quat<T>& b) {
+  return T(T(a.w * b.w) + T(a.x * b.x)) + T(T(a.y * b.y) + T(a.z * b.z));
 }
 
-/// q and -q are the same rotation: chooses the sign of b, and of r = a* b with it, so that
-/// r.w >= 0.
+/// The relative rotation of the ends' quaternions: of b and -b, which are the same rotation, the
+/// one nearer to a.
 template <class T>
-void take_shorter_way(Quat<T>& b, Quat<T>& r) {
-  const auto sign = sign_of(r.w);
-  for (Quat<T>* q : {&b, &r}) *q = {T(sign * q->w), T(sign * q->x), T(sign * q->y), T(sign * q->z)};
+Between<T> between(const Quat<T>& a, const Quat<T>& b) {
+  using std::atan2;
+  using std::sqrt;
+  Between<T> r;
+  r.b = b;
+  r.difference = b - a;
+  r.square = dot(r.difference, r.difference);
+  if (r.square > 2.0) {
+    r.b = {T(-b.w), T(-b.x), T(-b.y), T(-b.z)};
+    r.difference = r.b - a;
+    r.square = dot(r.difference, r.difference);
+  }
+  r.h = remainder_series(r.square);
+  if (r.square < series_limit) return r;
+  const T sum = T(4.0 - r.square);  // |a + b|^2
+  const T g = T(4.0 * atan2(sqrt(r.square), sqrt(sum))) / sqrt(T(r.square * sum));
+  r.h = T(T(1.0 - g) * sum) / r.square;
+  return r;
 }
-inline void take_shorter_way(Quat<Lanes>& b, Quat<Lanes>& r) {
-  if (none_of(r.w < 0.0)) [[likely]]
-    return;
-  take_shorter_way<Lanes>(b, r);
+/// Computes large turns lane by lane: such lanes are rare (a beam bent by 11 degrees).
+/// \param numbers  a, then b, difference, square and h of Between, which change
+[[gnu::noinline, gnu::cold]] inline void large_turns(std::array<Lanes, 14>& numbers) {
+  for (std::size_t k = 0; k < lanes; ++k) {
+    if (numbers[12][k] < series_limit) continue;
+    const auto at = [&](std::size_t n) { return double(numbers[n][k]); };
+    const Between<double> r =
+        between(Quat<double>{at(0), at(1), at(2), at(3)}, Quat<double>{at(4), at(5), at(6), at(7)});
+    const std::array<double, 10> values{
+        r.b.w,          r.b.x,          r.b.y,          r.b.z,    r.difference.w,
+        r.difference.x, r.difference.y, r.difference.z, r.square, r.h};
+    for (std::size_t n = 0; n < values.size(); ++n) numbers[4 + n][k] = values[n];
+  }
+}
+inline Between<Lanes> between(const Quat<Lanes>& a, const Quat<Lanes>& b) {
+  Between<Lanes> r{b, b - a, {}, {}};
+  r.square = dot(r.difference, r.difference);
+  r.h = remainder_series(r.square);
+  if (!all_of(r.square < series_limit)) [[unlikely]] {
+    // Number by number: what is copied or passed whole lies in memory on the other path too.
+    std::array<Lanes, 14> n{a.w,
+                            a.x,
+                            a.y,
+                            a.z,
+                            r.b.w,
+                            r.b.x,
+                            r.b.y,
+                            r.b.z,
+                            r.difference.w,
+                            r.difference.x,
+                            r.difference.y,
+                            r.difference.z,
+                            r.square,
+                            r.h};
+    large_turns(n);
+    r.b.w = n[4], r.b.x = n[5], r.b.y = n[6], r.b.z = n[7];
+    r.difference.w = n[8], r.difference.x = n[9], r.difference.y = n[10], r.difference.z = n[11];
+    r.square = n[12], r.h = n[13];
+  }
+  return r;
+}
+
+/// The triad of the rotation q/|q|. \param inverse  1/|q|^2
+template <class T>
+Triad<T> triad(const Quat<T>& q, const T& inverse) {
+  const T twice = T(inverse + inverse);
+  const Quat<T> s{T(twice * q.w), T(twice * q.x), T(twice * q.y), T(twice * q.z)};
+  const T xy = T(s.x * q.y), xz = T(s.x * q.z), yz = T(s.y * q.z);
+  const T rest = T(1.0 - T(s.z * q.z)), across = T(1.0 - T(s.x * q.x));
+  return {{T(rest - T(s.y * q.y)), T(xy + T(s.w * q.z)), T(xz - T(s.w * q.y))},
+          {T(xy - T(s.w * q.z)), T(across - T(s.z * q.z)), T(yz + T(s.w * q.x))},
+          {T(xz + T(s.w * q.y)), T(yz - T(s.w * q.x)), T(across - T(s.y * q.y))}};
 }
 
 /// Co-rotational strains (Crisfield 1990, 1997): strains against a triad that moves with the beam.
@@ -168,30 +207,27 @@ BeamStrains<T> corotational_strains(const Constants& beam, const Vec3<T>& d, con
                                     const Quat<T>& qj) {
   using std::sqrt;
   BeamStrains<T> s;
-  const Vec3<T> ai = beam.rest.to_local(Vec3<T>{qi.x, qi.y, qi.z}),
-                bj = beam.rest.to_local(Vec3<T>{qj.x, qj.y, qj.z});
-  const Quat<T> a{qi.w, ai.x, ai.y, ai.z};
-  Quat<T> b{qj.w, bj.x, bj.y, bj.z};
-  Quat<T> r = product(conjugate(a), b);
-  take_shorter_way(b, r);
-  s.v = {r.x, r.y, r.z};
-  const T s2 = dot(s.v, s.v);
-  const HalfAngle<T> f = half_angle(s2, r.w);
-  s.h = f.h;
-  s.g = 1.0 - T(s2 * s.h);
-  s.psi = T(2.0 * s.g) * s.v;
-  s.half_tau = f.inverse_sum * f.inverse_sum;
-  s.mean = triad(Quat<T>{T(f.inverse_sum * T(a.w + b.w)), T(f.inverse_sum * T(a.x + b.x)),
-                         T(f.inverse_sum * T(a.y + b.y)), T(f.inverse_sum * T(a.z + b.z))});
+  const Between<T> r = between(qi, qj);
+  const Quat<T>& m = r.difference;
+  const Quat<T> p{T(qi.w + r.b.w), T(qi.x + r.b.x), T(qi.y + r.b.y), T(qi.z + r.b.z)};
+  const T sum2 = T(4.0 - r.square), inverse2 = T(1.0 / sum2);  // |a + b|^2
+  const Vec3<T> sum{p.x, p.y, p.z}, difference{m.x, m.y, m.z};
+  const Vec3<T> turn = p.w * difference - m.w * sum - cross(sum, difference);
+  s.tau = beam.rest.to_local(inverse2 * turn);
+  s.h = r.h;
+  s.g = 1.0 - T(T(r.square * inverse2) * s.h);
+  s.psi = T(s.g * sum2) * s.tau;
+  const Vec3<T> axis = beam.rest.to_local(sum);
+  s.mean = triad(Quat<T>{p.w, axis.x, axis.y, axis.z}, inverse2);
 
   const Vec3<T> stretch = beam.rest.to_local(d);
-  const Vec3<T> e{T(beam.l0 + stretch.x), stretch.y, stretch.z};
-  s.l = sqrt(dot(e, e));
-  s.chord = s.mean.to_local(e);
-  const T sum = T(s.l + beam.l0);
-  const T both = T(1.0 / T(s.l * sum));  // one division for 1/l and 1/(l + l0)
-  s.inverse_l = both * sum;
-  s.delta = dot(stretch, Vec3<T>{T(beam.l0 + e.x), stretch.y, stretch.z}) * T(both * s.l);
+  s.e = {T(beam.l0 + stretch.x), stretch.y, stretch.z};
+  s.l = sqrt(dot(s.e, s.e));
+  s.chord = s.mean.to_local(s.e);
+  const T lengths = T(s.l + beam.l0);
+  const T both = T(1.0 / T(s.l * lengths));  // one division for 1/l and 1/(l + l0)
+  s.inverse_l = both * lengths;
+  s.delta = dot(stretch, Vec3<T>{T(beam.l0 + s.e.x), stretch.y, stretch.z}) * T(both * s.l);
   const T ratio = T(beam.l0 * s.inverse_l);
   s.gamma_y = ratio * s.chord.y;
   s.gamma_z = ratio * s.chord.z;
@@ -268,12 +304,11 @@ BeamGradient<T> corotational_gradient(const Constants& beam, const BeamStrains<T
       T(T(stress.n - T(T(stretch * inverse) * T(T(qy * s.chord.y) + T(qz * s.chord.z)))) * inverse);
   const Vec3<T> n{T(along * s.chord.x), T(T(along * s.chord.y) + T(stretch * qy)),
                   T(T(along * s.chord.z) + T(stretch * qz))};
-  const Vec3<T> p = cross(n, s.chord);
-  const Vec3<T> q = s.g * c + T(s.h * dot(s.v, c)) * s.v;
-  const Vec3<T> z = q + s.half_tau * cross(s.v, p);
-  const Vec3<T> half = 0.5 * p;
-  return {beam.rest.to_world(s.mean.to_world(n)), beam.rest.to_world(s.mean.to_world(half - z)),
-          beam.rest.to_world(s.mean.to_world(half + z))};
+  const Vec3<T> q = s.g * c + T(s.h * dot(s.tau, c)) * s.tau;
+  const Vec3<T> z = s.mean.to_world(q + 0.5 * cross(s.tau, cross(n, s.chord)));
+  const Vec3<T> force = s.mean.to_world(n), p = cross(force, s.e);  // in the triad at rest
+  return {beam.rest.to_world(force), beam.rest.to_world(0.5 * p - z),
+          beam.rest.to_world(0.5 * p + z)};
 }
 
 /// Rates B v of the co-rotational strains, with the same B as the gradient. In the mean triad, with
@@ -288,14 +323,14 @@ BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
                                  const Vec3<T>& spin_j) {
   const auto local = [&](const Vec3<T>& v) { return s.mean.to_local(beam.rest.to_local(v)); };
   const Vec3<T> d = local(spin_j - spin_i), mean = local(0.5 * (spin_i + spin_j));
-  const Vec3<T> turn = mean - s.half_tau * cross(s.v, d);
+  const Vec3<T> turn = mean - 0.5 * cross(s.tau, d);
   const Vec3<T> chord_rate = local(velocity) - cross(turn, s.chord);
   const T& inverse = s.inverse_l;
   const T stretch_rate = T(dot(s.chord, chord_rate) * inverse);
   const T ratio = T(beam.l0 * inverse);
   return {stretch_rate, T(ratio * T(chord_rate.y - T(T(s.chord.y * inverse) * stretch_rate))),
           T(ratio * T(chord_rate.z - T(T(s.chord.z * inverse) * stretch_rate))),
-          s.g * d + T(s.h * dot(s.v, d)) * s.v};
+          s.g * d + T(s.h * dot(s.tau, d)) * s.tau};
 }
 
 /// Rates of the linear strains; parameters as for corotational_rates().

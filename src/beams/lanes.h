@@ -21,6 +21,12 @@ namespace floe {
 template <template <class> class Frame>
 inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
 
+/// Copies the numbers of a lane from another block.
+template <class Values>
+void copy_lane(Values& to, std::size_t lane, const Values& from, std::size_t other) {
+  for (std::size_t k = 0; k < to.size(); ++k) to[k][lane] = from[k][other];
+}
+
 /// Constants of a block of beams, number by number and lane by lane: frame, l0, six stiffnesses.
 template <template <class> class Frame>
 struct alignas(64) BeamBlock {
@@ -38,6 +44,12 @@ struct alignas(64) BeamBlock {
       for (const double value : {e1.x, e1.y, e1.z, e2.x, e2.y, e2.z, e3.x, e3.y, e3.z}) put(value);
     }
     for (const double value : {c.l0, c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz}) put(value);
+  }
+  /// Takes over the beam in lane `other` of another block.
+  void take(std::size_t lane, const BeamBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
+    i[lane] = from.i[other];
+    j[lane] = from.j[other];
   }
   template <class C, template <class> class Any>
   static BeamConstants<C, Any> with_frame(Any<C> frame, auto at) {
@@ -79,6 +91,10 @@ struct alignas(64) DashpotBlock {
     for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
     counts[lane] = counts_here ? 1.0 : 0.0;
   }
+  void take(std::size_t lane, const DashpotBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
+    counts[lane] = from.counts[other];
+  }
 };
 
 /// Displacements u, velocities v, spins w and rotations q of bodies, one body per lane.
@@ -89,15 +105,18 @@ struct LaneBodies {
 
 /// Loads the records of the given bodies into lanes.
 template <bool with_velocity>
-LaneBodies gather(const double* records, const std::array<std::int32_t, lanes>& bodies) {
-  const auto four = [&](std::size_t offset) {
-    return gather_four([&](std::size_t lane) {
+[[gnu::always_inline]] inline LaneBodies gather(const double* records,
+                                                const std::array<std::int32_t, lanes>& bodies) {
+  const auto four = [&](std::size_t offset) __attribute__((always_inline)) {
+    return gather_four([&](std::size_t lane) __attribute__((always_inline)) {
       return records + static_cast<std::size_t>(bodies[lane]) * Spatial::record + offset;
     });
   };
   const auto [ux, uy, uz, qw] = four(0);
   const auto [qx, qy, qz, vx] = four(4);
-  LaneBodies b{{ux, uy, uz}, {}, {}, {qw, qx, qy, qz}};
+  LaneBodies b;  // what is not asked for stays undefined: zeros would lie in memory
+  b.u = {ux, uy, uz};
+  b.q = {qw, qx, qy, qz};
   if constexpr (with_velocity) {
     const auto [vy, vz, wx, wy] = four(8);
     const auto last = four(12);
@@ -139,7 +158,7 @@ struct Unbreakable {};
 /// \param dashpots  null unless damped
 /// \param records   of the local bodies, Spatial::record doubles each
 /// \param wrenches  of the local bodies, Spatial::wrench doubles each
-/// \param strength  hook of beams that may break: if strength.gives_way(elastic forces), the block
+/// \param strength  hook of beams that may break: if strength.gives_way(forces, strains), the block
 ///                  goes to strength.add() instead; strength.store() gets the forces of dashpots
 /// \returns the power lost in the dashpots of the beams that this rank counts, per lane [W]
 template <Kinematics kinematics, bool damped, template <class> class Frame,
@@ -154,7 +173,7 @@ template <Kinematics kinematics, bool damped, template <class> class Frame,
   const BeamStrains<Lanes> s = Kernel::strains(beam, j.u - i.u, i.q, j.q);
   BeamStress<Lanes> stress = elastic_stress(beam, s);
   if constexpr (!std::is_same_v<Strength, Unbreakable>) {
-    if (strength.gives_way(stress)) [[unlikely]]
+    if (strength.gives_way(stress, s)) [[unlikely]]
       return strength.add();
   }
   Lanes lost(0.0);

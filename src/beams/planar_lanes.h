@@ -90,13 +90,17 @@ struct PlanarLanes : PlanarBeam<kinematics> {
     }
     const PlanarGradient<Lanes> g = Kernel::gradient(beam, s, stress);
     const Lanes zero(0.0);
-    std::array<Row, lanes> on_i, on_j;
-    scatter_four({g.force.x, g.force.y, -g.moment_i, zero}, on_i);
-    scatter_four({-g.force.x, -g.force.y, -g.moment_j, zero}, on_j);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      add_row(wrenches + static_cast<std::size_t>(block.i[lane]) * Planar::wrench, on_i[lane]);
-      add_row(wrenches + static_cast<std::size_t>(block.j[lane]) * Planar::wrench, on_j[lane]);
+    const Pairs force(g.force.x, g.force.y), on_i(-g.moment_i, zero), on_j(g.moment_j, zero);
+    const auto put = [&]<std::size_t lane>() {
+      add_row(wrenches + static_cast<std::size_t>(block.i[lane]) * Planar::wrench,
+              row_of<lane>(force, on_i));
+      subtract_row(wrenches + static_cast<std::size_t>(block.j[lane]) * Planar::wrench,
+                   row_of<lane>(force, on_j));
+    };
+    [&]<std::size_t... lane>(std::index_sequence<lane...>) {
+      (put.template operator()<lane>(), ...);
     }
+    (std::make_index_sequence<lanes>{});
     return lost;
   }
 };

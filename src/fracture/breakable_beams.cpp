@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "base/collectives.h"
 #include "beams/spatial_lanes.h"
@@ -81,12 +84,16 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         damaged_(blocks_.size(), 0),
         crack_of_(part.beams.bodies.size(), none),
         viscous_(damped ? blocks_.size() : 0),
-        viscous_now_(viscous_) {
+        viscous_now_(viscous_),
+        limits_(blocks_.size()) {
     const auto all = strengths(part, options);
+    for (LimitBlock& limit : limits_) limit.values.fill(boundless);
     for (std::size_t m = 0; m < all.size(); ++m) {
       strengths_[m / lanes].set(m % lanes, all[m]);
       if (!further_.empty()) further_[m / lanes].set(m % lanes, whole_further_);
+      set_limit(static_cast<std::int32_t>(m));
     }
+    order_blocks();
     for (std::size_t lane = 0; lane < lanes; ++lane) whole_further_block_.set(lane, whole_further_);
     if (options.propagation == Propagation::energy) {
       if (junctions.facet_of.empty() && !crack_of_.empty())
@@ -117,23 +124,27 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     overloaded_.clear();
     const double* records = state.records.data();
     double* values = wrenches.values.data();
+    const bool far = Base::bodies_are_far(state);
     Lanes lost(0.0), lost_before(0.0);
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const std::size_t soon = std::min(b + Base::blocks_ahead, blocks_.size() - 1);
+    for (std::size_t k = 0; k < live_.size(); ++k) {
+      const std::size_t b = live_[k],
+                        soon = live_[std::min(k + Base::blocks_ahead, live_.size() - 1)];
       prefetch(blocks_[soon]);
-      prefetch(strengths_[soon]);
+      prefetch(limits_[soon]);
       if constexpr (damped) {
         prefetch(dashpots_[soon]);
         prefetch(viscous_[soon]);
       }
+      if (far) {
+        const std::size_t next = std::min(k + Base::blocks_ahead / 2, live_.size() - 1);
+        Base::prefetch_bodies(blocks_[live_[next]], records, values);
+      }
       const BeamBlock<Frame>* block = &blocks_[b];
       const DashpotBlock* dashpots = damped ? &dashpots_[b] : nullptr;
-      const StrengthBlock* strength = &strengths_[b];
-      const FurtherBlock* further = further_of(kind, further_, b);
+      const LimitBlock* limit = &limits_[b];
       const auto take_softened = [&] {
         soften(b, state);
-        block = &soft_block_, dashpots = &soft_dashpots_, strength = &unbreakable_;
-        if constexpr (kind == Criterion::general) further = &unbreakable_further_;
+        block = &soft_block_, dashpots = &soft_dashpots_, limit = &unbreakable_;
       };
       if (damaged_[b] != 0) take_softened();
       bool again = false;
@@ -144,11 +155,12 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
           again = true;
           return Lanes(0.0);
         };
-        lost += add_block<kinematics, damped>(
-            *block, dashpots, records, values,
-            BreakableBlock<kind, decltype(give_way)>{
-                *strength, further, crushes_, give_way, damped ? &viscous_[b] : nullptr,
-                damped ? &viscous_now_[b] : nullptr, &lost_before});
+        lost +=
+            add_block<kinematics, damped>(*block, dashpots, records, values,
+                                          BreakableBlock<kind, decltype(give_way)>{
+                                              *limit, strengths_[b], further_of(kind, further_, b),
+                                              crushes_, give_way, damped ? &viscous_[b] : nullptr,
+                                              damped ? &viscous_now_[b] : nullptr, &lost_before});
       } while (again);
     }
     if constexpr (damped) {
@@ -174,6 +186,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if constexpr (damped) std::swap(viscous_, viscous_now_);
     for (const Growth& g : growing_) take(g);
     growing_.clear();
+    if (std::exchange(packed_, false)) order_blocks();
     dt_ = dt;
     released_.clear();
     for (const std::int32_t m : newly_broken_) {
@@ -237,10 +250,11 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if constexpr (damped) remember_dashpots(archive);
     if (tips_) {
       const TipBeams::Change change = tips_->persist(archive, mine);
-      for (const std::int32_t m : change.doomed) mark(static_cast<std::size_t>(m) / lanes);
+      for (const std::int32_t m : change.doomed) mark(this->slot(m) / lanes);
       if (archive.loading()) set_all_strengths();
     }
     if (archive.loading()) set_cracks(std::move(mine));
+    if (std::exchange(packed_, false)) order_blocks();
   }
 
   std::int64_t folded(const State<Spatial>& state) const override {
@@ -283,8 +297,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const std::size_t m = b * lanes + lane;
-        if (m < crack_of_.size() && crack_of_[m] == none) most = std::max(most, double(s2[lane]));
+        const std::int32_t m = beam_at(b, lane);
+        if (m != none && crack(m) == nullptr) most = std::max(most, double(s2[lane]));
       }
     }
     most = std::sqrt(largest_over_ranks(most, part_.comm));
@@ -297,9 +311,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const std::size_t at = b * lanes + lane;
-        if (at >= crack_of_.size()) continue;
-        const auto m = static_cast<std::int32_t>(at);
+        const std::int32_t m = beam_at(b, lane);
+        if (m == none) continue;
         const Crack* c = crack(m);
         if (c != nullptr && c->broken()) continue;
         const double limit =
@@ -320,19 +333,19 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = whole_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const std::size_t at = b * lanes + lane;
-        if (at >= crack_of_.size()) continue;
-        const auto m = static_cast<std::int32_t>(at);
-        const double s = std::sqrt(s2[lane]), s_tip = overload_of(part_.global_beam[at], at_tips);
+        const std::int32_t m = beam_at(b, lane);
+        if (m == none) continue;
+        const std::int32_t beam = item(part_.global_beam, m);
+        const double s = std::sqrt(s2[lane]), s_tip = overload_of(beam, at_tips);
         if (s_tip > 1 + rounding && s_tip > s) {  // else as elsewhere, by s
           growing_.push_back(growth(m, s, state, true));
-          if (s_tip > worst.value) worst = {s_tip, part_.global_beam[at]};
+          if (s_tip > worst.value) worst = {s_tip, beam};
           continue;
         }
         if (broken(m) || (s <= kappa(m) * (1 + rounding) && !crushes_damaged(m, state))) continue;
         growing_.push_back(growth(m, s, state));
         if (growing_.back().crack.broken() && s / kappa(m) > worst.value)
-          worst = {s / kappa(m), part_.global_beam[at]};
+          worst = {s / kappa(m), beam};
       }
     }
     worst = largest_of_ranks(worst, part_.comm);
@@ -344,6 +357,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       softened = true;
     }
     growing_.clear();
+    if (std::exchange(packed_, false)) order_blocks();
     softened = on_any_rank(softened, part_.comm);
     if (tips_ && worst.index >= 0) follow(tips_->lose(static_cast<std::int32_t>(worst.index)));
     if (worst.index >= 0) return Advance::broke;
@@ -356,6 +370,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     cracks_.clear();
     newly_broken_.clear();
     for (const Crack& c : kept_) put(c);
+    if (std::exchange(packed_, false)) order_blocks();
     if (tips_) {
       tips_->retreat();
       set_all_strengths();
@@ -370,6 +385,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
 
  private:
   static constexpr std::int32_t none = -1;
+  static constexpr double boundless = std::numeric_limits<double>::infinity();
 
   /// Growth of the damage of a beam whose s has passed its kappa in the last evaluation.
   struct Growth {
@@ -431,16 +447,15 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   // -- Tips of cracks; without Propagation::energy there are none.
   /// Strengths at initiation, also of beams at tips.
   Strength<double> whole_strength(std::int32_t m) const {
-    const auto at = static_cast<std::size_t>(m);
-    return (tips_ ? whole_ : strengths_)[at / lanes].get(at % lanes);
+    return (tips_ ? whole_ : strengths_)[this->slot(m) / lanes].get(this->slot(m) % lanes);
   }
   void set_strength(std::int32_t m) {
-    const std::size_t b = static_cast<std::size_t>(m) / lanes,
-                      lane = static_cast<std::size_t>(m) % lanes;
+    const std::size_t b = this->slot(m) / lanes, lane = this->slot(m) % lanes;
     TipBeams::Strengths now{whole_[b].get(lane), whole_further_};
     if (!broken(m) && tips_->weakens(m, now.first)) now = tips_->armed(m, now);
     strengths_[b].set(lane, now.first);
     if (kind_ != Criterion::plain) further_[b].set(lane, now.further);
+    set_limit(m);
   }
   void set_all_strengths() {
     for (std::int32_t m = 0; m < part_.beams.size(); ++m) set_strength(m);
@@ -448,7 +463,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// Takes over what a change of tips means for local beams.
   void follow(const TipBeams::Change& change) {
     for (const std::int32_t m : change.strengths) set_strength(m);
-    for (const std::int32_t m : change.doomed) mark(static_cast<std::size_t>(m) / lanes);
+    for (const std::int32_t m : change.doomed) mark(this->slot(m) / lanes);
   }
   /// s_t of a local beam by the strengths of tips, 0 if it is not at one.
   double stress_at_tip(std::int32_t m, const State<Spatial>& state) const {
@@ -462,8 +477,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Lanes s2 = tip_criterion(b, state);
       for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const auto m = static_cast<std::int32_t>(b * lanes + lane);
-        if (m >= part_.beams.size() || !(s2[lane] > 1)) continue;
+        const std::int32_t m = beam_at(b, lane);
+        if (m == none || !(s2[lane] > 1)) continue;
         if (const double s = stress_at_tip(m, state); s > TipBeams::armed_from)
           all.push_back({s, m});
       }
@@ -582,9 +597,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const Lanes s2 = whole_criterion(b, state), at_tips = tip_criterion(b, state);  // may be armed
     std::array<Softening, lanes> left{};
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t at = b * lanes + lane;
-      if (at >= crack_of_.size()) continue;
-      const auto m = static_cast<std::int32_t>(at);
+      const std::int32_t m = beam_at(b, lane);
+      if (m == none) continue;
       const Crack* c = crack(m);
       const double passed = kappa(m);
       const bool falls = tips_ && tips_->is_doomed(m);
@@ -624,8 +638,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     std::vector<double> rows;
     const auto each = [&](auto visit) {
       for (const std::int32_t m : beams) {
-        for (auto& values : viscous_[static_cast<std::size_t>(m) / lanes].values)
-          visit(values[static_cast<std::size_t>(m) % lanes]);
+        for (auto& values : viscous_[this->slot(m) / lanes].values)
+          visit(values[this->slot(m) % lanes]);
       }
     };
     each([&](float value) { rows.push_back(static_cast<double>(value)); });
@@ -634,8 +648,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     each([&](float& value) { value = static_cast<float>(rows[k++]); });
   }
 
-  /// Enters a crack. A broken beam stays in its block, without stiffness and between a body and
-  /// itself: it costs as much as any other beam and adds nothing.
+  /// Enters a crack. A broken beam has no stiffness, joins a body to itself and goes to the end of
+  /// its group of blocks, of which only the blocks with another beam are computed.
   void put(const Crack& c) {
     const auto m = static_cast<std::size_t>(c.beam);
     std::int32_t& at = crack_of_[m];
@@ -646,35 +660,117 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       item(cracks_, at) = c;
     }
     if (c.broken()) {
-      BeamBlock<Frame>& block = blocks_[m / lanes];
-      BeamConstants<double> nothing = block.get(m % lanes);
+      const std::size_t b = this->slot(c.beam) / lanes, lane = this->slot(c.beam) % lanes;
+      BeamBlock<Frame>& block = blocks_[b];
+      BeamConstants<double> nothing = block.get(lane);
       for (double* k :
            {&nothing.kn, &nothing.ksz, &nothing.ksy, &nothing.kt, &nothing.kby, &nothing.kbz})
         *k = 0;
-      block.set(m % lanes, nothing);
-      block.j[m % lanes] = block.i[m % lanes];
+      block.set(lane, nothing);
+      block.j[lane] = block.i[lane];
       if constexpr (damped) {
-        for (auto& values : dashpots_[m / lanes].values) values[m % lanes] = 0;
+        for (auto& values : dashpots_[b].values) values[lane] = 0;
+        for (auto* viscous : {&viscous_, &viscous_now_})  // either may stay where none computes it
+          for (auto& values : (*viscous)[b].values) values[lane] = 0;
       }
+      pack(m / group);
+    } else {
+      mark(this->slot(c.beam) / lanes);
     }
-    mark(m / lanes);
   }
 
   /// Makes beam m undamaged again.
   void restore(std::int32_t m) {
     this->set(m, beams_);
     item(crack_of_, m) = none;
-    mark(static_cast<std::size_t>(m) / lanes);
+    pack(static_cast<std::size_t>(m) / group);
   }
 
   /// Updates damaged_ of block b.
   void mark(std::size_t b) {
     damaged_[b] = 0;
-    for (std::size_t m = b * lanes; m < std::min((b + 1) * lanes, crack_of_.size()); ++m) {
-      const Crack* c = crack(static_cast<std::int32_t>(m));
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::int32_t m = beam_at(b, lane);
+      if (m == none) continue;
+      const Crack* c = crack(m);
       if (c != nullptr && !c->broken()) damaged_[b] = 1;
-      if (tips_ && tips_->is_doomed(static_cast<std::int32_t>(m))) damaged_[b] = 1;
+      if (tips_ && tips_->is_doomed(m)) damaged_[b] = 1;
     }
+  }
+
+  // -- Order of the beams in the blocks. Beams lie in groups; in each the broken ones come last.
+  // The order follows from which beams are broken, so it is the same after a restart, and bodies
+  // get the shares of their beams in the order of the beams, whatever blocks these lie in.
+  /// Beams of a group: a break moves the beams of its group only.
+  static constexpr std::size_t group = 64;
+
+  /// The beam in a lane of a block; none for the lanes that fill up the last block.
+  std::int32_t beam_at(std::size_t b, std::size_t lane) const {
+    const std::size_t at = b * lanes + lane;
+    if (at >= crack_of_.size()) return none;
+    return beams_at_.empty() ? static_cast<std::int32_t>(at) : beams_at_[at];
+  }
+  /// Puts the broken beams of a group last.
+  void pack(std::size_t g) {
+    if (beams_at_.empty()) {
+      beams_at_.resize(crack_of_.size());
+      std::iota(beams_at_.begin(), beams_at_.end(), 0);
+      this->slots_ = beams_at_;
+    }
+    const std::size_t first = g * group, last = std::min(first + group, crack_of_.size());
+    std::array<std::size_t, group> from{};  // slot in the group that a slot's numbers come from
+    std::size_t to = 0;
+    for (const bool gone : {false, true}) {
+      for (std::size_t m = first; m < last; ++m) {
+        const auto beam = static_cast<std::int32_t>(m);
+        if (broken(beam) == gone) from[to++] = this->slot(beam) - first;
+      }
+    }
+    const std::span<const std::size_t> moves(from.data(), to);
+    permute(blocks_, first, moves);
+    if constexpr (damped) permute(dashpots_, first, moves);
+    permute(strengths_, first, moves);
+    permute(limits_, first, moves);
+    if constexpr (damped) permute(viscous_, first, moves), permute(viscous_now_, first, moves);
+    if (!further_.empty()) permute(further_, first, moves);
+    if (tips_) permute(whole_, first, moves);
+    std::array<std::int32_t, group> beams{};
+    for (std::size_t k = 0; k < to; ++k) beams[k] = beams_at_[first + from[k]];
+    for (std::size_t k = 0; k < to; ++k) {
+      beams_at_[first + k] = beams[k];
+      item(this->slots_, beams[k]) = static_cast<std::int32_t>(first + k);
+    }
+    for (std::size_t b = first / lanes; b * lanes < last; ++b) mark(b);
+    packed_ = true;
+  }
+  /// Moves the numbers of beams between the lanes of the blocks from slot `first` on.
+  /// \param from  per slot: the slot, counted from `first`, whose numbers it gets
+  template <class Block>
+  static void permute(std::vector<Block>& blocks, std::size_t first,
+                      std::span<const std::size_t> from) {
+    std::array<Block, group / lanes> old;
+    std::copy_n(blocks.begin() + static_cast<std::ptrdiff_t>(first / lanes),
+                (from.size() + lanes - 1) / lanes, old.begin());
+    for (std::size_t k = 0; k < from.size(); ++k)
+      blocks[(first + k) / lanes].take(k % lanes, old[from[k] / lanes], from[k] % lanes);
+  }
+  /// Lists the blocks that have a beam which is not broken.
+  void order_blocks() {
+    live_.clear();
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (!broken(beam_at(b, 0))) live_.push_back(static_cast<std::uint32_t>(b));
+    }
+  }
+
+  /// Sets the strain energy from which on the strength of beam m is looked at.
+  void set_limit(std::int32_t m) {
+    constexpr double margin = 0.999;
+    const std::size_t b = this->slot(m) / lanes, lane = this->slot(m) % lanes;
+    const FurtherStrength<double> further =
+        further_.empty() ? FurtherStrength<double>{} : further_[b].get(lane);
+    const double per_energy = overload_per_energy(constants(m), strengths_[b].get(lane),
+                                                  further_.empty() ? nullptr : &further, crushes_);
+    limits_[b].values[lane] = per_energy > 0 ? margin / per_energy : boundless;
   }
 
   /// Enters the cracks of local beams. \param all  cracks of all ranks, with global beams
@@ -705,8 +801,15 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   std::vector<ViscousBlock> viscous_;      ///< forces of dashpots at the start of the last step
   std::vector<ViscousBlock> viscous_now_;  ///< in the last evaluation, a by-product
   double power_before_ = 0;                ///< of viscous_ at the rates of the last evaluation [W]
-  const StrengthBlock unbreakable_{};
-  const FurtherBlock unbreakable_further_{};
+  std::vector<LimitBlock> limits_;
+  std::vector<std::int32_t> beams_at_;  ///< per slot; empty while no beam has broken
+  std::vector<std::uint32_t> live_;     ///< blocks with a beam that is not broken
+  bool packed_ = false;                 ///< the order has changed since live_ was made
+  const LimitBlock unbreakable_ = [] {
+    LimitBlock limit;
+    limit.values.fill(boundless);
+    return limit;
+  }();
   BeamBlock<Frame> soft_block_;  ///< work space of soften()
   DashpotBlock soft_dashpots_;
   std::vector<Growth> growing_;              ///< by-product of the last evaluation, no history

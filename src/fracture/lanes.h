@@ -1,7 +1,10 @@
 /// \file
 /// Strengths of beams in blocks of lanes. The loop over an intact sheet costs one test more per
-/// block; only blocks with an overloaded or damaged beam are treated beam by beam.
+/// block; only blocks with a damaged beam, or one near its strength, are treated beam by beam.
 #pragma once
+
+#include <algorithm>
+#include <array>
 
 #include "beams/lanes.h"
 #include "fracture_laws/law.h"
@@ -15,6 +18,9 @@ struct alignas(64) StrengthBlock {
   void set(std::size_t lane, const Strength<double>& s) {
     const std::array<double, 5> all{s.axial, s.bending_y, s.bending_z, s.shear, s.torsion};
     for (std::size_t k = 0; k < all.size(); ++k) values[k][lane] = all[k];
+  }
+  void take(std::size_t lane, const StrengthBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
   }
   Strength<double> get(std::size_t lane) const {
     const auto at = [&](std::size_t k) { return values[k][lane]; };
@@ -32,6 +38,9 @@ struct alignas(64) FurtherBlock {
 
   void set(std::size_t lane, const FurtherStrength<double>& s) {
     values[0][lane] = s.transverse, values[1][lane] = s.pressure, values[2][lane] = s.friction;
+  }
+  void take(std::size_t lane, const FurtherBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
   }
   FurtherStrength<double> get(std::size_t lane) const {
     return {values[0][lane], values[1][lane], values[2][lane]};
@@ -75,12 +84,44 @@ struct alignas(64) ViscousBlock {
     for (std::size_t k = 0; k < all.size(); ++k)
       all[k].copy_to(values[k].data(), std::experimental::element_aligned);
   }
+  void take(std::size_t lane, const ViscousBlock& from, std::size_t other) {
+    copy_lane(values, lane, from.values, other);
+  }
 };
+
+/// What beams may hold before their strength must be looked at: twice the strain energy [J].
+struct alignas(64) LimitBlock {
+  std::array<double, lanes> values;
+  void take(std::size_t lane, const LimitBlock& from, std::size_t other) {
+    values[lane] = from.values[other];
+  }
+};
+
+/// Bound of s^2 over twice the strain energy [1/J], for beams of these stiffnesses. By Cauchy and
+/// Schwarz sigma^2 <= (sum a_k^2 k_k) (sum F_k^2/k_k) with the factors a_k of the forces F_k in
+/// sigma and their stiffnesses k_k; so tau^2, with the other forces. The criterion of pressed beams
+/// is at most (1 + <-sin phi>)^2 (p^2/4 + tau^2).
+/// \param further  null for Criterion::plain
+inline double overload_per_energy(const BeamConstants<double>& beam, const Strength<double>& s,
+                                  const FurtherStrength<double>* further, bool crushes) {
+  const double weight = further != nullptr ? further->transverse : 1;
+  double sigma2 = s.axial * s.axial * beam.kn + s.bending_y * s.bending_y * beam.kby +
+                  s.bending_z * s.bending_z * beam.kbz;
+  double tau2 = s.shear * s.shear * std::max(beam.ksz, weight * weight * beam.ksy) +
+                s.torsion * s.torsion * beam.kt;
+  if (further != nullptr && crushes) {
+    const double factor = 1 + std::max(0.0, -further->friction);
+    sigma2 *= std::max(1.0, factor * factor * further->pressure * further->pressure);
+    tau2 *= factor * factor;
+  }
+  return std::max(sigma2, tau2);
+}
 
 /// The strength hook of add_block() for beams that may break. The last three are null without
 /// dashpots.
 template <Criterion kind, class Add>
 struct BreakableBlock {
+  const LimitBlock& limit;
   const StrengthBlock& strength;
   const FurtherBlock* further;  ///< null for Criterion::plain
   bool crushes;                 ///< beams have a compressive strength
@@ -94,7 +135,13 @@ struct BreakableBlock {
     *lost_before += counts * power(before->get(), rate);
     now->set(viscous);
   }
-  bool gives_way(const BeamStress<Lanes>& elastic) const {
+  bool gives_way(const BeamStress<Lanes>& elastic, const BeamStrains<Lanes>& s) const {
+    // The strain energy tells of most blocks that they hold, with half the operations and without
+    // the strengths.
+    const Lanes twice = elastic.n * s.delta + elastic.qy * s.gamma_y + elastic.qz * s.gamma_z +
+                        dot(elastic.c, s.psi);
+    if (none_of(twice > load(limit.values.data()))) [[likely]]
+      return false;
     constexpr double nearly = 1 - 1e-9;
     if constexpr (kind == Criterion::plain) {
       return any_of(criterion(strength.get(), elastic) > nearly);

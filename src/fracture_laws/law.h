@@ -19,6 +19,7 @@
 
 #include "base/simd.h"
 #include "beams/kernel.h"
+#include "floe/geometry/polyhedron.h"
 
 namespace floe {
 

@@ -173,11 +173,10 @@ template <bool added>
       leap<Lanes>(block.get(), m, {f[0], f[1], f[2]}, {f[3], g[0], g[1]}, dt);
     }
 
-    std::array<Row, lanes> rows;
     const auto put = [&](std::size_t offset, const std::array<Lanes, 4>& values) {
-      scatter_four(values, rows);
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        store_row(records + lane * n + offset, rows[lane]);
+      scatter_four(values, [&](auto lane, const Row& row) {
+        store_row(records + lane() * n + offset, row);
+      });
     };
     put(0, {m.u.x, m.u.y, m.u.z, m.q.w});
     put(4, {m.q.x, m.q.y, m.q.z, m.v.x});

@@ -10,6 +10,7 @@
 /// second order, without a transcendental function.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "base/simd.h"
@@ -33,44 +34,27 @@ struct BodyMotion {
   Vec3<T> v, w, momentum;
 };
 
-/// 1/(1 + x) for a small x >= 0 by its series, whose first neglected term is 1e-16. A body that
-/// turns by more than 0.04 rad per step needs the division. The results of other bodies in the
-/// lanes must not depend on whether one of them needs it.
+/// Lanes take series in the squares t^2 of the half turns of a step. Where the squares of a body
+/// reach this sum, about 0.02 rad per step, it is computed alone, with closed forms.
 inline constexpr double small_square = 1e-4;
+
+/// 1/(1 + x) for a small x >= 0 by its series, whose first neglected term is 1e-16.
 template <class T>
-T inverse_above_one_series(const T& x) {
+T inverse_above_one(const T& x) {
   return T(1.0 - x) * T(1.0 + T(x * x));
 }
 inline double inverse_above_one(double x) {
-  return x < small_square ? inverse_above_one_series(x) : 1.0 / (1.0 + x);
-}
-inline Lanes inverse_above_one(const Lanes& x) {
-  Lanes value = inverse_above_one_series(x);
-  const auto large = !(x < small_square);
-  if (any_of(large)) [[unlikely]]
-    where(large, value) = 1.0 / (1.0 + x);
-  return value;
+  return x < small_square ? inverse_above_one<double>(x) : 1.0 / (1.0 + x);
 }
 
-/// 1/sqrt(1 + x) for a small x by its series, as above; the first neglected term is 0.2 x^6
-/// (Abramowitz & Stegun 3.6.10).
-inline constexpr double small_excess = 1e-3;
+/// 1/sqrt(1 + x) for a small x by its series, whose first neglected term is 3e-17 (Abramowitz &
+/// Stegun 3.6.10).
 template <class T>
-T inverse_root_series(const T& x) {
-  const T x2 = x * x;
-  const T low = T(1.0 - T(0.5 * x)), middle = T(3.0 / 8.0 - T(5.0 / 16.0 * x)),
-          high = T(35.0 / 128.0 - T(63.0 / 256.0 * x));
-  return low + T(x2 * T(middle + T(x2 * high)));
+T inverse_root(const T& x) {
+  return T(1.0 - T(0.5 * x)) + T(T(x * x) * T(3.0 / 8.0 - T(5.0 / 16.0 * x)));
 }
 inline double inverse_root(double x) {
-  return std::abs(x) < small_excess ? inverse_root_series(x) : 1.0 / std::sqrt(1.0 + x);
-}
-inline Lanes inverse_root(const Lanes& x) {
-  Lanes value = inverse_root_series(x);
-  const auto large = !(abs(x) < small_excess);
-  if (any_of(large)) [[unlikely]]
-    where(large, value) = 1.0 / sqrt(1.0 + x);
-  return value;
+  return std::abs(x) < small_square ? inverse_root<double>(x) : 1.0 / std::sqrt(1.0 + x);
 }
 
 /// Turns the angular momentum l (in principal axes) and the quaternion q (principal axes to world,
@@ -100,19 +84,33 @@ void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
   }
 }
 
-/// Normalises a quaternion whose norm differs from 1 by the rotations of one step only.
+/// |q|^2 - 1 of a quaternion whose norm differs from 1 by the rotations of one step only: of a unit
+/// quaternion, the sum of their t^2 to first order, and not less.
 template <class T>
-Quat<T> unit(const Quat<T>& q) {
-  const T n =
-      inverse_root(T(T(T(q.w * q.w) - 1.0) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z)));
-  return {n * q.w, n * q.x, n * q.y, n * q.z};
+T excess_of(const Quat<T>& q) {
+  return T(T(T(q.w * q.w) - 1.0) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z));
 }
 
-/// Turns a body freely over dt under its angular momentum and sets its angular velocity at the end.
+/// The vector that the unit quaternion (w, u) turns v to: v + 2 w u x v + 2 u x (u x v), which
+/// takes half the operations of a triad where only one vector is turned.
 template <class T>
-void drift_rotation(const BodyConstants<T>& body, BodyMotion<T>& m, double dt) {
-  Quat<T> axes = product(m.q, body.axes);
-  Vec3<T> l = triad(axes).to_local(m.momentum);
+Vec3<T> turned(const T& w, const Vec3<T>& u, const Vec3<T>& v) {
+  const Vec3<T> across = cross(Vec3<T>{T(u.x + u.x), T(u.y + u.y), T(u.z + u.z)}, v);
+  return v + w * across + cross(u, across);
+}
+
+/// Rotation and angular velocity at the end of a drift, and |q|^2 - 1 before q was normalised.
+template <class T>
+struct Drift {
+  Quat<T> q;
+  Vec3<T> w;
+  T excess;
+};
+template <class T>
+Drift<T> drift_of(const BodyConstants<T>& body, const Quat<T>& q, const Vec3<T>& momentum,
+                  double dt) {
+  Quat<T> axes = product(q, body.axes);
+  Vec3<T> l = turned(axes.w, Vec3<T>{T(-axes.x), T(-axes.y), T(-axes.z)}, momentum);
   const Vec3<T>& inverse = body.inverse_inertia;
   const Vec3<T> half{T(T(0.25 * dt) * inverse.x), T(T(0.25 * dt) * inverse.y),
                      T(T(0.5 * dt) * inverse.z)};
@@ -121,9 +119,52 @@ void drift_rotation(const BodyConstants<T>& body, BodyMotion<T>& m, double dt) {
   turn_about<2>(axes, l, half.z);
   turn_about<1>(axes, l, half.y);
   turn_about<0>(axes, l, half.x);
-  axes = unit(axes);
-  m.q = product(axes, conjugate(body.axes));
-  m.w = triad(axes).to_world({inverse.x * l.x, inverse.y * l.y, inverse.z * l.z});
+  const T excess = excess_of(axes), n = inverse_root(excess);
+  axes = {T(n * axes.w), T(n * axes.x), T(n * axes.y), T(n * axes.z)};
+  return {product(axes, conjugate(body.axes)),
+          turned(axes.w, Vec3<T>{axes.x, axes.y, axes.z},
+                 Vec3<T>{T(inverse.x * l.x), T(inverse.y * l.y), T(inverse.z * l.z)}),
+          excess};
+}
+
+/// Turns a body freely over dt under its angular momentum and sets its angular velocity at the end.
+inline void drift_rotation(const BodyConstants<double>& body, BodyMotion<double>& m, double dt) {
+  const Drift<double> d = drift_of(body, m.q, m.momentum, dt);
+  m.q = d.q;
+  m.w = d.w;
+}
+/// Computes the drifts of lanes that turn far, one by one: such lanes are rare.
+/// \param numbers  inverse inertia, axes, rotation and momentum before the drift; then rotation and
+///   angular velocity after it, which change, and Drift::excess
+[[gnu::noinline, gnu::cold]] inline void large_drifts(std::array<Lanes, 22>& numbers, double dt) {
+  for (std::size_t k = 0; k < lanes; ++k) {
+    if (numbers[21][k] < small_square) continue;
+    const auto at = [&](std::size_t n) { return double(numbers[n][k]); };
+    const auto vector = [&](std::size_t n) { return Vec3<double>{at(n), at(n + 1), at(n + 2)}; };
+    const auto turn = [&](std::size_t n) {
+      return Quat<double>{at(n), at(n + 1), at(n + 2), at(n + 3)};
+    };
+    const Drift<double> d = drift_of({0, vector(0), turn(3)}, turn(7), vector(11), dt);
+    const std::array<double, 7> values{d.q.w, d.q.x, d.q.y, d.q.z, d.w.x, d.w.y, d.w.z};
+    for (std::size_t n = 0; n < values.size(); ++n) numbers[14 + n][k] = values[n];
+  }
+}
+inline void drift_rotation(const BodyConstants<Lanes>& body, BodyMotion<Lanes>& m, double dt) {
+  Drift<Lanes> d = drift_of(body, m.q, m.momentum, dt);
+  if (!all_of(d.excess < small_square)) [[unlikely]] {
+    // Number by number: what is copied or passed whole lies in memory on the other path too.
+    const Vec3<Lanes>& inverse = body.inverse_inertia;
+    std::array<Lanes, 22> n{inverse.x,   inverse.y,    inverse.z,    body.axes.w,  body.axes.x,
+                            body.axes.y, body.axes.z,  m.q.w,        m.q.x,        m.q.y,
+                            m.q.z,       m.momentum.x, m.momentum.y, m.momentum.z, d.q.w,
+                            d.q.x,       d.q.y,        d.q.z,        d.w.x,        d.w.y,
+                            d.w.z,       d.excess};
+    large_drifts(n, dt);
+    d.q.w = n[14], d.q.x = n[15], d.q.y = n[16], d.q.z = n[17];
+    d.w.x = n[18], d.w.y = n[19], d.w.z = n[20];
+  }
+  m.q = d.q;
+  m.w = d.w;
 }
 
 /// Kick and drift of a free body.

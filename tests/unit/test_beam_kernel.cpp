@@ -445,26 +445,39 @@ TEST(BeamKernel, LinearIsTheLimitOfSmallMotions) {
       1e-14);
 }
 
-/// (1 - asin(s)/s)/s^2 by its series to the last bit below 0.5, by its closed form above.
-Real reference_asin_remainder(Real s) {
-  if (s > 0.5L) return (1 - std::atan2(s, std::sqrt((1 - s) * (1 + s))) / s) / (s * s);
-  Real sum = 0, term = 1.0L / 6, odd = 3;  // term of s^(odd - 3)
-  for (int k = 0; k < 100; ++k) {
+/// (1 - g)/tan^2(phi/4), g = (phi/2)/sin(phi/2), s = sin(phi/4): by the series of asin(s)/(s sqrt(1
+/// - s^2)), whose terms have the ratios 2 k/(2 k + 1) s^2, to the last bit below 0.5, by its closed
+/// form above.
+Real reference_remainder(Real s) {
+  const Real cosine = std::sqrt((1 - s) * (1 + s));
+  if (s > 0.5L) return (1 - std::atan2(s, cosine) / (s * cosine)) * (cosine / s) * (cosine / s);
+  Real sum = 0, term = 2.0L / 3;  // term of s^(2 k), over s^2
+  for (int k = 1; k < 200; ++k) {
     sum += term;
-    odd += 2;
-    term *= s * s * (odd - 2) * (odd - 2) / ((odd - 1) * odd);
+    term *= s * s * (2 * k + 2) / (2 * k + 3);
   }
-  return -sum;
+  return -(1 - s * s) * sum;
 }
 
-TEST(HalfAngle, SeriesAndClosedFormsAgreeAtTheSwitch) {
-  for (const double s : {1e-200, 1e-9, 1e-3, 0.05, 0.0999, 0.1 * (1 - 1e-15), 0.1 * (1 + 1e-15),
-                         0.1001, 0.3, 0.6, 0.99, 1 - 1e-12, 1.0}) {
-    const HalfAngle<double> seen = half_angle(s * s, std::sqrt((1 - s) * (1 + s)));
-    const auto expected = static_cast<double>(reference_asin_remainder(s));
-    EXPECT_NEAR(seen.h / expected, 1, s < 0.1 ? 1e-15 : 3e-13) << s;
-    const Real w = std::sqrt((1 - Real(s)) * (1 + Real(s)));
-    EXPECT_NEAR(seen.inverse_sum * static_cast<double>(std::sqrt(2 * (1 + w))), 1, 4e-16) << s;
+TEST(BetweenEnds, SeriesAndClosedFormsAgreeAtTheSwitch) {
+  const Real at_switch = 0.05L;  // |b - a|^2 = 4 s^2 = series_limit
+  test::Random random(4);
+  for (const Real s : {1e-150L, 1e-9L, 1e-3L, 0.02L, 0.0499L, at_switch * (1 - 1e-15L),
+                       at_switch * (1 + 1e-15L), 0.0501L, 0.15L, 0.3L, 0.6L, 0.7L, 0.707L}) {
+    const Real half_cosine = 1 - 2 * s * s, half_sine = 2 * s * std::sqrt((1 - s) * (1 + s));
+    const Vec3<double> axis = random.direction();
+    const Quat<double> a{1, 0, 0, 0};
+    const Quat<double> b{double(half_cosine), double(half_sine * axis.x),
+                         double(half_sine * axis.y), double(half_sine * axis.z)};
+    for (const double sign : {1.0, -1.0}) {
+      if (half_cosine < 1e-9L && sign < 0) continue;  // half a turn: both ways are as long
+      const Between<double> seen =
+          between(a, Quat<double>{sign * b.w, sign * b.x, sign * b.y, sign * b.z});
+      EXPECT_EQ(seen.b.x, b.x) << double(s);
+      EXPECT_NEAR(seen.square / double(4 * s * s), 1, 2e-15) << double(s);
+      EXPECT_NEAR(seen.h / double(reference_remainder(s)), 1, s < at_switch ? 1e-15 : 3e-13)
+          << double(s);
+    }
   }
 }
 

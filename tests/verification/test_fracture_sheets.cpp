@@ -2,12 +2,15 @@
 // falls in two, statics up to and past failure.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "fracture/lanes.h"
 #include "fracture_laws/crack_tips.h"
+#include "lattice/permute.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
 #include "support/random.h"
@@ -316,6 +319,100 @@ TEST(FractureOfSheets, IntactBreakableBeamsAreBeams) {
   }
   EXPECT_GT(size, 0);
   EXPECT_LT(difference, 1e-14 * size);
+}
+
+/// Moves bodies apart in strips of 3 m, or all a little at random.
+State<Spatial> moved(const Lattice& lattice, double apart, double random_size) {
+  State<Spatial> state(lattice.bodies.position.size());
+  test::Random random(5);
+  for (std::size_t b = 0; b < lattice.bodies.position.size(); ++b) {
+    double* r = state.record(b);
+    r[0] = apart * std::floor(lattice.bodies.position[b][0] / 3);
+    for (int k = 0; k < 3; ++k) r[k] += random.uniform(-random_size, random_size);
+    const Quat<double> q = random.rotation(random_size);
+    r[3] = q.w, r[4] = q.x, r[5] = q.y, r[6] = q.z;
+    for (int k = 7; k < 13; ++k) r[k] = random_size * random.uniform(-1, 1);
+  }
+  return state;
+}
+
+/// Beams that have broken move to the ends of their groups of blocks. The others do what they do in
+/// a lattice that never had the broken ones, bit for bit, since each body sums its beams in their
+/// order.
+TEST(FractureOfSheets, BrokenBeamsLeaveNoTrace) {
+  Lattice lattice = test::sheet(24, 18, 1);
+  reorder(lattice);
+  BeamOptions beams;
+  beams.damping_ratio = 0.3;
+  for (const double crushing : {0.0, 4e6}) {  // both criteria
+    const FractureOptions options{.compressive_strength = crushing,
+                                  .propagation = Propagation::strength};
+    const Part part = partition(lattice, PETSC_COMM_SELF);
+    const auto torn = make_breakable_beams(part, beams, options);
+    const State<Spatial> apart = moved(lattice, 0.5, 0), later = moved(lattice, 0, 1e-6);
+    Wrenches<Spatial> found(apart.records.size() / Spatial::record);
+    torn.force->add(apart, found);
+    torn.force->roles().commits->commit(apart, 1e-5);
+    std::vector<std::int32_t> left;
+    for (std::int32_t m = 0; m < part.beams.size(); ++m) {
+      const double damage = torn.fracture->damage(m);
+      EXPECT_TRUE(damage == 0 || damage == 1);
+      if (damage == 0) left.push_back(m);
+    }
+    ASSERT_GT(left.size(), part.beams.bodies.size() / 3);
+    ASSERT_LT(left.size(), part.beams.bodies.size() - 100);
+
+    Lattice less = lattice;
+    permute(less.beams, left);
+    const Part part_less = partition(less, PETSC_COMM_SELF);
+    const auto whole = make_breakable_beams(part_less, beams, options);
+    Wrenches<Spatial> expected = Wrenches<Spatial>(found.values.size() / Spatial::wrench);
+    std::fill(found.values.begin(), found.values.end(), 0.0);
+    torn.force->add(later, found);
+    whole.force->add(later, expected);
+    double size = 0;
+    for (std::size_t k = 0; k < found.values.size(); ++k) {
+      EXPECT_EQ(found.values[k], expected.values[k]);
+      size = std::max(size, std::abs(found.values[k]));
+    }
+    EXPECT_GT(size, 0);
+    const std::vector<BeamSection> all = torn.force->sections(later),
+                                   some = whole.force->sections(later);
+    for (std::size_t k = 0; k < left.size(); ++k)
+      EXPECT_EQ(all[static_cast<std::size_t>(left[k])], some[k]);
+  }
+}
+
+/// The strain energy from which on strengths are looked at misses no beam: whatever the forces, s^2
+/// is at most the energy times its bound, and reaches it.
+TEST(FractureOfSheets, TheBoundByTheEnergyHoldsAndIsReached) {
+  test::Random random(6);
+  for (const bool crushes : {false, true}) {
+    double nearest = 0;
+    for (int repeat = 0; repeat < 20000; ++repeat) {
+      const auto positive = [&] { return random.uniform(0.2, 2); };
+      BeamConstants<double> beam{};
+      beam.kn = positive(), beam.ksz = positive(), beam.ksy = positive();
+      beam.kt = positive(), beam.kby = positive(), beam.kbz = positive();
+      const Strength<double> s{positive(), positive(), positive(), positive(), positive()};
+      const FurtherStrength<double> further{positive(), positive(), random.uniform(-0.9, 0.9)};
+      const auto any = [&] { return random.uniform(-1, 1) * (random.uniform(0, 1) < 0.5 ? 0 : 1); };
+      const BeamStress<double> strain{any(), any(), any(), {any(), any(), any()}};
+      const BeamStress<double> force{
+          beam.kn * strain.n,
+          beam.ksz * strain.qy,
+          beam.ksy * strain.qz,
+          {beam.kt * strain.c.x, beam.kby * strain.c.y, beam.kbz * strain.c.z}};
+      const double twice = 2 * damage_energy(force, strain).whole();
+      const Criteria<double> s2 = criteria(s, further, force, crushes);
+      const double bound = twice * overload_per_energy(beam, s, &further, crushes);
+      EXPECT_LE(std::max(s2.tension, s2.pressure), bound * (1 + 1e-12));
+      EXPECT_LE(criterion(s, force),
+                twice * overload_per_energy(beam, s, nullptr, false) * (1 + 1e-12));
+      if (bound > 0) nearest = std::max(nearest, std::max(s2.tension, s2.pressure) / bound);
+    }
+    EXPECT_GT(nearest, 0.9);
+  }
 }
 
 TEST(FractureOfSheets, TheLedgerCloses) {
