@@ -298,9 +298,9 @@ def draw(case, rows, file):
     figure, panels = plt.subplots(2, 2, figsize=(9.5, 7.6), sharex=True)
     knobs = list(dict.fromkeys(row["variant"].knob for row in rows))
     for axes, name in zip(panels.flat, shown):
-        band = 100 * rows[0]["changes"][name][2]
-        axes.axhspan(-band, band, color="#8a949e", alpha=0.25, linewidth=0,
-                     label="scatter of the seeds")
+        band = rows[0]["changes"][name][2]
+        axes.axhspan(100 * np.expm1(-band), 100 * np.expm1(band), color="#8a949e", alpha=0.25,
+                     linewidth=0, label="scatter of the seeds")
         axes.axhline(0, color="black", linewidth=0.6)
         for knob, marker in zip(knobs, "*os^Dvp<>"):
             mine = [row for row in rows if row["variant"].knob == knob]
