@@ -91,8 +91,8 @@ def cases():
 # -- loads
 # -----------------------------------------------------------------------------------------
 def load_of(folder, obstacle):
-    """The load along x: ends of intervals of ROWS [s], mean forces over them [N]. Rows hold the mean
-    force since the start, which times the time is the impulse; it is taken as linear between them.
+    """The load along x: ends of intervals of ROWS [s], mean forces over them [N]. Rows hold the
+    mean force since the start, which times the time is the impulse; it is linear between them.
     """
     rows = rows_of(folder)
     time = np.array([float(row["time"]) for row in rows])

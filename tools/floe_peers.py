@@ -1,18 +1,18 @@
 """floe beside Yade, Debian's package, on the same machine in one run (tools/bench --peers).
 
 Two scenes that both can do:
-  lattice    a sheet of some 1,460 elements joined by beams, undamped, nothing else acting. floe: the
-             sheet of input/bench/explicit.yaml as a spatial model. Yade: equal spheres on a regular
-             triangular lattice, each joined to its neighbours by bonds that stretch, shear, bend and
-             twist (CohFrictMat, Law2_ScGeom6D_CohFrictPhys_CohesionMoment)
+  lattice    a sheet of some 1,460 elements joined by beams, undamped, nothing else acting. floe:
+             the sheet of input/bench/explicit.yaml as a spatial model. Yade: equal spheres on a
+             regular triangular lattice, each joined to its neighbours by bonds that stretch, shear,
+             bend and twist (CohFrictMat, Law2_ScGeom6D_CohFrictPhys_CohesionMoment)
   polyhedra  boxes of ice, 1 x 1 x 0.5 m, turned at random, fall on a floor between four walls and
              settle there. Both take the same boxes, places, density, contact stiffness per volume
-             of overlap, friction and step. floe: contact by the overlap's volume. Yade: PolyhedraMat,
-             Law2_PolyhedraGeom_PolyhedraPhys_Volumetric
+             of overlap, friction and step. floe: contact by the overlap's volume. Yade:
+             PolyhedraMat, Law2_PolyhedraGeom_PolyhedraPhys_Volumetric
 Both steps are explicit, and both programs run on the same number of cores: floe by ranks, Yade by
-threads. A time is the processor's (user and system) over the number of cores, which is the clock's on
-an idle machine and less on a busy one: Yade's of its stepping loop, floe's of a run less that of the
-same scene with -check; per bond and step, per box and step.
+threads. A time is the processor's (user and system) over the number of cores, which is the clock's
+on an idle machine and less on a busy one: Yade's of its stepping loop, floe's of a run less that of
+the same scene with -check; per bond and step, per box and step.
 Yade's numerical damping is off in the lattice, and so are floe's dashpots; in the pile both lose
 energy (Yade 0.3 of its numerical damping, floe restitution 0.3)."""
 import json
@@ -38,7 +38,8 @@ DENSITY = 920.0    # [kg/m^3]
 
 HOW_TO = "Yade is not installed; on Debian: apt-get install yade"
 
-LATTICE = '''# Written by tools/bench --peers: a sheet of bonded spheres in Yade. yade -n -x -j1 lattice.py
+LATTICE = '''# Written by tools/bench --peers: a sheet of bonded spheres in Yade.
+# yade -n -x -j1 lattice.py
 import json
 import math
 import random
@@ -62,7 +63,8 @@ O.engines = [
     InsertionSortCollider([Bo1_Sphere_Aabb()]),
     InteractionLoop(
         [Ig2_Sphere_Sphere_ScGeom6D()],
-        [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True, setCohesionOnNewContacts=False)],
+        [Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(setCohesionNow=True,
+                                                  setCohesionOnNewContacts=False)],
         [Law2_ScGeom6D_CohFrictPhys_CohesionMoment(always_use_moment_law=True)]),
     NewtonIntegrator(damping=0, gravity=(0, 0, 0)),
 ]
@@ -77,7 +79,8 @@ print("PEER " + json.dumps({{"elements": len(O.bodies), "bonds": bonds, "bonds_a
                             "steps": STEPS, "seconds": spent}}))
 '''
 
-POLYHEDRA = '''# Written by tools/bench --peers: boxes fall on a floor in Yade. yade -n -x -j1 polyhedra.py
+POLYHEDRA = '''# Written by tools/bench --peers: boxes fall on a floor in Yade.
+# yade -n -x -j1 polyhedra.py
 import json
 import time
 
@@ -128,7 +131,7 @@ def wall_of(columns):
 
 
 def write_scripts(folder, columns, end, rows=41, wide=36, steps=1000):
-    """Writes the scripts of Yade and what they read, and the scene of floe's pile, into a folder."""
+    """Writes Yade's scripts and what they read, and the scene of floe's pile, into a folder."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "lattice.py").write_text(LATTICE.format(rows=rows, columns=wide, steps=steps))
@@ -192,7 +195,8 @@ def best(values):
 
 def table(times):
     """Markdown rows from times[case] = {unit, floe: [...], yade: [...], what}."""
-    rows = ["| scene | | floe | Yade | ratio of the minima, of the medians |", "|---|---|---|---|---|"]
+    rows = ["| scene | | floe | Yade | ratio of the minima, of the medians |",
+            "|---|---|---|---|---|"]
     for case, found in times.items():
         ours, theirs = found["floe"], found["yade"]
         ratios = (min(theirs) / min(ours), statistics.median(theirs) / statistics.median(ours))
