@@ -38,6 +38,12 @@ DENSITY = 920.0    # [kg/m^3]
 
 HOW_TO = "Yade is not installed; on Debian: apt-get install yade"
 
+# Of the page that --write writes.
+WHAT = ("Lattice: an undamped sheet; floe joins convex bodies by co-rotational Timoshenko beams, Yade",
+        "spheres by bonds that stretch, shear, bend and twist (CohFrictMat, ScGeom6D). Polyhedra: the",
+        "same boxes turned at random fall on a floor between walls, with the same stiffness per",
+        "volume of overlap, friction and step (1e-3 s).")
+
 LATTICE = '''# Written by tools/bench --peers: a sheet of bonded spheres in Yade.
 # yade -n -x -j1 lattice.py
 import json
@@ -248,8 +254,8 @@ def benchmark(floe, root, folder, environment, cores, repeats, columns=(5, 5, 4)
         boxes["yade"].append(1e6 * peer["seconds"] / cores / peer["steps"] / peer["elements"])
         boxes |= {"unit": "us", "what": f"per box and step: {run['bodies']} boxes, "
                   f"{run['contacts']} contacts at the end; {peer['elements']}, {peer['contacts']}"}
-    level = run["built_for"]
-    return [f"Yade {version_of_yade()}; floe for {level}; {cores} core{'s' * (cores > 1)}, "
-            f"{repeats} runs of each in turn, minimum / median of the processor's time over the "
-            "cores.", "",
+    return [f"Yade {version_of_yade()} as Debian compiles it, for any x86-64; floe for "
+            f"{run['built_for']} (what its level is worth: `tools/bench levels`).",
+            f"{cores} core{'s' * (cores > 1)}, {repeats} runs of each in turn; minimum / median of "
+            "the processor's time over the cores.", "", *WHAT, "",
             *table({"lattice": lattice, "polyhedra": boxes})]
