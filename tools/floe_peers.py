@@ -39,10 +39,10 @@ DENSITY = 920.0    # [kg/m^3]
 HOW_TO = "Yade is not installed; on Debian: apt-get install yade"
 
 # Of the page that --write writes.
-WHAT = ("Lattice: an undamped sheet; floe joins convex bodies by co-rotational Timoshenko beams, Yade",
-        "spheres by bonds that stretch, shear, bend and twist (CohFrictMat, ScGeom6D). Polyhedra: the",
-        "same boxes turned at random fall on a floor between walls, with the same stiffness per",
-        "volume of overlap, friction and step (1e-3 s).")
+WHAT = ("Lattice: an undamped sheet; floe joins convex bodies by co-rotational Timoshenko beams,",
+        "Yade spheres by bonds that stretch, shear, bend and twist (CohFrictMat, ScGeom6D).",
+        "Polyhedra: the same boxes turned at random fall on a floor between walls, with the same",
+        "stiffness per volume of overlap, friction and step (1e-3 s).")
 
 LATTICE = '''# Written by tools/bench --peers: a sheet of bonded spheres in Yade.
 # yade -n -x -j1 lattice.py
