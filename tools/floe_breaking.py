@@ -267,7 +267,8 @@ COLUMNS = ("mean", "filtered", "rms 0", "rms 0.5", "rms 5", "centroid")
 
 
 def percent(value, own):
-    return f"{100 * np.expm1(value):+.0f} ± {100 * own:.0f} %"
+    """A change of a logarithm and its standard error as a change of the number."""
+    return f"{100 * np.expm1(value):+.0f} ± {100 * np.exp(value) * own:.0f} %"
 
 
 def table(case, rows, about):
@@ -316,9 +317,10 @@ def draw(case, rows, file):
         axes.axhline(0, color="black", linewidth=0.6)
         for knob, marker in zip(knobs, "*os^Dvp<>"):
             mine = [row for row in rows if row["variant"].knob == knob]
-            container = axes.errorbar([row["time"] for row in mine],
-                                      [100 * np.expm1(row["changes"][name][0]) for row in mine],
-                                      [100 * row["changes"][name][1] for row in mine], fmt=marker,
+            value, own = np.transpose([row["changes"][name][:2] for row in mine])
+            middle = np.expm1(value)
+            bars = 100 * np.array([middle - np.expm1(value - own), np.expm1(value + own) - middle])
+            container = axes.errorbar([row["time"] for row in mine], 100 * middle, bars, fmt=marker,
                                       markersize=6, linewidth=0.9, capsize=2, label=knob)
             for row in mine:
                 if row["variant"] != REFERENCE:
