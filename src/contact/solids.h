@@ -69,9 +69,8 @@ class Solids {
   double size(std::int32_t body) const { return item(bodies_, body).size; }
   /// Returns the mass of a body [kg].
   double mass(std::int32_t body) const { return item(bodies_, body).mass; }
-  /// Returns the inverse mass and moments of inertia of a body with the density of its shape, times
-  /// the factor on the moments; zeros
-  /// for an obstacle.
+  /// Returns the inverse mass and moments of inertia of a body with the density of its shape, the
+  /// moments times their factor; zeros for an obstacle.
   InverseInertia inverse_inertia(std::int32_t index) const {
     return is_obstacle(index) ? InverseInertia{} : item(bodies_, index).inverse;
   }
