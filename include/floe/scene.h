@@ -57,6 +57,7 @@ struct Scene {
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
   Planarity planar = Planarity::automatic;
+  double inertia_factor = 1;  ///< by which the moments of inertia of all bodies are multiplied
   struct {
     bool beam = false, fracture = false, gravity = false, buoyancy = false, drag = false,
          contact = false;

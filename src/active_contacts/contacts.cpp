@@ -16,7 +16,7 @@ void write_sums(const ActiveContacts& active, std::span<ContactWrench> wrenches)
 Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
                    std::vector<BodyPair> joined, const ContactOptions& options,
                    std::vector<Obstacle> obstacles)
-    : solids_(shapes, masses, std::move(obstacles)),
+    : solids_(shapes, masses, std::move(obstacles), options.inertia_factor),
       options_(options),
       law_(law_of(options)),
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free),

@@ -49,8 +49,8 @@ Solids::Faces faces_of(const Shapes& shapes, std::int32_t body) {
 }  // namespace
 
 Solids::Solids(const Shapes& shapes, std::span<const double> masses,
-               std::vector<Obstacle> obstacles)
-    : shapes_(shapes), obstacles_(std::move(obstacles)) {
+               std::vector<Obstacle> obstacles, double inertia_factor)
+    : shapes_(shapes), obstacles_(std::move(obstacles)), inertia_factor_(inertia_factor) {
   Graphs graphs;
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
     add(b, item(masses, b), graphs);
@@ -102,7 +102,9 @@ void Solids::add(std::int32_t body, double mass, Graphs& known) {
   added.size = std::cbrt(properties.volume);
   added.mass = mass;
   const double per_density = properties.volume / mass;
-  const auto inverse = [&](std::size_t k) { return per_density / properties.inertia[4 * k]; };
+  const auto inverse = [&](std::size_t k) {
+    return per_density / (inertia_factor_ * properties.inertia[4 * k]);
+  };
   added.inverse = {.mass = 1 / mass, .moments = {inverse(0), inverse(1), inverse(2)}};
   bodies_.push_back(added);
   bodies_.back().width = least_width(vertices(body), planes(body));

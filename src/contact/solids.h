@@ -26,7 +26,9 @@ class Solids {
   /// \param shapes     of all bodies, in their principal axes
   /// \param masses     of all bodies [kg]
   /// \param obstacles  may be empty
-  Solids(const Shapes& shapes, std::span<const double> masses, std::vector<Obstacle> obstacles);
+  /// \param inertia_factor  moments of inertia over those of the shapes
+  Solids(const Shapes& shapes, std::span<const double> masses, std::vector<Obstacle> obstacles,
+         double inertia_factor = 1);
 
   std::int32_t bodies() const { return shapes_.bodies(); }
   const Shapes& shapes() const { return shapes_; }
@@ -67,8 +69,8 @@ class Solids {
   double size(std::int32_t body) const { return item(bodies_, body).size; }
   /// Returns the mass of a body [kg].
   double mass(std::int32_t body) const { return item(bodies_, body).mass; }
-  /// Returns the inverse mass and moments of inertia of a body with the density of its shape; zeros
-  /// for an obstacle.
+  /// Returns the inverse mass and moments of inertia of a body with the density of its shape, the
+  /// moments times their factor; zeros for an obstacle.
   InverseInertia inverse_inertia(std::int32_t index) const {
     return is_obstacle(index) ? InverseInertia{} : item(bodies_, index).inverse;
   }
@@ -120,6 +122,7 @@ class Solids {
 
   Shapes shapes_;
   std::vector<Obstacle> obstacles_;
+  double inertia_factor_;
   std::vector<double> coordinates_;
   std::vector<EdgeGraph> graphs_;  ///< different ones: most bodies share one with others
   std::vector<HalfSpace> planes_;

@@ -18,6 +18,9 @@ constexpr std::array table{
         "model: planar", choice, "auto", "", "auto | true | false",
         "three unknowns per body where nothing loads, moves or prescribes anything out of the "
         "x-y plane; true: an error where something does, false: always six"},
+    OptionSpec{"model: rotational_inertia_factor", number, "1", "", ">= 1, <= 4",
+               "explicit: all moments of inertia of the bodies times this, for a longer stable "
+               "step; what rests stays as it is, what vibrates or tumbles becomes slower"},
     OptionSpec{"forces", choices, "(required)", "",
                "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},

@@ -49,18 +49,21 @@ void read_time(Options& options, Scene& scene) {
 void read_dynamics(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::quasistatic) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
-    for (const auto* key :
-         {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "time: safety",
-          "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
+    for (const auto* key : {"initial", "limit: velocity", "limit: energy_error", "checkpoint",
+                            "time: safety", "time: allow_unstable", "beam: damping_ratio",
+                            "beam: damping_modes", "model: rotational_inertia_factor"})
       options.refuse(key, why);
     return;
   }
   if (scene.integrator == Integrator::implicit) {
     for (const auto* key : {"time: safety", "time: allow_unstable"})
       options.refuse(key, "would have no effect: 'integrator' is implicit, any step is stable");
+    options.refuse("model: rotational_inertia_factor",
+                   "would gain nothing: 'integrator' is implicit, any step is stable");
   } else {
     scene.time.safety = options.number("time: safety");
     scene.time.allow_unstable = options.flag("time: allow_unstable");
+    scene.inertia_factor = options.number("model: rotational_inertia_factor");
   }
   scene.checkpoint.every = options.number("checkpoint: every");
   scene.checkpoint.at_end = options.given_section("checkpoint");

@@ -119,6 +119,9 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   std::iota(all.begin(), all.end(), 0);
   for (const Region& region : scene.regions)
     add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
+  if (scene.inertia_factor != 1) {
+    for (Point3& moments : lattice.bodies.inertia) moments = scene.inertia_factor * moments;
+  }
   return lattice;
 }
 

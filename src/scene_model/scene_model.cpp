@@ -46,14 +46,15 @@ namespace {
 /// Refuses a load's point that is far from its body: the body carries loads on itself or on its
 /// beams. Where a lattice has no outline, the limit is the largest distance that a body of this
 /// inertia and with these beams can reach.
-void check_point(const PlacedLoad& placed, const Lattice& lattice) {
+/// \param factor  moments of inertia over those of the body's mass
+void check_point(const PlacedLoad& placed, const Lattice& lattice, double factor) {
   const auto body = static_cast<std::size_t>(placed.bodies.front());
   const Bodies& bodies = lattice.bodies;
   const Point3& inertia = bodies.inertia[body];
   // Largest distance over radius of gyration: a rod has 1.7, a cone 2.5.
   constexpr double widest = 4;
-  double reach =
-      widest * std::sqrt(std::max({inertia.x, inertia.y, inertia.z}) / bodies.mass[body]);
+  double reach = widest * std::sqrt(std::max({inertia.x, inertia.y, inertia.z}) /
+                                    (factor * bodies.mass[body]));
   for (std::size_t m = 0; m < lattice.beams.bodies.size(); ++m) {
     const auto& [a, b] = lattice.beams.bodies[m];
     if (a == placed.bodies.front() || b == placed.bodies.front())
@@ -76,7 +77,7 @@ std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) 
                          2 * std::abs((*load.point)[1]) > scene.sheet.width);
     if (beside) throw InputError("load: " + load.name + ": point: lies outside the sheet");
     placed.push_back(place(load, lattice));
-    if (load.point && !scene.has_sheet) check_point(placed.back(), lattice);
+    if (load.point && !scene.has_sheet) check_point(placed.back(), lattice, scene.inertia_factor);
   }
   return placed;
 }
@@ -141,9 +142,12 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
     model.add_mass(displaced_mass(part, scene.added_mass * scene.water_density));
   if (scene.added_mass_plate || scene.added_mass_axes) {
     std::vector<typename Model<Space>::AddedInertia> added;
-    for (const auto& [mass, moment] :
-         scene.added_mass_plate ? added_of_plates(part, scene.water_density)
-                                : added_by_parts(part, scene.water_density, *scene.added_mass_axes))
+    // Moments of the water are parts of what the bodies have without the factor on theirs.
+    std::array<double, 6> parts = scene.added_mass_axes.value_or(std::array<double, 6>{});
+    for (std::size_t k = 3; k < 6; ++k) parts[k] /= scene.inertia_factor;
+    for (const auto& [mass, moment] : scene.added_mass_plate
+                                          ? added_of_plates(part, scene.water_density)
+                                          : added_by_parts(part, scene.water_density, parts))
       added.push_back({mass, moment});
     model.set_added_inertia(std::move(added));
   }
@@ -164,8 +168,9 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
                 .accelerations = [&model](double time, std::span<double> values) {
                   model.prescribe_accelerations(time, values);
                 }};
-    auto contact =
-        make_contact(model.part(), lattice, scene.contact, scene.obstacles, std::move(motion));
+    ContactOptions options = scene.contact;
+    options.inertia_factor = scene.inertia_factor;
+    auto contact = make_contact(model.part(), lattice, options, scene.obstacles, std::move(motion));
     const std::string& overlap = contact->overlap_at_start();
     if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
     model.add_force(std::move(contact));

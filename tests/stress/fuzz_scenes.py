@@ -284,7 +284,7 @@ class Scenes:
             scene[("time", "end")] = repr(10**chance.uniform(-4, 1))
         for path in (("time", "safety"), ("output", "history"), ("output", "fields"),
                      ("limit", "velocity"),
-                     ("model", "planar")):
+                     ("model", "planar"), ("model", "rotational_inertia_factor")):
             if chance.random() < 0.15:
                 key = next(k for k in self.keys if k.path == path)
                 scene[path] = self.value(key, scene, chance)
@@ -331,6 +331,7 @@ class Scenes:
             scene.pop(("model", "planar"))
         if scene.get(("integrator",)) != "explicit":
             scene.pop(("time", "safety"), None)
+            scene.pop(("model", "rotational_inertia_factor"), None)
         if scene.get(("static", "path")) != "arc" or chance.random() < 0.8:
             for path in [path for path in scene if path[0] == "static" and path[1] != "path"]:
                 scene.pop(path)

@@ -22,11 +22,13 @@ constexpr const char* section_name = "Explicit dynamics";
 /// Transfer matrix of a Timoshenko beam with rotary inertia at angular frequency omega, on
 /// (w, theta, M, Q): w' = theta + Q/(kappa G A), theta' = M/EI, M' = -Q - rho I omega^2 theta,
 /// Q' = -rho A omega^2 w (Timoshenko 1921).
-Eigen::Matrix4d transfer(const FrameSection& s, double density, double omega, double x) {
+/// \param rotary  factor on the rotary inertia rho I
+Eigen::Matrix4d transfer(const FrameSection& s, double density, double omega, double x,
+                         double rotary) {
   Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
   a(0, 1) = 1, a(0, 3) = 1 / (s.shear_factor * s.shear_modulus * s.area);
   a(1, 2) = 1 / (s.young * s.inertia_z);
-  a(2, 1) = -density * s.inertia_z * omega * omega, a(2, 3) = -1;
+  a(2, 1) = -rotary * density * s.inertia_z * omega * omega, a(2, 3) = -1;
   a(3, 0) = -density * s.area * omega * omega;
   // exp(a x) by Taylor on x/2^10, squared ten times; sizes are evened out by x itself.
   const Eigen::Matrix4d step = a * (x / 1024);
@@ -41,9 +43,10 @@ Eigen::Matrix4d transfer(const FrameSection& s, double density, double omega, do
 
 /// Angular frequency of bending mode `mode` (1, 2, ...) clamped at 0 and free at L: M = Q = 0
 /// there.
-double timoshenko(const FrameSection& s, double density, double length, int mode) {
+double timoshenko(const FrameSection& s, double density, double length, int mode,
+                  double rotary = 1) {
   const auto determinant = [&](double omega) {
-    const Eigen::Matrix4d t = transfer(s, density, omega, length);
+    const Eigen::Matrix4d t = transfer(s, density, omega, length, rotary);
     return t(2, 2) * t(3, 3) - t(2, 3) * t(3, 2);
   };
   const double euler = std::sqrt(s.young * s.inertia_z / (density * s.area)) / (length * length);
@@ -87,7 +90,8 @@ TEST(Cantilever, VibratesAtTimoshenkosFrequencies) {
     const char* name;
     Kind kind;
     double omega;
-    double without;  // shear and rotary inertia
+    double without;     // shear and rotary inertia
+    double rotary = 1;  // factor on the moments of inertia of bodies
   };
   const Mode modes[] = {
       {"first bending", bending, timoshenko(section, density, length, 1), 3.51602 * euler},
@@ -95,24 +99,29 @@ TEST(Cantilever, VibratesAtTimoshenkosFrequencies) {
       {"axial", axial, pi * c / (2 * length), 0},
       {"torsional", torsion,
        pi / (2 * length) * std::sqrt(section.shear_modulus * section.torsion / (density * polar)),
-       0}};
+       0},
+      {"first bending, moments of inertia times 4,", bending,
+       timoshenko(section, density, length, 1, 4), 3.51602 * euler, 4},
+      {"second bending, moments of inertia times 4,", bending,
+       timoshenko(section, density, length, 2, 4), 22.0345 * euler, 4}};
   for (const Mode& mode : modes) {
     Lattice lattice = straight_frame(length, elements, section);
     give_mass(lattice, section, density);
     Bodies& bodies = lattice.bodies;
+    for (Point3& moments : bodies.inertia) moments = mode.rotary * moments;
     std::vector<double> shape;  // v_y, v_x or spin about x
     const double speed = 1e-6;
     Eigen::Vector2d end{0, 0};  // M and Q at the root, up to a factor
     if (mode.kind == bending) {
-      const Eigen::Matrix4d t = transfer(section, density, mode.omega, length);
+      const Eigen::Matrix4d t = transfer(section, density, mode.omega, length, mode.rotary);
       end = {t(2, 3), -t(2, 2)};
     }
     for (const Point3& x : bodies.position) {
       bodies.velocity.push_back({0, 0, 0});
       bodies.angular_velocity.push_back({0, 0, 0});
       if (mode.kind == bending) {
-        const Eigen::Vector4d at =
-            transfer(section, density, mode.omega, x[0]) * Eigen::Vector4d{0, 0, end[0], end[1]};
+        const Eigen::Vector4d at = transfer(section, density, mode.omega, x[0], mode.rotary) *
+                                   Eigen::Vector4d{0, 0, end[0], end[1]};
         shape.push_back(at[0]);
         bodies.angular_velocity.back()[2] = at[1];
       } else {
@@ -263,6 +272,68 @@ TEST(Wave, RunsAtTheLatticesSpeed) {
             .tolerance = 0.01,
             .note = text("plane stress, no strain across: %.0f m/s; a thin bar's is %.0f", c,
                          std::sqrt(young / ice.density))});
+  }
+}
+
+/// Angular frequency of a standing bending wave of a strip of a sheet, half a wave long, its ends
+/// free to rise but not to tilt, moments of inertia times `factor`.
+double bending_frequency(double factor, double l, double h, int columns) {
+  const Ice ice;
+  const int rows = 5;
+  Lattice lattice = strip(columns, rows, l, h, ice);
+  const double length = (columns - 1) * l, wave = pi / length;
+  std::vector<double> shape;
+  for (std::size_t b = 0; b < lattice.bodies.position.size(); ++b) {
+    const double x = lattice.bodies.position[b][0];
+    lattice.bodies.inertia[b] = factor * lattice.bodies.inertia[b];
+    shape.push_back(std::cos(wave * x));
+    lattice.bodies.velocity.push_back({0, 0, 1e-6 * shape.back()});
+    lattice.bodies.angular_velocity.push_back({0, 1e-6 * wave * std::sin(wave * x), 0});
+    if (x > 0.1 * l && x < length - 0.1 * l) continue;
+    lattice.sets["ends"].push_back(static_cast<std::int32_t>(b));
+    lattice.bodies.mass[b] *= 0.5;  // the other half lies beyond the plane of symmetry
+    lattice.bodies.inertia[b] = 0.5 * lattice.bodies.inertia[b];
+  }
+  Scene scene = beams_only(Shear::one_point);
+  Boundary plane, ends;
+  plane.name = "plane", plane.set = "all";
+  for (const std::size_t k : {0, 1, 3, 5}) plane.fixed[k] = true;  // x, y, rx, rz
+  ends.name = ends.set = "ends";
+  ends.fixed[4] = true;
+  scene.boundaries = {plane, ends};
+  Dynamics run(scene, lattice);
+  const double dt = 0.5 * stable_step(run.model(), run.state()).dt;
+  run.set_step(dt);
+  std::vector<double> signal;
+  const double omega = wave * wave * std::sqrt(ice.young * h * h / (12 * (1 - 0.09) * ice.density));
+  for (double t = 0; t < 8 * 2 * pi / omega; t += dt) {
+    double sum = 0;
+    for (std::size_t b = 0; b < shape.size(); ++b) sum += shape[b] * run.state().record(b)[2];
+    signal.push_back(sum);
+    (void)run.step();
+  }
+  return frequency(signal, dt);
+}
+
+/// model: rotational_inertia_factor f: bodies of mass m and moment I about an axis in the plane
+/// have omega^2 (m + f I k^2) = stiffness (Rayleigh's rotary inertia; Timoshenko 1921 without its
+/// shear, which adds (k h)^2 times less).
+TEST(Wave, BendingSlowsWithTheMomentsOfInertia) {
+  const double l = 1.5, h = 0.5, gyration2 = 5.0 / 72 * l * l + h * h / 12;
+  for (const int columns : {9, 17}) {
+    const double wave = pi / ((columns - 1) * l), one = bending_frequency(1, l, h, columns);
+    for (const double factor : {2.0, 4.0}) {
+      const double rotary = gyration2 * wave * wave;
+      const double rayleigh = std::sqrt((1 + rotary) / (1 + factor * rotary));
+      verify({.section = section_name,
+              .quantity = text("bending wave of %.0f m, moments of inertia times %.0f: frequency "
+                               "over that without",
+                               2 * pi / wave, factor),
+              .value = bending_frequency(factor, l, h, columns) / one,
+              .reference = rayleigh,
+              .tolerance = 0.05 * (1 - rayleigh),
+              .note = text("Rayleigh's rotary inertia; l = %g m, h = %g m", l, h)});
+    }
   }
 }
 

@@ -46,6 +46,7 @@ struct ContactOptions {
   PlasticLimit plastic_limit{};          ///< sigma_p
   bool wear = true;                      ///< bodies lose what a contact crushes when it parts
   InitialOverlap initial_overlap = InitialOverlap::press;
+  double inertia_factor = 1;  ///< moments of inertia of bodies over those of their shapes
 };
 
 }  // namespace floe
