@@ -15,11 +15,12 @@ namespace {
 /// Sections and keys that may change. Of the options that move bodies only loads may: they jump at
 /// the time of the checkpoint. The places of obstacles and boundaries are functions of the time
 /// since 0, so they would jump together with everything in contact with them.
-constexpr std::array<std::string_view, 12> may_change{
+constexpr std::array<std::string_view, 13> may_change{
     "time: end",
     "time: allow_unstable",
     "limit",
     "output",
+    "partition",
     "checkpoint",
     "report",
     "check",

@@ -50,8 +50,8 @@ void read_dynamics(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::quasistatic) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
     for (const auto* key :
-         {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "time: safety",
-          "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
+         {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "partition",
+          "time: safety", "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes"})
       options.refuse(key, why);
     return;
   }
@@ -61,6 +61,13 @@ void read_dynamics(Options& options, Scene& scene) {
   } else {
     scene.time.safety = options.number("time: safety");
     scene.time.allow_unstable = options.flag("time: allow_unstable");
+  }
+  if (scene.integrator == Integrator::explicit_ && scene.forces.contact) {
+    scene.partition.threshold = options.number("partition: threshold");
+    scene.partition.every = options.integer("partition: every");
+  } else {
+    options.refuse("partition",
+                   "would have no effect: bodies move between ranks in explicit runs with contact");
   }
   scene.checkpoint.every = options.number("checkpoint: every");
   scene.checkpoint.at_end = options.given_section("checkpoint");
