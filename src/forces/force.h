@@ -219,8 +219,8 @@ class Remarks {
 template <class Space>
 class BearsLoad {
  public:
-  /// Adds the time that a step takes for each owned body [ns]: what the force counts at the state,
-  /// times what one of it took on a processor. Clocks do not count, so a run can be repeated.
+  /// Adds the time that a step takes for each owned body [ns]: what the force counts at the state
+  /// and in its history, times what one of it took. No clock counts, so a run can be repeated.
   virtual void add_load(const State<Space>& state, std::span<double> load) const = 0;
 
  protected:

@@ -31,6 +31,16 @@ NEVER = ("-partition_threshold", "1e9")
 OFTEN = ("-partition_threshold", "1", "-partition_every", "37")
 
 
+def in_order(key, values):
+    """The cracks of a checkpoint by beam, and pairs released in one step: they are kept rank after
+    rank."""
+    numbers = {"cracks": 12, "released": 2}.get(key.split("/")[-1])
+    if numbers is None:
+        return values
+    rows = values.reshape(-1, numbers)
+    return rows[np.lexsort(rows.T[::-1])]
+
+
 class Moves(RestartTest):
     def setUp(self):
         super().setUp()
@@ -53,7 +63,8 @@ class Moves(RestartTest):
         sums = ("energy_fracture", "stored_at_start", "impulse", "peak", "mean")
         for key, values in first.items():
             if key == "bodies/records" or (key.startswith("force_") and not key.endswith(sums)):
-                np.testing.assert_array_equal(values, second[key], key)
+                np.testing.assert_array_equal(in_order(key, values), in_order(key, second[key]),
+                                              key)
         for key, values in contents(a / "breaks.h5").items():
             np.testing.assert_array_equal(values, contents(b / "breaks.h5")[key], key)
         tables = [np.loadtxt(f / "history.csv", delimiter=",", skiprows=1) for f in (a, b)]
@@ -91,7 +102,7 @@ class Moves(RestartTest):
         b = self.go_on(*OFTEN, dir="b", ranks=2)
         rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
         for row in (a / "history.csv").read_text().split("\n"):
-            self.assertIn(row, rows)
+            self.assertTrue(row in rows, row)
         first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
         for key in set(first) - {"options", "output/run", "output/rows", "output/frames"}:
             if not key.startswith("output/"):
@@ -106,13 +117,13 @@ class Moves(RestartTest):
             b = self.go_on(*OFTEN, dir=dir, ranks=after)
             first, second = contents(alone / "checkpoint.h5"), contents(b / "checkpoint.h5")
             for key in ("bodies/records", "force_0_beam/cracks", "force_4_contact/pairs"):
-                np.testing.assert_array_equal(first[key], second[key], key)
+                np.testing.assert_array_equal(in_order(key, first[key]),
+                                              in_order(key, second[key]), key)
 
     def test_threshold(self):
-        """Of one that is exceeded at the most, the load falls; what waits less than a move costs
-        stays."""
-        self.run_whole("-partition_every", "1", dir="a", ranks=2)
-        self.assertEqual(self.moves(self.folder / "a")["count"], 0)
+        """Above it bodies move when the wait has cost as much as a move, which is seldom."""
+        seldom = self.moves(self.run_whole("-partition_every", "1", dir="a", ranks=2))
+        self.assertLess(seldom["count"], 10)
         moved = self.moves(self.run_whole(*OFTEN, dir="b", ranks=2))
         self.assertLess(moved["load_after"], 1.1)
         said = self.finish(self.begin("-partition_threshold", "0.9"), 2)

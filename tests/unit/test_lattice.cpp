@@ -163,8 +163,8 @@ TEST(OwnersByLoad, PartsHaveEqualLoads) {
   // Strips along x are cut at heights of y, where half of the load is below.
   const std::vector<std::int32_t> owner = owners_by_load(places, loads, 2, {1, 0, 0});
   for (std::size_t b = 0; b < owner.size(); ++b) {
-    if (places[b].y < 14) EXPECT_EQ(owner[b], 0);
-    if (places[b].y > 15) EXPECT_EQ(owner[b], 1);
+    if (places[b].y < 14) { EXPECT_EQ(owner[b], 0); }
+    if (places[b].y > 15) { EXPECT_EQ(owner[b], 1); }
   }
 }
 
