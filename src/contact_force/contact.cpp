@@ -34,7 +34,8 @@ std::vector<std::uint8_t> owned_bodies(const Part& part) {
 }
 
 /// Returns rows, each of which begins with A and B, of all ranks in list order, independent of the
-/// ranks. Collective.
+/// ranks. Each row counts once: ranks that have loaded a checkpoint and not yet made their lists
+/// have all rows. Collective.
 template <std::size_t width>
 std::vector<double> rows_of_all(const std::vector<double>& mine, MPI_Comm comm) {
   std::vector<double> all = all_gathered(mine, comm);
@@ -42,6 +43,7 @@ std::vector<double> rows_of_all(const std::vector<double>& mine, MPI_Comm comm) 
   for (std::size_t k = 0; k < in_order.size(); ++k)
     std::copy_n(&all[k * width], width, in_order[k].begin());
   std::sort(in_order.begin(), in_order.end());
+  in_order.erase(std::unique(in_order.begin(), in_order.end()), in_order.end());
   all.clear();
   for (const auto& row : in_order) all.insert(all.end(), row.begin(), row.end());
   return all;

@@ -127,7 +127,7 @@ class Moves(RestartTest):
         moved = self.moves(self.run_whole(*OFTEN, dir="b", ranks=2))
         self.assertLess(moved["load_after"], 1.1)
         said = self.finish(self.begin("-partition_threshold", "0.9"), 2)
-        self.assertIn("partition: threshold: 0.9 must be >= 1, <= 1e9", said)
+        self.assertIn("partition: threshold: 0.9 must be a number >= 1, <= 1e9", said)
         said = self.finish(self.begin("-forces", "beam,gravity,buoyancy", "-partition_every", "3"),
                            2)
         self.assertIn("partition", said)
