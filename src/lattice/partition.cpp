@@ -98,8 +98,7 @@ std::vector<std::int32_t> Part::localise(const std::vector<std::int32_t>& global
 }
 
 Part partition(const Lattice& lattice, MPI_Comm comm, const Vec3<double>& strips) {
-  return partition(lattice, comm,
-                   owners_by_load(lattice.bodies.position, {}, size(comm), strips));
+  return partition(lattice, comm, owners_by_load(lattice.bodies.position, {}, size(comm), strips));
 }
 
 Part partition(const Lattice& lattice, MPI_Comm comm, const std::vector<std::int32_t>& owner) {

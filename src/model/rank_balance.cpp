@@ -12,8 +12,8 @@ namespace floe {
 namespace {
 
 // Measured with input/ice_slope.yaml on AVX-512:
-constexpr double ns_of_body = 60;    ///< motion, weight and water of a body in a step
-constexpr double us_of_move = 60;    ///< a move, per body of the lattice
+constexpr double ns_of_body = 60;  ///< motion, weight and water of a body in a step
+constexpr double us_of_move = 60;  ///< a move, per body of the lattice
 
 double mean_of(const std::vector<double>& loads) {
   return std::accumulate(loads.begin(), loads.end(), 0.0) / static_cast<double>(loads.size());
@@ -73,9 +73,8 @@ std::int64_t RankBalance::next_look(std::int64_t step) const {
 bool RankBalance::is_worth(const std::vector<double>& loads, std::int64_t bodies) {
   const double mean = mean_of(loads), most = largest_of(loads);
   waited_ += 1e-9 * (most - mean) * static_cast<double>(options_.every);
-  return options_.threshold == 1 ||
-         (most > options_.threshold * mean &&
-          waited_ > 1e-6 * us_of_move * static_cast<double>(bodies));
+  return options_.threshold == 1 || (most > options_.threshold * mean &&
+                                     waited_ > 1e-6 * us_of_move * static_cast<double>(bodies));
 }
 
 template <class Space>

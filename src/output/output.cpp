@@ -52,10 +52,7 @@ struct Output<Space>::Impl {
   std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
   std::optional<Frame> pending_frame;   ///< of `pending`, once the bodies have moved to other ranks
 
-  Impl(const OutputOptions& o, const Model<Space>& m)
-      : options(o),
-        model(m),
-        part(m.part()) {
+  Impl(const OutputOptions& o, const Model<Space>& m) : options(o), model(m), part(m.part()) {
     find_parts();
   }
 
@@ -95,8 +92,8 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
   const Timed timed(Event::output);
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
-    impl_->loads.push_back({placed.load.name, placed.bodies,
-                            impl_->part.localise(placed.bodies), placed.arm});
+    impl_->loads.push_back(
+        {placed.load.name, placed.bodies, impl_->part.localise(placed.bodies), placed.arm});
   for (const PlacedBoundary& placed : model.boundaries()) {
     const auto& set = lattice.set(placed.boundary.set, "boundary");
     Point3 mean{};

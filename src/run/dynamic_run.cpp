@@ -312,8 +312,7 @@ void DynamicRun<Space>::begin_piece() {
 template <class Space>
 void DynamicRun<Space>::limit_steps() {
   const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
-  const std::int64_t last =
-      std::max(std::min({last_step(), end, pause_step(), next_look_}), done_);
+  const std::int64_t last = std::max(std::min({last_step(), end, pause_step(), next_look_}), done_);
   check(TSSetMaxSteps(ts_, static_cast<PetscInt>(last - piece_)));
 }
 

@@ -163,8 +163,12 @@ TEST(OwnersByLoad, PartsHaveEqualLoads) {
   // Strips along x are cut at heights of y, where half of the load is below.
   const std::vector<std::int32_t> owner = owners_by_load(places, loads, 2, {1, 0, 0});
   for (std::size_t b = 0; b < owner.size(); ++b) {
-    if (places[b].y < 14) { EXPECT_EQ(owner[b], 0); }
-    if (places[b].y > 15) { EXPECT_EQ(owner[b], 1); }
+    if (places[b].y < 14) {
+      EXPECT_EQ(owner[b], 0);
+    }
+    if (places[b].y > 15) {
+      EXPECT_EQ(owner[b], 1);
+    }
   }
 }
 
@@ -173,8 +177,7 @@ TEST(OwnersByLoad, EveryRankOwnsABody) {
   for (const std::vector<double>& loads :
        {std::vector<double>{1e9, 1, 1, 1, 1}, std::vector<double>{1, 1, 1, 1, 1e9}}) {
     for (const int ranks : {2, 3, 5}) {
-      const std::vector<double> all =
-          sums(owners_by_load(places, loads, ranks, {}), loads, ranks);
+      const std::vector<double> all = sums(owners_by_load(places, loads, ranks, {}), loads, ranks);
       EXPECT_GE(*std::min_element(all.begin(), all.end()), 1) << ranks;
     }
   }

@@ -18,8 +18,7 @@ namespace {
 class Busy final : public Force<Spatial>, public BearsLoad<Spatial> {
  public:
   /// \param bodies  the first so many of the lattice \param ns  of each
-  Busy(const Part& part, std::int32_t bodies, double ns)
-      : part_(part), bodies_(bodies), ns_(ns) {}
+  Busy(const Part& part, std::int32_t bodies, double ns) : part_(part), bodies_(bodies), ns_(ns) {}
   std::string_view name() const override { return "busy"; }
   void add(const State<Spatial>&, Wrenches<Spatial>&) override {}
   void report(const State<Spatial>&, std::span<const double>, Columns&) const override {}
@@ -146,8 +145,7 @@ TEST_F(RankBalanced, LooksEverySoManySteps) {
 TEST_F(RankBalanced, AModelIsDividedAnew) {
   const Part* part = &model.part();
   std::vector<std::int32_t> owner(static_cast<std::size_t>(model.part().global_bodies));
-  for (std::size_t b = 0; b < owner.size(); ++b)
-    owner[b] = static_cast<std::int32_t>(b) % size();
+  for (std::size_t b = 0; b < owner.size(); ++b) owner[b] = static_cast<std::int32_t>(b) % size();
   model.set_beams(make_beam_force<Spatial>(model.part(), {}), Kinematics::corotational);
   model.divide(lattice, owner);
   EXPECT_EQ(&model.part(), part);
