@@ -234,7 +234,7 @@ SEAM = "src/explicit/step.h"
 MESSAGES = [
     ("src/explicit/leapfrog.cpp", "PetscErrorCode step(TS ts) noexcept {",
      [("work(ts->time_step)", TS, LEAPFROG, "step()")]),
-    (STEP_FILE, STEP_AT, [("step_.evaluate()", LEAPFROG, STEP, "evaluate(), not in step 0")]),
+    (STEP_FILE, STEP_AT, [("step_->evaluate()", LEAPFROG, STEP, "evaluate(), not in step 0")]),
     (SEAM, "  void evaluate() {",
      [("ghosts.update(", STEP, STEP, "ghosts' records *"),
       ("model_.evaluate(", STEP, FORCES, "evaluate(state at t_n)")]),
@@ -256,8 +256,8 @@ MESSAGES = [
     (STEP_FILE, STEP_AT, [
         ("keep_step_stable()", LEAPFROG, LEAPFROG,
          "keep_step_stable(): a new|stable step, if due *"),
-        ("step_.advance(", LEAPFROG, STEP, "advance(): kick and drift of owned bodies"),
-        ("step_.commit(", LEAPFROG, STEP, "commit()")]),
+        ("step_->advance(", LEAPFROG, STEP, "advance(): kick and drift of owned bodies"),
+        ("step_->commit(", LEAPFROG, STEP, "commit()")]),
     (SEAM, "  void commit(double dt) {",
      [("work_.take_powers(", STEP, FORCES, "powers() of the evaluation"),
       ("role->commit(", STEP, FORCES, "commit(): history of damage and slip")]),
@@ -267,7 +267,7 @@ MESSAGES = [
       ("obstacle_forces_.take(", CONTACT, CONTACT, "peaks on obstacles *")]),
     (SEAM, "  void commit(double dt) {",
      [("work_.take_step(", STEP, FORCES, "powers_with() new velocities: works")]),
-    (STEP_FILE, STEP_AT, [("step_.release()", LEAPFROG, STEP, "release()")]),
+    (STEP_FILE, STEP_AT, [("step_->release()", LEAPFROG, STEP, "release()")]),
     (SEAM, "  void release() {",
      [("role->release(", STEP, CONTACT, "release(pairs whose beam broke) *")]),
     (STEP_FILE, STEP_AT, [

@@ -131,6 +131,11 @@ struct Scene {
     double wall_time = std::numeric_limits<double>::infinity();
     std::string restart;  ///< file to go on from; empty: from time 0
   } checkpoint;
+  /// When bodies move between ranks.
+  struct {
+    double threshold = 1.15;    ///< largest load of a rank over the mean; 1: at each look
+    std::int64_t every = 1000;  ///< steps between looks
+  } partition;
   /// Key and path of each file that the scene names.
   std::vector<std::pair<std::string, std::string>> inputs;
   bool check_only = false;

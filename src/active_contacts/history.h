@@ -40,6 +40,8 @@ class ContactHistory {
   };
 
   std::size_t size() const { return entries_.size(); }
+  /// Histories in the order of the list.
+  std::span<const Entry> entries() const { return entries_; }
   /// Returns the last `count` entries, or all if there are fewer.
   std::span<const Entry> last(std::size_t count) const;
 

@@ -109,6 +109,13 @@ LimitsStep<Spatial>::Limit travel_limit(const Solids& solids, const Part& part,
               text(solids.thinnest()) + " m, in a step"};
 }
 
+void ContactRemarks::persist(Archive& archive, MPI_Comm comm) {
+  told_enclosed_ = on_any_rank(told_enclosed_, comm);
+  told_pressed_through_ = on_any_rank(told_pressed_through_, comm);
+  archive.common("told_enclosed", told_enclosed_);
+  archive.common("told_pressed_through", told_pressed_through_);
+}
+
 std::vector<Remark> ContactRemarks::take(const Contacts& contacts) {
   std::vector<Remark> remarks;
   const auto tell = [&](const ContactEvent& event, bool& told, const std::string& what,

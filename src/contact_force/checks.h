@@ -35,6 +35,8 @@ class ContactRemarks {
  public:
   /// New remarks since the last call, on this rank.
   std::vector<Remark> take(const Contacts& contacts);
+  /// Saves or loads what some rank has told. Collective.
+  void persist(Archive& archive, MPI_Comm comm);
 
  private:
   bool told_enclosed_ = false, told_pressed_through_ = false;

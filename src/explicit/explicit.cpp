@@ -1,5 +1,7 @@
 #include "explicit/explicit.h"
 
+#include <optional>
+
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
 #include "explicit/leapfrog.h"
@@ -16,17 +18,13 @@ class LeapfrogRun final : public ExplicitRun<Space> {
 
  public:
   LeapfrogRun(Model<Space>& model, const ExplicitOptions& options, Observer<Space> observer)
-      : Base(ts_leapfrog, model, options, std::move(observer)),
-        step_(model, this->state(), this->wrenches(), this->work_ledger()) {
+      : Base(ts_leapfrog, model, options, std::move(observer)) {
     this->result().stepper = ts_leapfrog;
-    step_.start();
     register_leapfrog();
-    const Part& part = model.part();
-    check(VecCreateMPIWithArray(part.comm, Space::record, part.owned * Space::record,
-                                PETSC_DETERMINE, this->state().records.data(), solution_.put()));
-    check(TSCreate(part.comm, this->ts_.put()));
+    check(TSCreate(model.part().comm, this->ts_.put()));
     check(TSSetType(this->ts_, ts_leapfrog));
-    check(TSSetSolution(this->ts_, solution_));
+    follow_model();
+    step_->start();
     this->read_options();
   }
 
@@ -39,19 +37,19 @@ class LeapfrogRun final : public ExplicitRun<Space> {
  private:
   void begin() {
     this->choose_step();
-    step_.stagger(this->dt());
+    step_->stagger(this->dt());
     this->model().part().ghosts.update(this->state().records, Space::record);
   }
 
   /// Makes a step. The forces at t_n are known; a sample that is due gets them before the bodies
   /// move to t_n+1.
   bool step() {
-    if (this->done() > 0) step_.evaluate();
+    if (this->done() > 0) step_->evaluate();
     if (!this->sample_if_due()) return false;
     if (!this->keep_step_stable()) return false;
-    const double speed2 = step_.advance(this->dt());
-    step_.commit(this->dt());
-    step_.release();
+    const double speed2 = step_->advance(this->dt());
+    step_->commit(this->dt());
+    step_->release();
     return this->moved(this->next_time(), speed2) && this->look_around();
   }
 
@@ -61,20 +59,28 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     evaluate();
     return stable;
   }
-  void evaluate() override { step_.evaluate(); }
-  std::vector<double> works() const override { return step_.works(); }
+  void evaluate() override { step_->evaluate(); }
+  std::vector<double> works() const override { return step_->works(); }
+  void follow_model() override {
+    Model<Space>& model = this->model();
+    const Part& part = model.part();
+    step_.emplace(model, this->state(), this->wrenches(), this->work_ledger());
+    check(VecCreateMPIWithArray(part.comm, Space::record, part.owned * Space::record,
+                                PETSC_DETERMINE, this->state().records.data(), solution_.put()));
+    check(TSSetSolution(this->ts_, solution_));
+  }
   /// Keeps velocities half of the next step behind.
-  void step_changed(double before) override { step_.stagger(this->dt() - before); }
+  void step_changed(double before) override { step_->stagger(this->dt() - before); }
   typename Base::Energies energies() const override {
-    const auto [kinetic, boundary] = step_.energies(this->dt());
+    const auto [kinetic, boundary] = step_->energies(this->dt());
     return {kinetic, boundary};
   }
   void persist_own(Archive& archive) override {
     Base::persist_own(archive);
-    step_.persist(archive);
+    step_->persist(archive);
   }
 
-  ExplicitStep<Space> step_;
+  std::optional<ExplicitStep<Space>> step_;
   Handle<Vec> solution_;
   LeapfrogStep make_step_ = [this](double) { return this->guarded([this] { return step(); }); };
 };

@@ -83,6 +83,18 @@ Hdf5File Hdf5File::create(const std::string& path, std::size_t user_block) {
   return {id, temporary, path};
 }
 
+Hdf5File Hdf5File::in_memory() {
+  quiet_hdf5();
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t growth = 1 << 20;  // bytes
+  constexpr bool on_disk = false;
+  H5Pset_fapl_core(access, growth, on_disk);
+  const std::string name = "(state in memory)";  // no file has it
+  const hid_t id = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  require(id >= 0, name);
+  return {id, {}, name};
+}
+
 Hdf5File Hdf5File::change(const std::string& path) {
   quiet_hdf5();
   const std::string temporary = temporary_name(path);

@@ -23,6 +23,8 @@ class Hdf5File {
   /// Creates a file that close() renames to `path`.
   /// \param user_block  bytes at its beginning that HDF5 leaves alone: 0, or 512 times a power of 2
   static Hdf5File create(const std::string& path, std::size_t user_block = 0);
+  /// Creates a file in memory, which goes with the object; for reading too.
+  static Hdf5File in_memory();
   /// Opens a copy of an existing file for changes; close() renames the copy to `path`.
   static Hdf5File change(const std::string& path);
   /// Opens an existing file for reading.

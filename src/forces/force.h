@@ -214,6 +214,19 @@ class Remarks {
   ~Remarks() = default;
 };
 
+/// Role of a force with work that differs between bodies, or that changes in a run. Ranks share the
+/// bodies by it.
+template <class Space>
+class BearsLoad {
+ public:
+  /// Adds the time that a step takes for each owned body [ns]: what the force counts at the state
+  /// and in its history, times what one of it took. No clock counts, so a run can be repeated.
+  virtual void add_load(const State<Space>& state, std::span<double> load) const = 0;
+
+ protected:
+  ~BearsLoad() = default;
+};
+
 /// Roles of a force beside adding wrenches; null: the force does not have the role.
 template <class Space>
 struct Roles {
@@ -227,6 +240,7 @@ struct Roles {
   TakesBrokenPairs* broken_pairs = nullptr;
   DependsOnTime* time = nullptr;
   Remarks* remarks = nullptr;
+  BearsLoad<Space>* load = nullptr;
 };
 
 /// A force on the bodies of a part. An evaluation makes one virtual call per force; a scene that

@@ -403,6 +403,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const Crack* c = crack(m);
     return c != nullptr && c->broken();
   }
+  bool is_whole(std::int32_t m) const override { return !broken(m); }
   double kappa(std::int32_t m) const {
     const Crack* c = crack(m);
     return c != nullptr ? c->kappa : 1.0;

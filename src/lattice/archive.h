@@ -39,6 +39,9 @@ class Archive {
       : part_(part), file_(file), loading_(direction == Transfer::load), name_(std::move(name)) {}
 
   bool loading() const { return loading_; }
+  /// Whether the state stays in its run, and what a restart would begin anew goes with it.
+  bool within_run() const { return within_run_; }
+  void stay_in_run() { within_run_ = true; }
   /// Returns the outcome of writing, on rank 0. A failed write raises nothing until all ranks know
   /// of the failure.
   const Outcome& outcome() const { return outcome_; }
@@ -91,7 +94,7 @@ class Archive {
 
   Hdf5File* file_;
   Outcome outcome_;
-  bool loading_;
+  bool loading_, within_run_ = false;
   std::string name_, group_;
 };
 

@@ -15,10 +15,9 @@ namespace {
 
 /// Returns the bodies by their places across a direction in plan; nothing where strips along it
 /// would be less than four bodies wide.
-std::vector<std::int32_t> order_across(const Lattice& lattice, const Vec3<double>& strips,
-                                       int ranks) {
+std::vector<std::int32_t> order_across(const std::vector<Point3>& places,
+                                       const Vec3<double>& strips, int ranks) {
   constexpr double narrowest = 4;
-  const std::vector<Point3>& places = lattice.bodies.position;
   const double size = std::hypot(strips.x, strips.y);
   if (size == 0) return {};
   std::vector<double> across;
@@ -42,10 +41,8 @@ std::vector<std::int32_t> order_across(const Lattice& lattice, const Vec3<double
   return order;
 }
 
-/// Returns the owner of every body: equal parts of strips, or of the Hilbert curve.
-std::vector<std::int32_t> owners(const Lattice& lattice, int ranks, const Vec3<double>& strips) {
-  std::vector<std::int32_t> order = order_across(lattice, strips, ranks);
-  if (order.empty()) order = hilbert_order(lattice.bodies.position);
+/// Cuts an order of bodies in parts of equal numbers.
+std::vector<std::int32_t> cut_by_number(const std::vector<std::int32_t>& order, int ranks) {
   const auto n = static_cast<std::int64_t>(order.size());
   std::vector<std::int32_t> owner(order.size());
   for (int r = 0; r < ranks; ++r) {
@@ -55,7 +52,38 @@ std::vector<std::int32_t> owners(const Lattice& lattice, int ranks, const Vec3<d
   return owner;
 }
 
+/// Cuts an order of bodies in parts of equal loads: a body goes where the middle of its load lies.
+/// Every part has a body at least.
+std::vector<std::int32_t> cut_by_load(const std::vector<std::int32_t>& order,
+                                      const std::vector<double>& loads, int ranks) {
+  const auto n = static_cast<std::int64_t>(order.size());
+  const double all = std::accumulate(loads.begin(), loads.end(), 0.0);
+  std::vector<std::int32_t> owner(order.size());
+  double before = 0;
+  std::int64_t last = -1;
+  for (std::int64_t k = 0; k < n; ++k) {
+    const double load = item(loads, item(order, k));
+    const auto wanted = static_cast<std::int64_t>(ranks * ((before + 0.5 * load) / all));
+    before += load;
+    const std::int64_t least = std::max<std::int64_t>({last, ranks - (n - k), 0});
+    last = std::clamp(wanted, least, std::max(least, last + 1));
+    item(owner, item(order, k)) = static_cast<std::int32_t>(last);
+  }
+  return owner;
+}
+
 }  // namespace
+
+std::vector<std::int32_t> owners_by_load(const std::vector<Point3>& places,
+                                         const std::vector<double>& loads, int ranks,
+                                         const Vec3<double>& strips) {
+  if (static_cast<std::size_t>(ranks) > places.size())
+    throw InputError("mpiexec: " + std::to_string(ranks) + " ranks are more than the " +
+                     std::to_string(places.size()) + " bodies of the scene");
+  std::vector<std::int32_t> order = order_across(places, strips, ranks);
+  if (order.empty()) order = hilbert_order(places);
+  return loads.empty() ? cut_by_number(order, ranks) : cut_by_load(order, loads, ranks);
+}
 
 std::int32_t Part::local_index(std::int32_t global_body) const {
   return item(local_of_, global_body);
@@ -70,14 +98,13 @@ std::vector<std::int32_t> Part::localise(const std::vector<std::int32_t>& global
 }
 
 Part partition(const Lattice& lattice, MPI_Comm comm, const Vec3<double>& strips) {
+  return partition(lattice, comm, owners_by_load(lattice.bodies.position, {}, size(comm), strips));
+}
+
+Part partition(const Lattice& lattice, MPI_Comm comm, const std::vector<std::int32_t>& owner) {
   const Timed timed(Event::partition);
   const int me = rank(comm), ranks = size(comm);
   const std::int32_t n = lattice.bodies.size();
-  if (ranks > n)
-    throw InputError("mpiexec: " + std::to_string(ranks) + " ranks are more than the " +
-                     std::to_string(n) + " bodies of the scene");
-  const std::vector<std::int32_t> owner = owners(lattice, ranks, strips);
-
   // Each rank's bodies are numbered in global order, rank after rank: local index and PETSc's block
   // row.
   std::vector<std::int32_t> count(static_cast<std::size_t>(ranks) + 1, 0), index(owner.size());

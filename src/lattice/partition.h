@@ -42,7 +42,7 @@ struct Part {
   std::int32_t local_index(std::int32_t global_body) const;
 
  private:
-  friend Part partition(const Lattice&, MPI_Comm, const Vec3<double>&);
+  friend Part partition(const Lattice&, MPI_Comm, const std::vector<std::int32_t>&);
   std::vector<std::int32_t> local_of_;  ///< per global body: local index or -1
 };
 
@@ -53,6 +53,16 @@ struct Part {
 ///                curve, which have fewer neighbours
 /// \throws InputError if there are more ranks than bodies
 Part partition(const Lattice& lattice, MPI_Comm comm, const Vec3<double>& strips = {});
+/// Does the same by given owners. \param owner  per body: its rank; each rank owns one at least
+Part partition(const Lattice& lattice, MPI_Comm comm, const std::vector<std::int32_t>& owner);
+
+/// Returns the owner of each body, by strips or chunks as partition(), of equal loads.
+/// \param places  of the bodies [m]
+/// \param loads   per body, in any unit; empty: all bodies are alike
+/// \throws InputError if there are more ranks than bodies
+std::vector<std::int32_t> owners_by_load(const std::vector<Point3>& places,
+                                         const std::vector<double>& loads, int ranks,
+                                         const Vec3<double>& strips);
 
 /// Returns the order of points along a Hilbert curve in the box that holds them. The box may be
 /// flat.

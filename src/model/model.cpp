@@ -81,14 +81,8 @@ std::vector<std::uint8_t> prescribed_components(const Lattice& lattice,
 template <class Space>
 Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Boundary>& boundaries,
                     const Vec3<double>& strips)
-    : part_(partition(lattice, comm, strips)), inertial_mass_(part_.bodies.mass) {
-  const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
-  for (const std::int32_t body : part_.global)
-    prescribed_.push_back(bits_of_unknowns<Space>(item(all, body)));
-  held_ = prescribed_;
-  for (const Boundary& boundary : boundaries)
-    boundaries_.push_back(
-        {boundary, part_.localise(lattice.set(boundary.set, "boundary: " + boundary.name))});
+    : part_(partition(lattice, comm, strips)) {
+  place(lattice, boundaries);
   // Rotations are solved for as lengths (see Tangent): times the mean beam length, or a body's
   // radius of gyration where there are no beams.
   double sum = 0;
@@ -98,6 +92,33 @@ Model<Space>::Model(const Lattice& lattice, MPI_Comm comm, const std::vector<Bou
   } else {
     length_scale_ = std::sqrt(lattice.bodies.inertia[0][0] / lattice.bodies.mass[0]);
   }
+}
+
+/// Finds the boundaries' bodies on this rank, and starts with the bodies' own masses.
+template <class Space>
+void Model<Space>::place(const Lattice& lattice, const std::vector<Boundary>& boundaries) {
+  inertial_mass_ = part_.bodies.mass;
+  const std::vector<std::uint8_t> all = prescribed_components(lattice, boundaries);
+  for (const std::int32_t body : part_.global)
+    prescribed_.push_back(bits_of_unknowns<Space>(item(all, body)));
+  held_ = prescribed_;
+  for (const Boundary& boundary : boundaries)
+    boundaries_.push_back(
+        {boundary, part_.localise(lattice.set(boundary.set, "boundary: " + boundary.name))});
+}
+
+template <class Space>
+void Model<Space>::divide(const Lattice& lattice, const std::vector<std::int32_t>& owner) {
+  beams_ = nullptr;
+  fracture_ = nullptr;
+  forces_.clear();  // they refer to the part
+  added_inertia_.clear();
+  std::vector<Boundary> boundaries;
+  for (const PlacedBoundary& placed : boundaries_) boundaries.push_back(placed.boundary);
+  boundaries_.clear();
+  prescribed_.clear();
+  part_ = partition(lattice, part_.comm, owner);
+  place(lattice, boundaries);
 }
 
 template <class Space>

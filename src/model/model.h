@@ -73,6 +73,11 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
+  /// Divides the same lattice anew: part and boundaries, which keep their places in memory. Its
+  /// forces are gone, as is what was added to the bodies and released. Collective.
+  /// \param owner  of partition()
+  void divide(const Lattice& lattice, const std::vector<std::int32_t>& owner);
+
   const Part& part() const { return part_; }
   /// Frees the sections and stiffnesses of the part's beams, of which forces keep their own copies.
   /// The pairs of bodies that the beams join stay.
@@ -152,6 +157,7 @@ class Model {
                                                      std::span<const double> works) const;
 
  private:
+  void place(const Lattice& lattice, const std::vector<Boundary>& boundaries);
   using Prescription = std::array<double, 6> (Boundary::*)(double) const;
   void spread(Prescription motion, double time, std::span<double> values,
               std::span<const std::int32_t> rows = {}) const;

@@ -19,7 +19,7 @@ constexpr std::size_t width = 11;
 /// Returns all broken beams on rank 0, in the order of (time, beam).
 std::vector<Break> CrackLog::gather() const {
   std::vector<double> mine, all;
-  for (const Break& b : fracture_.breaks())
+  for (const Break& b : fracture_->breaks())
     mine.insert(mine.end(), {b.time, static_cast<double>(b.beam), b.place[0], b.place[1],
                              b.place[2], b.mode_mix, b.energy, b.nominal, b.brittle ? 1.0 : 0.0,
                              b.at_tip ? 1.0 : 0.0, b.area});
@@ -52,7 +52,7 @@ std::vector<Break> CrackLog::gather() const {
 
 double CrackLog::update() {
   const std::int64_t now =
-      sum_over_ranks(static_cast<std::int64_t>(fracture_.breaks().size()), part_.comm);
+      sum_over_ranks(static_cast<std::int64_t>(fracture_->breaks().size()), part_.comm);
   if (now != written_) {
     const std::vector<Break> breaks = gather();
     on_root(part_.comm, [&] {

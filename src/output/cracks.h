@@ -21,7 +21,10 @@ class CrackLog {
   /// \param lattice  rank 0 keeps a reference
   /// \param fracture, part  must outlive this object
   CrackLog(std::string dir, const Lattice& lattice, const Fracture& fracture, const Part& part)
-      : dir_(std::move(dir)), lattice_(lattice), fracture_(fracture), part_(part) {}
+      : dir_(std::move(dir)), lattice_(lattice), fracture_(&fracture), part_(part) {}
+
+  /// Goes on with another object for the same cracks.
+  void follow(const Fracture& fracture) { fracture_ = &fracture; }
 
   /// Writes the file if there are new breaks. Returns the number of fragments, on all ranks.
   double update();
@@ -33,7 +36,7 @@ class CrackLog {
 
   std::string dir_;
   const Lattice& lattice_;
-  const Fracture& fracture_;
+  const Fracture* fracture_;
   const Part& part_;
   std::int64_t written_ = -1;  ///< number of breaks on file; -1: no file yet
   std::vector<std::int32_t> fragment_of_, bodies_;

@@ -15,6 +15,7 @@ namespace floe {
 /// Collects rows from all ranks on rank 0.
 class Gather {
  public:
+  Gather() = default;
   /// Collective.
   /// \param global  global index of each of this rank's rows
   /// \param total  number of rows over all ranks
@@ -36,8 +37,8 @@ class Gather {
  private:
   void collect(const void* rows, std::size_t count, std::size_t bytes, void* all) const;
 
-  MPI_Comm comm_;
-  std::int64_t total_;
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  std::int64_t total_ = 0;
   std::vector<int> counts_;
   std::vector<std::int32_t> global_;  ///< rank 0: global indices of all rows, rank after rank
   bool in_place_ = false;             ///< a single rank has all rows, in order

@@ -24,11 +24,11 @@
 namespace floe {
 namespace {
 
-/// Point of application of a load: local bodies and the arm at rest.
+/// Point of application of a load: bodies and the arm at rest.
 struct LoadPoint {
   std::string name;
-  std::vector<std::int32_t> bodies;
-  std::size_t count;  ///< number of bodies over all ranks
+  std::vector<std::int32_t> everywhere;  ///< global
+  std::vector<std::int32_t> bodies;      ///< local
   Vec3<double> arm;
 };
 
@@ -50,17 +50,22 @@ struct Output<Space>::Impl {
   std::optional<CrackLog> cracks;     ///< if beams may break
   OutputArchive memory;
   std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
+  std::optional<Frame> pending_frame;   ///< of `pending`, once the bodies have moved to other ranks
 
-  Impl(const OutputOptions& o, const Model<Space>& m)
-      : options(o),
-        model(m),
-        part(m.part()),
-        bodies(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)),
-               part.global_bodies),
-        beams(part.comm, counted_global(), part.global_beams) {
+  Impl(const OutputOptions& o, const Model<Space>& m) : options(o), model(m), part(m.part()) {
+    find_parts();
+  }
+
+  /// Finds this rank's bodies and beams, and its share of the loads' points.
+  void find_parts() {
+    bodies = Gather(part.comm, std::span(part.global).first(static_cast<std::size_t>(part.owned)),
+                    part.global_bodies);
+    beams = Gather(part.comm, counted_global(), part.global_beams);
+    counted.clear();
     for (std::size_t k = 0; k < part.counts_here.size(); ++k) {
       if (part.counts_here[k]) counted.push_back(static_cast<std::int32_t>(k));
     }
+    for (LoadPoint& load : loads) load.bodies = part.localise(load.everywhere);
   }
 
   std::vector<std::int32_t> counted_global() const {
@@ -76,7 +81,8 @@ struct Output<Space>::Impl {
   Sample sample(const Accepted<Space>& accepted);
   void write_row(const Sample& sample);
   void put_row(const Sample& sample);
-  void write_frame(const State<Space>& state);
+  Frame make_frame(const State<Space>& state);
+  void write_frame(const Frame& frame);
 };
 
 template <class Space>
@@ -87,7 +93,7 @@ Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Mod
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
     impl_->loads.push_back(
-        {placed.load.name, impl_->part.localise(placed.bodies), placed.bodies.size(), placed.arm});
+        {placed.load.name, placed.bodies, impl_->part.localise(placed.bodies), placed.arm});
   for (const PlacedBoundary& placed : model.boundaries()) {
     const auto& set = lattice.set(placed.boundary.set, "boundary");
     Point3 mean{};
@@ -178,7 +184,7 @@ Sample Output<Space>::Impl::sample(const Accepted<Space>& accepted) {
   }
   for (const LoadPoint& load : loads) {
     Point3 mine{};
-    const double share = 1.0 / static_cast<double>(load.count);
+    const double share = 1.0 / static_cast<double>(load.everywhere.size());
     for (const std::int32_t body : load.bodies) {
       if (body >= part.owned) continue;
       const auto b = static_cast<std::size_t>(body);
@@ -263,7 +269,7 @@ void Output<Space>::Impl::put_row(const Sample& s) {
 }
 
 template <class Space>
-void Output<Space>::Impl::write_frame(const State<Space>& state) {
+Frame Output<Space>::Impl::make_frame(const State<Space>& state) {
   const auto owned = static_cast<std::size_t>(part.owned);
   std::vector<Point3> u, vector;
   std::vector<std::array<double, 4>> q;
@@ -291,6 +297,11 @@ void Output<Space>::Impl::write_frame(const State<Space>& state) {
     for (const std::int32_t k : counted) mine.push_back(model.fracture()->damage(k));
     frame.damage = beams(std::move(mine));
   }
+  return frame;
+}
+
+template <class Space>
+void Output<Space>::Impl::write_frame(const Frame& frame) {
   ++memory.frames;
   on_root(part.comm, [&] { fields->write(frame); });
 }
@@ -316,9 +327,10 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   const bool due =
       accepted.step == 0 || accepted.last ||
       (me.options.fields > 0 && time >= archive.next_fields - early * me.options.fields);
+  me.pending_frame.reset();
   if (due) {
     me.pending.reset();
-    me.write_frame(accepted.state);
+    me.write_frame(me.make_frame(accepted.state));
     if (me.options.fields > 0)
       archive.next_fields = me.options.fields * (std::floor(time / me.options.fields + early) + 1);
   } else {
@@ -331,12 +343,25 @@ void Output<Space>::finish() {
   const Timed timed(Event::output);
   if (impl_->memory.row_pending) impl_->write_row(impl_->memory.last);
   impl_->memory.row_pending = false;
-  if (impl_->pending) impl_->write_frame(*impl_->pending);
-  impl_->pending.reset();
+  prepare_to_follow();
+  if (impl_->pending_frame) impl_->write_frame(*impl_->pending_frame);
+  impl_->pending_frame.reset();
   on_root(impl_->part.comm, [&] {
     impl_->fields->finish();
     impl_->history->close();
   });
+}
+
+template <class Space>
+void Output<Space>::prepare_to_follow() {
+  if (impl_->pending) impl_->pending_frame = impl_->make_frame(*impl_->pending);
+  impl_->pending.reset();
+}
+
+template <class Space>
+void Output<Space>::follow() {
+  impl_->find_parts();
+  if (impl_->cracks) impl_->cracks->follow(*impl_->model.fracture());
 }
 
 template <class Space>

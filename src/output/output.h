@@ -89,6 +89,11 @@ class Output {
   void accept(const Accepted<Space>& accepted);
   /// Writes the last accepted state if it is not on file yet.
   void finish();
+  /// Follows the model, which has been divided anew: its part and its forces are others. To be told
+  /// before that, with prepare_to_follow().
+  void follow();
+  /// Gathers what bodies of the present part have not written yet.
+  void prepare_to_follow();
   /// Syncs rows and frames to the disk, so that they survive a crash of the machine.
   void sync();
 

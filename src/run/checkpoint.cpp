@@ -20,7 +20,7 @@
 namespace floe {
 namespace {
 
-constexpr std::int64_t layout = 7;  // of the file; other layouts are refused
+constexpr std::int64_t layout = 8;  // of the file; other layouts are refused
 
 /// FNV-1a over 64-bit words.
 class Hash {

@@ -7,6 +7,7 @@
 
 #include "base/collectives.h"
 #include "base/format.h"
+#include "base/on_root.h"
 #include "run/numbers.h"
 #include "run/ts_options.h"
 
@@ -35,6 +36,7 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
   }
   energy = sum_over_ranks(energy, model.part().comm);
   ledger_.set_floor(std::max(energy, std::numeric_limits<double>::min()));
+  if (options_.balance) balance_.emplace(*options_.balance);
 }
 
 template <class Space>
@@ -141,6 +143,10 @@ void DynamicRun<Space>::persist(Archive& archive) {
   archive.common("sampled_step", sampled_, -1);
   archive.common("largest_velocity2", largest_, not_negative);
   persist_own(archive);
+  if (balance_) {
+    archive.enter("balance");
+    balance_->persist(archive, model_.part().comm);
+  }
   archive.enter("ledger");
   ledger_.persist(archive);
   works_.persist(archive);
@@ -169,11 +175,55 @@ bool DynamicRun<Space>::restart() {
     throw InputError("time: end: " + text(options_.end) + " must be >= " + text(state_.time) +
                      " [s], the time of the checkpoint");
   set_sampling();
-  model_.part().ghosts.update(state_.records, Space::record);
+  take_up_state();
   before_ = done_;
+  if (balance_) result_.moves = balance_->moves();
+  if (balance_ && balance_->is_on() && !balance_->owner().empty()) move_bodies(balance_->owner());
+  return true;
+}
+
+/// Goes on with the state that an archive has set. Collective.
+template <class Space>
+void DynamicRun<Space>::take_up_state() {
+  model_.part().ghosts.update(state_.records, Space::record);
   time_ = state_.time;
   state_.set_time(time_);
-  return true;
+}
+
+/// Moves bodies to other ranks if that is worth it. Collective.
+template <class Space>
+void DynamicRun<Space>::move_bodies_if_due() {
+  if (!balance_) return;
+  if (balance_->is_due(done_) && looked_ != done_) {
+    looked_ = done_;
+    if (const auto owner = balance_->look(model_, state_)) move_bodies(*owner);
+  }
+  next_look_ = balance_->next_look(done_);
+}
+
+/// Divides the model anew. The state goes through an archive in memory, as through a checkpoint, so
+/// no bit depends on it. Collective.
+template <class Space>
+void DynamicRun<Space>::move_bodies(const std::vector<std::int32_t>& owner) {
+  take_remarks();
+  const MPI_Comm comm = model_.part().comm;
+  std::optional<Hdf5File> file;
+  on_root(comm, [&] { file.emplace(Hdf5File::in_memory()); });
+  Hdf5File* memory = file ? &*file : nullptr;
+  Archive save(model_.part(), memory, Transfer::save);
+  save.stay_in_run();
+  persist(save);
+  share_outcome(save.outcome(), comm);
+  options_.balance->divide(owner);
+  const auto bodies = static_cast<std::size_t>(model_.part().local);
+  state_ = State<Space>(bodies);
+  wrenches_ = Wrenches<Space>(bodies);
+  follow_model();
+  Archive load(model_.part(), memory, Transfer::load);
+  load.stay_in_run();
+  persist(load);
+  take_up_state();
+  result_.moves = balance_->moves();
 }
 
 template <class Space>
@@ -212,6 +262,7 @@ void DynamicRun<Space>::begin_steps() {
 template <class Space>
 typename DynamicRun<Space>::Return DynamicRun<Space>::make_steps() {
   while (!is_paused()) {
+    move_bodies_if_due();
     begin_piece();
     const int ierr = TSSolve(ts_, nullptr);
     if (error_) std::rethrow_exception(error_);
@@ -261,7 +312,7 @@ void DynamicRun<Space>::begin_piece() {
 template <class Space>
 void DynamicRun<Space>::limit_steps() {
   const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
-  const std::int64_t last = std::max(std::min({last_step(), end, pause_step()}), done_);
+  const std::int64_t last = std::max(std::min({last_step(), end, pause_step(), next_look_}), done_);
   check(TSSetMaxSteps(ts_, static_cast<PetscInt>(last - piece_)));
 }
 

@@ -108,6 +108,9 @@ class DynamicRun : public Run {
   virtual Columns own_columns() const { return {}; }
   /// Saves or loads the integrator's own history, apart from records, time and dt.
   virtual void persist_own(Archive& archive) = 0;
+  /// Adapts the integrator's objects to a model that has been divided anew; the state follows. An
+  /// integrator that leaves this out is given no DynamicOptions::balance.
+  virtual void follow_model() {}
   /// PETSc objects of the integrator that audits compare.
   virtual std::vector<PetscObject> objects() const { return {}; }
   /// Compares the run's objects and times over ranks if auditing is on; collective then.
@@ -194,6 +197,9 @@ class DynamicRun : public Run {
   bool is_paused() const {
     return adaptive_ ? time_ >= pause_ - early * dt_ : done_ >= pause_step();
   }
+  void move_bodies_if_due();
+  void move_bodies(const std::vector<std::int32_t>& owner);
+  void take_up_state();
   void count_steps();
   void end();
   /// Last step of the run, unless its end time comes first.
@@ -216,6 +222,9 @@ class DynamicRun : public Run {
   WorkLedger works_;
   Ledger ledger_;
   Checkpoints checkpoints_;
+  std::optional<RankBalance> balance_;
+  // Steps of looks at the balance. A checkpoint of a step is made before the look after it.
+  std::int64_t next_look_ = std::numeric_limits<std::int64_t>::max(), looked_ = -1;
   std::string_view what_;
   std::string type_;
   std::optional<Progress> progress_;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "floe/run/result.h"
 #include "model/model.h"
+#include "model/rank_balance.h"
 #include "run/checkpoint.h"
 
 namespace floe {
@@ -46,6 +48,7 @@ struct DynamicOptions {
   double most_steps = default_most_steps;  ///< a run that needs more steps is refused
   OnPlan on_plan = nullptr;
   CheckpointOptions checkpoint;
+  std::optional<BalanceOptions> balance;  ///< given: the run keeps account of its ranks
 };
 
 }  // namespace floe

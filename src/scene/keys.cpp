@@ -353,6 +353,13 @@ constexpr std::array table{
     OptionSpec{"output: fields", number, "(first and last state)", "s", ">= 1e-12, <= 1e12",
                "between frames of fields.h5, where steps of implicit end too"},
 
+    OptionSpec{"partition: threshold", number, "1.15", "", ">= 1, <= 1e9",
+               "explicit runs with contact: bodies move between ranks when the busiest has more "
+               "than this many times the mean load, and has kept the others waiting for longer "
+               "than a move takes; 1: at each look; states keep their bits"},
+    OptionSpec{"partition: every", integer, "1000", "", ">= 1, <= 1000000000",
+               "steps between looks at the loads"},
+
     OptionSpec{"checkpoint: every", number, "600", "s", ">= 1e-3, <= 1e9",
                "dynamics: run time (by the clock) between checkpoints; with a section checkpoint "
                "there is one at the end of the run too"},

@@ -15,19 +15,12 @@ namespace {
 /// Sections and keys that may change. Of the options that move bodies only loads may: they jump at
 /// the time of the checkpoint. The places of obstacles and boundaries are functions of the time
 /// since 0, so they would jump together with everything in contact with them.
-constexpr std::array<std::string_view, 12> may_change{
-    "time: end",
-    "time: allow_unstable",
-    "limit",
-    "output",
-    "checkpoint",
-    "report",
-    "check",
+constexpr std::array<std::string_view, 13> may_change{
+    "time: end",         "time: allow_unstable", "limit",           "output",
+    "partition",         "checkpoint",           "report",          "check",
     "sheet: mesh_file",
     "lattice_file",  // its contents may not change
-    "load: NAME: force",
-    "load: NAME: moment",
-    "load: NAME: ramp"};
+    "load: NAME: force", "load: NAME: moment",   "load: NAME: ramp"};
 
 bool is_free(std::string_view key) {
   const auto is_it = [&](std::string_view free) { return free == key || free == section_of(key); };

@@ -49,9 +49,10 @@ void read_time(Options& options, Scene& scene) {
 void read_dynamics(Options& options, Scene& scene) {
   if (scene.integrator == Integrator::quasistatic) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
-    for (const auto* key : {"initial", "limit: velocity", "limit: energy_error", "checkpoint",
-                            "time: safety", "time: allow_unstable", "beam: damping_ratio",
-                            "beam: damping_modes", "model: rotational_inertia_factor"})
+    for (const auto* key :
+         {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "partition",
+          "time: safety", "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes",
+          "model: rotational_inertia_factor"})
       options.refuse(key, why);
     return;
   }
@@ -64,6 +65,13 @@ void read_dynamics(Options& options, Scene& scene) {
     scene.time.safety = options.number("time: safety");
     scene.time.allow_unstable = options.flag("time: allow_unstable");
     scene.inertia_factor = options.number("model: rotational_inertia_factor");
+  }
+  if (scene.integrator == Integrator::explicit_ && scene.forces.contact) {
+    scene.partition.threshold = options.number("partition: threshold");
+    scene.partition.every = options.integer("partition: every");
+  } else {
+    options.refuse("partition",
+                   "would have no effect: bodies move between ranks in explicit runs with contact");
   }
   scene.checkpoint.every = options.number("checkpoint: every");
   scene.checkpoint.at_end = options.given_section("checkpoint");

@@ -26,6 +26,7 @@ struct RunHooks {
   OnPlan on_plan;          ///< receives the plan before the first step; false: no run is made
   std::function<void(const std::vector<std::string>&)> prepare;  ///< CheckpointOptions::prepare
   std::function<void(Archive&)> others;                          ///< CheckpointOptions::others
+  BalanceOptions balance;                                        ///< for explicit runs with contact
   const std::vector<PlacedLoad>* loads = nullptr;                ///< for static: monitor
 };
 

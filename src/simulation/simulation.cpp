@@ -124,6 +124,9 @@ class RunningIn final : public Running {
   void prepare_output(const std::vector<std::string>& columns) {
     if (!output_) open(columns);
   }
+  void equip(const Lattice& lattice);
+  void divide(const std::vector<std::int32_t>& owner);
+  BalanceOptions balance();
   bool plan(const RunPlan& plan);
   void observe(const Accepted<Space>& accepted);
   void show(std::int64_t step);
@@ -138,6 +141,9 @@ class RunningIn final : public Running {
       output_size(setting_.lattice, scene_.forces.fracture, scene_.boundaries.size(),
                   scene_.loads.size(), scene_.obstacles.size());
   PackedLattice packed_;
+  /// The lattice once more, for moves of bodies between ranks; empty where none can move.
+  Lattice whole_;
+  PackedLattice packed_whole_;
   std::vector<PlacedLoad> loads_;
   std::optional<Model<Space>> model_;
   std::optional<OutOfPlane> out_of_plane_;
@@ -157,12 +163,12 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
   if (!needs_shapes(scene_)) packed_.pack_shapes(lattice);
   loads_ = place_loads(scene_, lattice);
   model_.emplace(lattice, PETSC_COMM_WORLD, scene_.boundaries, strips_of(scene_, lattice));
-  add_forces(scene_, loads_, *model_, &lattice);
-  add_contact(scene_, lattice, *model_);
+  equip(lattice);
   if (is_static_) hold_free_motions(scene_, lattice, *model_);
   if (is_static_ && setting_.choice.planar)
     out_of_plane_ = out_of_plane(scene_, lattice, loads_, model_->part());
   release_setup(scene_, *model_);
+  BalanceOptions balance = this->balance();
   packed_.pack_shapes(lattice);
   packed_.pack_beams(lattice);
   if (size() == 1) packed_.pack_bodies(lattice, model_->part().bodies);
@@ -176,8 +182,46 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
                          output_->sync();
                        },
                    .others = [this](Archive& archive) { persist(archive); },
+                   .balance = std::move(balance),
                    .loads = &loads_},
                   [this](const Accepted<Space>& accepted) { observe(accepted); });
+}
+
+/// Gives the model its forces.
+template <class Space>
+void RunningIn<Space>::equip(const Lattice& lattice) {
+  add_forces(scene_, loads_, *model_, &lattice);
+  add_contact(scene_, lattice, *model_);
+}
+
+/// Settings of moves of bodies between ranks. Where there can be some, the lattice is kept.
+template <class Space>
+BalanceOptions RunningIn<Space>::balance() {
+  BalanceOptions options{.threshold = scene_.partition.threshold,
+                         .every = scene_.partition.every,
+                         .strips = strips_of(scene_, setting_.lattice),
+                         .divide = {}};
+  const bool can_move = scene_.forces.contact && size() > 1 &&
+                        scene_.integrator == Integrator::explicit_ && !scene_.check_only;
+  if (!can_move) return options;
+  whole_ = setting_.lattice;
+  packed_whole_.pack_shapes(whole_);
+  packed_whole_.pack_beams(whole_);
+  options.divide = [this](const std::vector<std::int32_t>& owner) { divide(owner); };
+  return options;
+}
+
+/// Divides the model anew. Collective.
+template <class Space>
+void RunningIn<Space>::divide(const std::vector<std::int32_t>& owner) {
+  if (output_) output_->prepare_to_follow();
+  packed_whole_.unpack(whole_);
+  model_->divide(whole_, owner);
+  equip(whole_);
+  release_setup(scene_, *model_);
+  packed_whole_.pack_shapes(whole_);
+  packed_whole_.pack_beams(whole_);
+  if (output_) output_->follow();
 }
 
 /// Opens the output folder, once all options are known to be understood, so that bad input leaves

@@ -336,6 +336,14 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
       json[name] = static_cast<std::int64_t>(std::llround(value));
   }
   if (model.fracture() != nullptr) add_fracture(scene, model, last, json, text);
+  if (const Moves& moves = result.moves; moves.count > 0) {
+    json["moves"] = {
+        {"count", moves.count}, {"load_before", moves.before}, {"load_after", moves.after}};
+    text += line(
+        "bodies moved between ranks %lld times; the last time the busiest rank went from "
+        "%.2f to %.2f times the mean load",
+        static_cast<long long>(moves.count), moves.before, moves.after);
+  }
   json["wall_s"] = wall;
   json["mesh_s"] = wall_seconds(Event::mesh);
   json["lattice_s"] = wall_seconds(Event::lattice);

@@ -95,6 +95,14 @@ Submerged Immersion::of(const State<Spatial>& state, std::int32_t body) const {
   return placed(body, of_unit_length(rotation(state, b)), height(state, body));
 }
 
+bool Immersion::is_cut_across(const State<Spatial>& state, std::int32_t body) const {
+  const auto b = static_cast<std::size_t>(body);
+  const double z = height(state, body);
+  if (!(std::abs(z) < extent_[b])) return false;
+  const Prism<double> p = prism(b);
+  return !sides_only(p, triad(product(of_unit_length(rotation(state, b)), p.axes)), z);
+}
+
 Submerged Immersion::below(const State<Spatial>& state, std::int32_t body,
                            const SurfacePlane& plane) const {
   const auto b = static_cast<std::size_t>(body);

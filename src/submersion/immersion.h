@@ -193,6 +193,8 @@ class Immersion {
   double volume(std::int32_t body) const { return item(whole_, body).volume; }
   /// Area of an owned body at rest seen from above [m^2].
   double plan_area(std::int32_t body) const;
+  /// Whether the surface cuts an owned body other than through its sides only.
+  bool is_cut_across(const State<Spatial>& state, std::int32_t body) const;
   /// Whether an owned body is a prism along its axis 3.
   bool is_prism(std::int32_t body) const {
     return prism(static_cast<std::size_t>(body)).radius2 < std::numeric_limits<double>::infinity();

@@ -38,6 +38,7 @@ class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>,
   const Part& part() const { return part_; }
   const Immersion& immersion() const { return immersion_; }
   bool has_pace() const { return pace_ > 1; }
+  int pace() const { return pace_; }
 
   void before_evaluation(const State<Spatial>&) override { open_ = true; }
   void after_evaluation() override { open_ = known_ = false; }

@@ -33,7 +33,8 @@ double heave_bound(const Immersion& immersion, const Part& part, double weight_d
 ///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA.
 class Buoyancy final : public Force<Spatial>,
                        public HasTangent<Spatial>,
-                       public LimitsStep<Spatial> {
+                       public LimitsStep<Spatial>,
+                       public BearsLoad<Spatial> {
  public:
   Buoyancy(std::shared_ptr<Submersion> submersion, double weight_density)
       : part_(submersion->part()),
@@ -44,10 +45,21 @@ class Buoyancy final : public Force<Spatial>,
 
   std::string_view name() const override { return "buoyancy"; }
   Roles<Spatial> roles() override {
-    Roles<Spatial> roles{.tangent = this, .step = this, .prepares = submersion_.get()};
+    Roles<Spatial> roles{
+        .tangent = this, .step = this, .prepares = submersion_.get(), .load = this};
     if (submersion_->has_pace())
       roles.commits = submersion_.get(), roles.persists = submersion_.get();
     return roles;
+  }
+
+  /// Bodies that are clipped: 290 ns each time (docs/decisions/53), every k-th step. All others
+  /// take the same time as each other.
+  void add_load(const State<Spatial>& state, std::span<double> load) const override {
+    constexpr double ns_of_clipping = 290;
+    for (std::int32_t body = 0; body < part_.owned; ++body) {
+      if (immersion_.is_cut_across(state, body))
+        item(load, body) += ns_of_clipping / submersion_->pace();
+    }
   }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {

@@ -129,6 +129,70 @@ TEST(Hilbert, DegenerateExtents) {
             (std::vector<std::int32_t>{3, 1, 2, 0}));
 }
 
+// -- owners
+// -----------------------------------------------------------------------------------------
+
+/// Sum of the loads of each owner.
+std::vector<double> sums(const std::vector<std::int32_t>& owner, const std::vector<double>& loads,
+                         int ranks) {
+  std::vector<double> all(static_cast<std::size_t>(ranks), 0.0);
+  for (std::size_t b = 0; b < owner.size(); ++b)
+    all.at(static_cast<std::size_t>(owner[b])) += loads[b];
+  return all;
+}
+
+/// 40 x 20 places, in plan.
+std::vector<Point3> grid() {
+  std::vector<Point3> places;
+  for (int k = 0; k < 800; ++k) places.push_back({1.0 * (k % 40), 1.0 * (k / 40), 0});
+  return places;
+}
+
+TEST(OwnersByLoad, PartsHaveEqualLoads) {
+  const std::vector<Point3> places = grid();
+  std::vector<double> loads;  // a pile at the far end of one side
+  for (const Point3& p : places) loads.push_back(p.x > 30 && p.y > 12 ? 20 : 1);
+  const double mean = std::accumulate(loads.begin(), loads.end(), 0.0);
+  for (const Vec3<double>& strips : {Vec3<double>{}, Vec3<double>{1, 0, 0}}) {
+    for (const int ranks : {1, 2, 3, 5}) {
+      const std::vector<std::int32_t> owner = owners_by_load(places, loads, ranks, strips);
+      for (const double sum : sums(owner, loads, ranks))
+        EXPECT_NEAR(sum, mean / ranks, 20) << ranks;  // the load of a body
+    }
+  }
+  // Strips along x are cut at heights of y, where half of the load is below.
+  const std::vector<std::int32_t> owner = owners_by_load(places, loads, 2, {1, 0, 0});
+  for (std::size_t b = 0; b < owner.size(); ++b) {
+    if (places[b].y < 14) {
+      EXPECT_EQ(owner[b], 0);
+    }
+    if (places[b].y > 15) {
+      EXPECT_EQ(owner[b], 1);
+    }
+  }
+}
+
+TEST(OwnersByLoad, EveryRankOwnsABody) {
+  const std::vector<Point3> places{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}};
+  for (const std::vector<double>& loads :
+       {std::vector<double>{1e9, 1, 1, 1, 1}, std::vector<double>{1, 1, 1, 1, 1e9}}) {
+    for (const int ranks : {2, 3, 5}) {
+      const std::vector<double> all = sums(owners_by_load(places, loads, ranks, {}), loads, ranks);
+      EXPECT_GE(*std::min_element(all.begin(), all.end()), 1) << ranks;
+    }
+  }
+  EXPECT_THROW((void)owners_by_load(places, {}, 6, {}), InputError);
+}
+
+TEST(OwnersByLoad, BodiesThatAreAlikeAreSharedByNumber) {
+  const std::vector<Point3> places = grid();
+  const std::vector<double> alike(places.size(), 3.0);
+  for (const int ranks : {2, 5}) {
+    EXPECT_EQ(owners_by_load(places, alike, ranks, {1, 0, 0}),
+              owners_by_load(places, {}, ranks, {1, 0, 0}));
+  }
+}
+
 // -- the file
 // ---------------------------------------------------------------------------------------
 

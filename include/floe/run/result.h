@@ -26,6 +26,12 @@ struct PathResult {
   std::string end;              ///< why the path ended
 };
 
+/// Moves of bodies between ranks.
+struct Moves {
+  std::int64_t count = 0;
+  double before = 0, after = 0;  ///< at the last move: largest load of a rank over the mean
+};
+
 /// Result of a run, for summary.json and the exit code.
 struct RunResult {
   bool done = false;
@@ -41,6 +47,7 @@ struct RunResult {
   std::string limited_by;           ///< explicit: what limits the stable step
   std::int64_t unstable_modes =
       -1;                          ///< negative eigenvalues at the last equilibrium; -1: not known
+  Moves moves;                     ///< of bodies between ranks
   std::optional<PathResult> path;  ///< static runs along a path
   std::vector<std::string> warnings;  ///< remarks of forces in order of time; on rank 0
 };
