@@ -176,7 +176,7 @@ def listed(given, base):
         name, scene = str(entry.pop("name", "")), entry.pop("scene", None)
         if name and not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", name):
             refuse("list: name", name, "letters, digits, '.', '_' and '-'")
-        points.append((name, scene_file("list: scene", scene, base) if scene else None,
+        points.append((name, scene if scene is None else scene_file("list: scene", scene, base),
                        values("list", entry)))
     return points
 
@@ -244,7 +244,7 @@ def spec_of(given, name, base):
     """A Spec of what a YAML file (or a program) says; ValueError with key, value and what is
     allowed."""
     known("", given, KEYS)
-    scene = scene_file("scene", given["scene"], base) if given.get("scene") else None
+    scene = scene_file("scene", given["scene"], base) if "scene" in given else None
     sections = [grid(given.get("grid") or {}),
                 listed(given["list"], base) if "list" in given else [("", None, {})],
                 latin_hypercube(given["latin_hypercube"]) if "latin_hypercube" in given
@@ -299,9 +299,9 @@ def members(spec):
     varies = len(spec.points) > 1 or spec.points[0][2] or spec.seeds == [None]
     for label, scene, varied, told in spec.points:
         for seed in spec.seeds:
-            words = [label] * bool(varies) + [f"s{seed:03d}"] * (seed is not None)
+            words = [label if varies else "", "" if seed is None else f"s{seed:03d}"]
             seeded = dict.fromkeys(spec.seed_keys, str(seed))
-            runs.append(Member("_".join(words), scene, spec.options | varied | seeded,
+            runs.append(Member("_".join(filter(None, words)), scene, spec.options | varied | seeded,
                                parameters=told | varied, seed=seed))
     return runs
 
@@ -369,7 +369,7 @@ class Folder:
     def plan(self, jobs):
         """Asks floe for the planned time of each point: its first seed. BadInput with floe's words
         if a point is none that floe would run. Costs are times of finished runs where there are
-        any."""
+        any; other plans are scaled as those of the finished runs turned out."""
         first = {}
         for run in self.runs:
             first.setdefault(run.group(self.spec.seed_keys), run)
@@ -383,9 +383,12 @@ class Folder:
             if self.finished(run):
                 taken.setdefault(run.group(self.spec.seed_keys), []).append(
                     self.result(run)["wall_s"])
+        known = [group for group in taken if self.seconds[group]]
+        pace = (sum(np.mean(taken[group]) for group in known)
+                / (sum(self.seconds[group] for group in known) or 1)) or 1.0
         for run in self.runs:
             group = run.group(self.spec.seed_keys)
-            run.cost = float(np.mean(taken.get(group, [self.seconds[group] or 1.0])))
+            run.cost = float(np.mean(taken.get(group, [(self.seconds[group] or 1.0) * pace])))
 
     def unknown(self, run):
         """Whether nobody knows how long a run takes."""
