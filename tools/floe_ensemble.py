@@ -184,7 +184,11 @@ def listed(given, base):
 def latin_hypercube(given):
     """Points that fill the ranges evenly: each of n equal parts of each range has one. Numbers are
     kept to six digits."""
-    from scipy.stats import qmc
+    try:
+        from scipy.stats import qmc
+    except ImportError:
+        raise ValueError("latin_hypercube: needs Python's scipy: apt-get install python3-scipy"
+                         ) from None
     known("latin_hypercube", given, ("samples", "seed", "ranges"))
     n = whole("latin_hypercube: samples", given.get("samples"), 1)
     seed = whole("latin_hypercube: seed", given.get("seed", 1), 0)

@@ -102,10 +102,13 @@ def last_words(error, out):
 
 
 def write_whole(path, text):
-    """Under another name first: whoever is killed leaves no half-written file."""
+    """Under another name first: neither a kill nor a power cut leaves a half-written file."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    part.write_text(text)
+    with open(part, "w") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
     part.replace(path)
 
 

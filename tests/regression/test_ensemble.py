@@ -227,7 +227,7 @@ class Runs(EnsembleTest):
     def test_killed_and_going_on(self):
         """kill -9 in the middle: runs die with it, what was done is kept, what was under way goes
         on from its checkpoint, and the table is the same but for times."""
-        self.spec("seeds: 2\ngrid: {sheet_thickness: [0.5, 0.4, 0.6]}\n")
+        self.spec("seeds: 2\ngrid: {sheet_thickness: [0.5, 0.4]}\n")
         self.ensemble("--dir", "straight", "--jobs", "2")
         process = self.begin("--dir", "killed", "--jobs", "2")
         folder = self.folder / "killed"
@@ -244,9 +244,9 @@ class Runs(EnsembleTest):
         while processes_with("-output_dir killed/"):
             time.sleep(0.01)
         before, restarted = results(), halfway()
-        self.assertIn(len(before), range(1, 5))
+        self.assertIn(len(before), range(1, 4))
         _, said = self.ensemble("--dir", "killed", "--jobs", "2")
-        self.assertIn(f"6 runs, {len(before)} of them finished before", said)
+        self.assertIn(f"4 runs, {len(before)} of them finished before", said)
         self.assertEqual(before, {name: results()[name] for name in before})
         self.assertTrue(restarted)
         for name in restarted:
@@ -257,8 +257,8 @@ class Runs(EnsembleTest):
                          [{k: v for k, v in row.items() if k not in times} for row in expected])
         self.assertEqual({row["status"] for row in rows}, {"done"})
         self.assertEqual([row["sheet_thickness"] for row in rows],
-                         ["0.5"] * 2 + ["0.4"] * 2 + ["0.6"] * 2)
-        self.assertEqual(len({row["energy_damping"] for row in rows}), 6)  # no two are one run
+                         ["0.5"] * 2 + ["0.4"] * 2)
+        self.assertEqual(len({row["energy_damping"] for row in rows}), 4)  # no two are one run
 
     def test_failed_run_does_not_stop_the_rest(self):
         self.spec("options: {time_end: 0.2}\n"
