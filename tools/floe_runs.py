@@ -58,8 +58,9 @@ class Run:
 @dataclass
 class Ended:
     """How a run ended: "done", "failed" or "stopped" (it can go on), with a message if not done;
-    the wall time [s] and the processor time of all ranks [s] of its last part."""
+    its exit code; the wall time [s] and the processor time of all ranks [s] of its last part."""
     status: str
+    code: int
     message: str
     wall: float
     processor: float
@@ -269,7 +270,7 @@ class Runner:
         _, status, used = os.wait4(process.popen.pid, 0)
         code = process.popen.returncode = os.waitstatus_to_exitcode(status)
         del self.running[process.run.name]
-        ended = Ended("done", "", time.monotonic() - process.started,
+        ended = Ended("done", code, "", time.monotonic() - process.started,
                       used.ru_utime + used.ru_stime)
         if code != 0 and process.reason:
             ended.status, ended.message = "stopped", process.reason
@@ -277,7 +278,8 @@ class Runner:
             ended.status, ended.message = "stopped", last_words(process.error, process.out)
         elif code != 0:
             ended.status = "failed"
-            ended.message = f"exit code {code}: {last_words(process.error, process.out)}"
+            how = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"
+            ended.message = f"{how}: {last_words(process.error, process.out)}"
         process.out.close()
         process.error.close()
         self.finish(process.run, self.folder / "runs" / process.run.name, ended)
