@@ -177,10 +177,14 @@ class Progress:
         line = ", ".join(word for word in words if word)
         if self.bar:
             done = int(30 * share)
-            print(f"\r\033[K[{'#' * done}{' ' * (30 - done)}] {line}", end="\n" if last else "",
-                  file=sys.stderr, flush=True)
+            print(f"\r\033[K[{'#' * done}{' ' * (30 - done)}] {line}", end="", file=sys.stderr,
+                  flush=True)
         else:
             print(line, file=sys.stderr, flush=True)
+
+    def close(self):
+        if self.bar:
+            print(file=sys.stderr)
 
     def say(self, line):
         """A line of its own, above the bar."""
@@ -217,6 +221,7 @@ class Runner:
                     self.end(process)
                 self.watch()
                 self.progress.show(self.waiting, self.running.values(), bool(ready))
+        self.progress.close()
         return self.results
 
     @contextlib.contextmanager

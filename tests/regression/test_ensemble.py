@@ -377,6 +377,8 @@ class Slurm(EnsembleTest):
         self.environment["TOOL"] = TOOL
         self.spec("seeds: 2\ngrid: {sheet_thickness: [1, 2]}\nlimit: {run: 90m}\nranks: 1\n")
         self.ensemble("--only", "p002_s001")
+        self.ensemble("--slurm", "--only", "p001_s002,p002_s001")
+        self.assertIn("--array=1-1 ", (self.folder / "out/ensemble_e/slurm.sh").read_text())
         out, _ = self.ensemble("--slurm")
         script = self.folder / out.strip()
         self.assertEqual(script, self.folder / "out/ensemble_e/slurm.sh")
