@@ -88,7 +88,7 @@ class EnsembleTest(FolderTest):
 
     def gone(self):
         """Waits until no run of the test is left."""
-        while processes_with(str(self.folder / "scene.yaml")) or processes_with("-output_dir out/"):
+        while processes_with(f"-output_dir {self.folder}"):
             time.sleep(0.01)
 
 
@@ -230,8 +230,8 @@ class Runs(EnsembleTest):
         on from its checkpoint, and the table is the same but for times."""
         self.spec("seeds: 2\ngrid: {sheet_thickness: [0.5, 0.4]}\n")
         self.ensemble("--dir", "straight", "--jobs", "2")
-        process = self.begin("--dir", "killed", "--jobs", "2")
         folder = self.folder / "killed"
+        process = self.begin("--dir", str(folder), "--jobs", "2")
 
         def results():
             return {path.stem: path.stat().st_mtime_ns for path in folder.glob("results/*.json")}
@@ -242,11 +242,10 @@ class Runs(EnsembleTest):
         self.wait(process, lambda: results() and halfway())
         process.send_signal(signal.SIGKILL)
         process.wait()
-        while processes_with("-output_dir killed/"):
-            time.sleep(0.01)
+        self.gone()
         before, restarted = results(), halfway()
         self.assertIn(len(before), range(1, 4))
-        _, said = self.ensemble("--dir", "killed", "--jobs", "2")
+        _, said = self.ensemble("--dir", str(folder), "--jobs", "2")
         self.assertIn(f"4 runs, {len(before)} of them finished before", said)
         self.assertEqual(before, {name: results()[name] for name in before})
         self.assertTrue(restarted)
@@ -300,9 +299,10 @@ class Runs(EnsembleTest):
 
     def test_ranks_die_with_the_ensemble(self):
         self.spec("options: {time_end: 1e5, limit_frames: 1e12, limit_disk: 1e12}\nranks: 2\n")
-        process = self.begin()
-        self.wait(process, (self.folder / "out/ensemble_e/runs/p001/checkpoint.h5").exists)
-        self.assertEqual(len([command for command in processes_with("-output_dir out/")
+        process = self.begin("--dir", str(self.folder / "out"))
+        self.wait(process, (self.folder / "out/runs/p001/checkpoint.h5").exists)
+        self.assertEqual(len([command for command in
+                              processes_with(f"-output_dir {self.folder}")
                               if command.startswith(str(FLOE))]), 2)
         process.send_signal(signal.SIGKILL)
         process.wait()
