@@ -29,7 +29,7 @@ beam: {damping_ratio: 1}
 initial: {names: [i], i: {set: right, velocity: [0, 0, 1]}}
 time: {end: 3}
 output: {history: 0.1, fields: 1000}
-checkpoint: {every: 0.02}
+checkpoint: {every: 0.05}
 """
 # Plans as many seconds as the sheet is thick, notes that it was run, and is done at once.
 FAKE = """#!/bin/bash
@@ -228,8 +228,10 @@ class Runs(EnsembleTest):
     def test_killed_and_going_on(self):
         """kill -9 in the middle: runs die with it, what was done is kept, what was under way goes
         on from its checkpoint, and the table is the same but for times."""
-        self.spec("seeds: 2\ngrid: {sheet_thickness: [0.5, 0.4]}\n")
-        self.ensemble("--dir", "straight", "--jobs", "2")
+        runs = "seeds: 2\ngrid: {sheet_thickness: [0.5, 0.4]}\n"
+        self.spec(runs + "options: {checkpoint_every: 600}\n", "straight")
+        self.ensemble("--dir", "straight", "--jobs", "2", name="straight")
+        self.spec(runs)
         folder = self.folder / "killed"
         process = self.begin("--dir", str(folder), "--jobs", "2")
 
