@@ -375,8 +375,10 @@ class TimeLeft(unittest.TestCase):
 class Slurm(EnsembleTest):
     def test_an_array_of_all_runs(self):
         self.fake("#!/bin/bash\nif [ \"$1\" = ensemble ]; then shift; exec \"$TOOL\" \"$@\"; fi\n"
-                  + FAKE)
-        self.environment["TOOL"] = TOOL
+                  + FAKE + "[ ! -e full ] || exit 3\n")
+        (self.folder / "sbatch").write_text("#!/bin/bash\necho \"$@\" >submitted\n")
+        (self.folder / "sbatch").chmod(0o755)
+        self.environment |= {"TOOL": TOOL, "PATH": f"{self.folder}:{os.environ['PATH']}"}
         self.spec("seeds: 2\ngrid: {sheet_thickness: [1, 2]}\nlimit: {run: 90m}\nranks: 1\n")
         self.ensemble("--only", "p002_s001")
         self.ensemble("--slurm", "--only", "p001_s002,p002_s001")
@@ -390,14 +392,21 @@ class Slurm(EnsembleTest):
         self.assertIn("\nruns=(p002_s002 p001_s001 p001_s002)\n", text)  # longest first, none done
         self.assertEqual([row["status"] for row in self.table()], ["waiting"] * 2
                          + ["done", "waiting"])
-        tasks = [subprocess.Popen([script], cwd="/", stdout=subprocess.DEVNULL,
-                                  stderr=subprocess.DEVNULL,
-                                  env={**self.environment, "SLURM_ARRAY_TASK_ID": str(task)})
-                 for task in (1, 2, 3)]
+
+        def begin(task):
+            return subprocess.Popen([script], cwd="/", stdout=subprocess.DEVNULL,
+                                    stderr=subprocess.DEVNULL,
+                                    env={**self.environment, "SLURM_ARRAY_TASK_ID": str(task)})
+        (self.folder / "full").touch()  # a run that stops with a checkpoint has a successor
+        self.assertEqual(begin(2).wait(), 3)
+        self.assertEqual((self.folder / "submitted").read_text(), f"--array=2 {script}\n")
+        (self.folder / "full").unlink()
+        (self.folder / "started").unlink()
+        tasks = [begin(task) for task in (1, 2, 3)]
         self.assertEqual([task.wait() for task in tasks], [0, 0, 0])  # beside each other
         self.assertEqual({row["status"] for row in self.table()}, {"done"})
         self.assertEqual(sorted((self.folder / "started").read_text().split()),
-                         ["p001_s001", "p001_s002", "p002_s001", "p002_s002"])
+                         ["p001_s001", "p001_s002", "p002_s002"])
 
 
 class Example(EnsembleTest):
