@@ -23,7 +23,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS
-    "python3:any, python3-h5py, python3-matplotlib, python3-numpy, python3-pil")
+    "python3:any, python3-h5py, python3-matplotlib, python3-numpy, python3-pil, python3-yaml")
 # Without mpiexec there are runs on one process; on the reference BLAS they are about five times
 # slower.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "openmpi-bin, libopenblas0-serial | libopenblas0")

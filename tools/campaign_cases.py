@@ -214,7 +214,7 @@ class Case:
         return 100 * SHEETS.index(self.sheet) + self.number
 
     def scene(self, integrator, start):
-        """Scene file and command-line options."""
+        """Scene file and {key: value} of its options."""
         sheet = self.sheet
         options = {"sheet_length": sheet.length, "sheet_width": sheet.length,
                    "sheet_thickness": sheet.thickness,
@@ -222,8 +222,7 @@ class Case:
         options |= TESTS[self.test].options(sheet, integrator, start)
         if integrator == "implicit":
             options["integrator"] = integrator
-        return TESTS[self.test].scenes[integrator], [word for key, value in options.items()
-                                                     for word in (f"-{key}", f"{value}")]
+        return TESTS[self.test].scenes[integrator], options
 
     def evaluate(self, output):
         """What is kept of a run: a row of numbers, and for bending a profile."""

@@ -24,6 +24,7 @@ constexpr std::array table{
     Subcommand{"render", "pictures and films of a run in space (needs ParaView)"},
     Subcommand{"make_lattice", "writes lattices of one's own: frames, regular sheets, blocks"},
     Subcommand{"strength", "the strength of whole sheets over that of their beams"},
+    Subcommand{"ensemble", "runs a scene many times: seeds, and parameters that are varied"},
     Subcommand{"campaign", "all sheets and tests of the paper"},
     Subcommand{"campaign_report", "figures and report of a campaign"},
 };

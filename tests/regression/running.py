@@ -76,3 +76,16 @@ class RunningTest(FolderTest):
         self.assertTrue(said.startswith("floe: "), said)
         self.assertEqual(before, self.files())
         return said
+
+
+def processes_with(text):
+    """Commands of running processes that contain the text."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            command = entry.read_bytes().replace(b"\0", b" ").decode(errors="replace")
+        except OSError:
+            continue  # it ended
+        if text in command:
+            found.append(command)
+    return found

@@ -13,6 +13,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from running import processes_with
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 CAMPAIGN = str(REPOSITORY / "tools/campaign")
 
@@ -37,17 +39,6 @@ class Campaign(unittest.TestCase):
         self.assertEqual(run.returncode, expect, run.stderr)
         return run.stderr
 
-    def processes_in(self, folder):
-        """Numbers of running processes whose command names the folder."""
-        found = []
-        for entry in Path("/proc").glob("[0-9]*/cmdline"):
-            try:
-                if str(self.root / folder).encode() in entry.read_bytes():
-                    found.append(int(entry.parent.name))
-            except OSError:
-                pass  # it ended
-        return found
-
     def test_killed_and_restarted(self):
         which = ("--only", "L20", "--meshes", "2")
         self.campaign("straight", *which)
@@ -68,7 +59,7 @@ exec "{os.environ["FLOE"]}" "$@"
             time.sleep(0.005)
         process.send_signal(signal.SIGKILL)
         process.wait()
-        while self.processes_in("killed"):  # runs die with the campaign
+        while processes_with(str(self.root / "killed")):  # runs die with the campaign
             time.sleep(0.01)
         before = {path: path.stat().st_mtime_ns for path in finished.glob("*.json")}
         self.assertIn(len(before), (5, 6))

@@ -81,6 +81,8 @@ class Installed(launch.FolderTest):
         run("./floe", "campaign", "--only", "tension_L10_h1_3h", "--meshes", "1", "--jobs", "1",
             "--no-report", cwd=work)
         self.assertTrue((work / "out/campaign_quasistatic/results.h5").exists())
+        self.assertIn("10 runs, 0 of them done", run(
+            "./floe", "ensemble", share / "input/ensembles/ice_cone.yaml", "--check", cwd=work))
         run(share / "tools/campaign_report", "out/campaign_quasistatic", cwd=work)
         self.assertIn("source tree", run(self.floe, "campaign_report", "out/campaign_quasistatic",
                                          "--write", cwd=work, code=2))

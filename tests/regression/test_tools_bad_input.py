@@ -86,6 +86,14 @@ class ToolsBadInput(unittest.TestCase):
         (self.folder / "runs.json").write_text("{")
         self.refused("strength", "--dir", ".", "--only", "L10_1", part="runs.json")
 
+    def test_ensembles(self):
+        self.refused("ensemble", part="SPEC.yaml")
+        self.refused("ensemble", "none.yaml", part="none.yaml: cannot be read: No such file")
+        (self.folder / "e.yaml").write_text("scene: s.yaml\nseeds: -1\n")
+        self.refused("ensemble", "e.yaml", part="e.yaml: seeds: -1 must be")
+        (self.folder / "e.yaml").write_bytes(b"\x89HDF\xff\x00")
+        self.refused("ensemble", "e.yaml", part="e.yaml: cannot be read")
+
     def test_lattices(self):
         self.refused("make_lattice", part="KIND")
         self.refused("make_lattice", "block", "--size", "0", "1", "1", "x.h5")

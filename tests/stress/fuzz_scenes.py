@@ -133,7 +133,8 @@ class Scenes:
     def __init__(self, keys):
         self.keys = keys
         self.inputs = {str(file.relative_to(launch.REPOSITORY)): scene_of(file.read_text())
-                       for file in sorted((launch.REPOSITORY / "input").rglob("*.yaml"))}
+                       for file in sorted((launch.REPOSITORY / "input").rglob("*.yaml"))
+                       if file.parent.name != "ensembles"}
 
     def place(self, key, scene, chance):
         """A path for a key: a name that the scene has, seldom another."""
