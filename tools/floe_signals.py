@@ -16,15 +16,15 @@ with floe_program.packages():
 
 
 def interval_means(time, mean):
-    """Interval dt [s] and means k x ... [N] of a force over k intervals, from the rows of a history
+    """Interval dt [s] and means c x k [N] of forces over k intervals, from the rows of a history
     that say its mean since time 0.
 
-    time: n [s]; mean: n x c, the mean force from 0 to each time. The impulse time x mean is exact,
+    time: n [s]; mean: n x c, the mean forces from 0 to each time. The impulse time x mean is exact,
     so the means are those of every step of the run, not of the rows alone. Rows come at the first
     step at or after a multiple of dt: between rows the impulse is taken as linear.
     """
-    dt = float(np.median(np.diff(time)))
-    # a last row at the end of a run may come early, and the step may not divide dt
+    # the step may not divide dt, and the last row, at the end of the run, may come early
+    dt = float((time[-2] - time[0]) / (len(time) - 2))
     count = int(math.floor((time[-1] - time[0]) / dt + 1e-3))
     edges = np.minimum(time[0] + dt * np.arange(count + 1), time[-1])
     impulse = time[:, None] * mean
