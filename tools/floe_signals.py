@@ -182,7 +182,8 @@ def trend(records, dt, least=4):
     spread = np.concatenate(records)
     if np.ptp(spread) == 0:
         return None
-    scale = float(np.mean([correlation_time(record, dt) for record in records]))
+    # of what is left without a straight line, since a trend would count as correlation
+    scale = float(np.mean([correlation_time(signal.detrend(record), dt) for record in records]))
     size = max(round(4 * scale / dt), math.ceil(length / 20), 1)
     count = length // size
     if count < least:
