@@ -120,18 +120,18 @@ def find_runs(folders):
     return found, left_out
 
 
-def differing(runs):
-    """Keys of the scenes, seeds aside, whose values differ between runs."""
-    keys = sorted({key for run in runs for key in run.options})
+def differing(options):
+    """Keys, seeds aside, whose values differ between the options of several runs."""
+    keys = sorted({key for each in options for key in each})
     return [key for key in keys if key not in DRAW_KEYS
             and key.split("_")[0] not in IDLE_SECTIONS
-            and len({run.options.get(key) for run in runs}) > 1]
+            and len({each.get(key) for each in options}) > 1]
 
 
 def groups(runs):
     """[({key: value}, runs)]: runs whose scenes differ by their seeds only, with what tells the
     group from the others."""
-    keys, found = differing(runs), {}
+    keys, found = differing([run.options for run in runs]), {}
     for run in runs:
         found.setdefault(tuple(run.options.get(key, "") for key in keys), []).append(run)
     return [(dict(zip(keys, values)), members) for values, members in found.items()]
