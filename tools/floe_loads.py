@@ -176,6 +176,11 @@ def records(runs, obstacle, settings):
     return raw, filtered
 
 
+def untouched(runs, obstacle):
+    """Whether no ice pressed on an obstacle in any run."""
+    return not any(np.any(run.forces.get(obstacle, 1)) for run in runs)
+
+
 def mean_of_runs(raw, level):
     """Mean of the load over runs [N], its band by Student's t over the runs' means (None of one
     run), and the deviation in time."""

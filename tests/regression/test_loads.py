@@ -18,11 +18,33 @@ import floe_signals as signals  # noqa: E402
 from floe_lattice import Shapes  # noqa: E402
 
 
-class Gumbel(unittest.TestCase):
+class Checks(unittest.TestCase):
+    """Several checks make one case: each case is a process, which loads scipy."""
+
+    def each(self, *checks):
+        for check in checks:
+            with self.subTest(check.__name__):
+                check()
+
+
+class Gumbel(Checks):
+    def test_estimators(self):
+        self.each(self.l_moments_are_means_over_all_subsets, self.l_moments_of_gumbel,
+                  self.likelihood_is_that_of_scipy,
+                  self.moments_of_a_large_sample_are_those_of_scipy,
+                  self.estimators_are_equivariant, self.quantiles, self.no_law_of_alike_maxima)
+
+    def test_bias_and_bands(self):
+        self.each(self.bias, self.bands_cover)
+
+    def test_goodness(self):
+        self.each(self.anderson_darling_by_its_definition, self.goodness_has_stephens_points,
+                  self.p_values)
+
     def setUp(self):
         self.random = np.random.default_rng(1)
 
-    def test_l_moments_are_means_over_all_subsets(self):
+    def l_moments_are_means_over_all_subsets(self):
         """Hosking (1990), section 2: l_r is r^-1 sum (-1)^k C(r-1, k) E X_{r-k:r}."""
         x = self.random.normal(size=8)
         wanted = []
@@ -32,24 +54,24 @@ class Gumbel(unittest.TestCase):
         l1, l2, t3, t4 = extremes.l_moments(x)
         np.testing.assert_allclose([l1, l2, t3 * l2, t4 * l2], wanted, rtol=1e-12)
 
-    def test_l_moments_of_gumbel(self):
+    def l_moments_of_gumbel(self):
         """Hosking (1990), table 2: 0.5772, ln 2, 0.1699, 0.1504."""
         p = (np.arange(200000) + 0.5) / 200000
         found = extremes.l_moments(-np.log(-np.log(p)))
         np.testing.assert_allclose(found, [0.5772, np.log(2), 0.1699, 0.1504], atol=1e-4)
 
-    def test_likelihood_is_that_of_scipy(self):
+    def likelihood_is_that_of_scipy(self):
         for n in (2, 3, 10, 50):
             x = self.random.gumbel(3e5, 4e4, size=(20, n))
             mu, beta = extremes.fit(x, "likelihood")
             for k, row in enumerate(x):
                 np.testing.assert_allclose((mu[k], beta[k]), stats.gumbel_r.fit(row), rtol=1e-6)
 
-    def test_moments_of_a_large_sample_are_those_of_scipy(self):
+    def moments_of_a_large_sample_are_those_of_scipy(self):
         x = self.random.gumbel(3, 2, size=100000)
         np.testing.assert_allclose(extremes.fit(x, "moments"), stats.gumbel_r.fit(x), atol=0.02)
 
-    def test_estimators_are_equivariant(self):
+    def estimators_are_equivariant(self):
         """On which bands rest."""
         x = self.random.gumbel(size=12)
         for method in extremes.METHODS:
@@ -57,17 +79,17 @@ class Gumbel(unittest.TestCase):
             np.testing.assert_allclose(extremes.fit(7 + 1e5 * x, method),
                                        (7 + 1e5 * mu, 1e5 * beta), rtol=1e-9)
 
-    def test_quantiles(self):
+    def quantiles(self):
         for p in (0.5, 0.01, 1e-8):
             value = extremes.quantile(3, 2, p)
             self.assertAlmostEqual(stats.gumbel_r.sf(value, 3, 2) / p, 1, 9)
 
-    def test_no_law_of_alike_maxima(self):
+    def no_law_of_alike_maxima(self):
         for x in ([1.0], [2.0, 2.0]):
             with self.assertRaises(ValueError):
                 extremes.fit(x, "moments")
 
-    def test_bias(self):
+    def bias(self):
         """L-moments have none: 0 within 4 deviations of the mean of 1,000 draws; likelihood's beta
         is low by about 0.77/n of itself at large n (its bias to first order)."""
         for n in (10, 20, 50):
@@ -78,7 +100,7 @@ class Gumbel(unittest.TestCase):
             beta = extremes.fit(x, "likelihood")[1]
             self.assertLess(abs(beta.mean() / 2 - 1 + 0.77 / n), 4 * stats.sem(beta / 2) + 1 / n**2)
 
-    def test_bands_cover(self):
+    def bands_cover(self):
         """95 % bands of a known law cover the true value in 90 to 97 of 100 of 1,000 draws."""
         for n, method, p in itertools.product((10, 20, 50), extremes.METHODS,
                                               (0.5, 0.1, 0.01, 0.001)):
@@ -113,7 +135,7 @@ class Gumbel(unittest.TestCase):
             if n == 10:
                 self.assertLess(max(percentile if method == "likelihood" else 0, basic), 0.925)
 
-    def test_anderson_darling_by_its_definition(self):
+    def anderson_darling_by_its_definition(self):
         """Against the integral n int (F_n - F)^2/(F (1 - F)) dF."""
         x = self.random.gumbel(size=7)
         u = np.sort(stats.gumbel_r.cdf(x))
@@ -122,14 +144,14 @@ class Gumbel(unittest.TestCase):
         wanted = 7 * np.mean((steps - p)**2 / (p * (1 - p)))
         self.assertAlmostEqual(float(extremes.anderson_darling(x, 0.0, 1.0)), wanted, 4)
 
-    def test_goodness_has_stephens_points(self):
+    def goodness_has_stephens_points(self):
         """Stephens (1977), table 1, case 3: A^2 (1 + 0.2/sqrt n) is above 0.637, 0.757, 1.038 in
         10, 5 and 1 of 100 samples."""
         known = extremes._standard_distances(50, 20000, 5) * (1 + 0.2 / np.sqrt(50))
         np.testing.assert_allclose(np.quantile(known, [0.9, 0.95, 0.99]), [0.637, 0.757, 1.038],
                                    rtol=0.03)
 
-    def test_p_values(self):
+    def p_values(self):
         """5 of 100 below 0.05 where the law is Gumbel's; nearly all where it is uniform."""
         p = [extremes.goodness(x)[1] for x in self.random.gumbel(3, 2, size=(1000, 20))]
         self.assertTrue(0.03 <= np.mean(np.array(p) < 0.05) <= 0.07)
@@ -137,8 +159,20 @@ class Gumbel(unittest.TestCase):
         self.assertGreater(np.mean(np.array(p) < 0.05), 0.9)
 
 
-class Records(unittest.TestCase):
-    def test_means_of_intervals_are_exact(self):
+class Records(Checks):
+    def test_means(self):
+        self.each(self.means_of_intervals_are_exact, self.running_mean, self.block_maxima)
+
+    def test_filters(self):
+        self.each(self.low_pass, self.mean, self.structure, self.words_of_filters)
+
+    def test_peaks(self):
+        self.each(self.separate_peaks, self.spacing_of_pulses)
+
+    def test_trend(self):
+        self.each(self.correlation_time, self.trends)
+
+    def means_of_intervals_are_exact(self):
         """Steps of 1 ms, rows at the first step after each 0.05 s; a spike of one step counts."""
         force = np.random.default_rng(2).normal(size=(3000, 3))
         force[777] += 1e4
@@ -154,7 +188,7 @@ class Records(unittest.TestCase):
         np.testing.assert_allclose(found.sum(axis=1) * dt, mean[rows[-1]] * time[rows[-1]],
                                    rtol=1e-3)
 
-    def test_running_mean(self):
+    def running_mean(self):
         x = np.arange(12.0)**2
         np.testing.assert_allclose(signals.running_mean(x, 5),
                                    np.convolve(x, np.full(5, 0.2), "valid"))
@@ -169,7 +203,7 @@ class Records(unittest.TestCase):
         a, b = np.linalg.lstsq(base, passed[middle], rcond=None)[0]
         return np.hypot(a, b), np.arctan2(b, a)
 
-    def test_low_pass(self):
+    def low_pass(self):
         """1/(1 + (sqrt 2 - 1) r^2n), r the ratio of tan(pi f dt), without a shift."""
         for order, f in itertools.product((1, 2, 4), (0.1, 1, 2, 3, 8)):
             r = np.tan(np.pi * f * 0.01) / np.tan(np.pi * 2 * 0.01)
@@ -180,13 +214,13 @@ class Records(unittest.TestCase):
                 self.assertAlmostEqual(phase, 0, 4)
         self.assertAlmostEqual(self.gain("low-pass:2", 2)[0], np.sqrt(0.5), 5)
 
-    def test_mean(self):
+    def mean(self):
         for f in (0.3, 1.0, 3.3):
             self.assertAlmostEqual(self.gain("mean:0.5", f)[0],
                                    abs(np.sin(np.pi * f * 0.5) / (50 * np.sin(np.pi * f * 0.01))),
                                    6)
 
-    def test_structure(self):
+    def structure(self):
         """Amplification at any frequency, 1/(2 zeta) at resonance; a step overshoots by exp(-pi
         zeta/sqrt(1 - zeta^2))."""
         for f in (0.2, 1.5, 4):
@@ -198,7 +232,7 @@ class Records(unittest.TestCase):
         self.assertAlmostEqual(passed.max(), 1 + np.exp(-np.pi * 0.1 / np.sqrt(0.99)), 2)
         self.assertAlmostEqual(passed[-1], 1, 3)
 
-    def test_words_of_filters(self):
+    def words_of_filters(self):
         for text in ("mean", "mean:0", "mean:-1", "mean:a", "low-pass", "low-pass:1:0",
                      "low-pass:1:2:3", "structure:1", "structure:1:1", "median:1", "none:1", ""):
             with self.assertRaises(ValueError, msg=text):
@@ -208,12 +242,12 @@ class Records(unittest.TestCase):
             with self.assertRaises(ValueError):
                 signals.Filter.parse(text).apply(np.ones(1000), 0.01)
 
-    def test_block_maxima(self):
+    def block_maxima(self):
         x = np.array([1, 5, 2, 3, 9, 0, 4.0])
         np.testing.assert_array_equal(signals.block_maxima(x, 0.5, 1.5), [5, 9])
         np.testing.assert_array_equal(signals.block_maxima(x, 0.5, 99), [9])
 
-    def test_peaks(self):
+    def separate_peaks(self):
         for record, wanted in (([0, 1, 0.51, 1.2, 0], [3]),        # falls too little: one peak
                                ([0, 1, 0.5, 1.2, 0], [1, 3]),
                                ([0, 1, 0.45, 0.8, 0.3, 0.7, 0], [1, 5]),  # 0.45 is over half of 0.8
@@ -223,7 +257,7 @@ class Records(unittest.TestCase):
                                           str(record))
         np.testing.assert_array_equal(signals.peaks(np.array([0, 1, 0, 3, 0.0]), 2), [3])
 
-    def test_spacing_of_pulses(self):
+    def spacing_of_pulses(self):
         time = 0.02 * np.arange(5000)
         saw = (time / 2.5) % 1
         found = signals.peaks(saw, saw.mean())
@@ -237,11 +271,11 @@ class Records(unittest.TestCase):
             x.append(a * x[-1] + np.sqrt(1 - a * a) * random.normal(size=number))
         return np.array(x).T
 
-    def test_correlation_time(self):
+    def correlation_time(self):
         found = [signals.correlation_time(x, 0.1) for x in self.noise(20, 20000, 0.1, 2.0, 3)]
         self.assertAlmostEqual(np.mean(found) / 2, 1, delta=0.1)
 
-    def test_trend(self):
+    def trends(self):
         """Found in 5 of 100 series without one (2 to 9 of 100 in 300), of one record and of five;
         in nearly all with one, with its slope."""
         for runs in (1, 5):
@@ -280,8 +314,17 @@ class Blocks:
         return self.points
 
 
-class Ice(unittest.TestCase):
-    def test_columns_of_a_stack(self):
+class Ice(Checks):
+    def test_columns(self):
+        self.each(self.columns_of_a_stack, self.columns_of_a_tilted_block)
+
+    def test_contact(self):
+        self.each(self.area_of_contact, self.waterline_and_distances)
+
+    def test_laws(self):
+        self.each(self.power_law, self.sizes_of_fragments)
+
+    def columns_of_a_stack(self):
         """Blocks of 2 x 2 x 1 m at z from -1 to 0 and from 0.5 to 1.5, and one that overlaps the
         upper one by half."""
         bodies = fields.Bodies(Blocks([[2, 2, 1]] * 3, [[0, 0, -0.5], [0, 0, 1], [0, 0, 1.5]]), 0)
@@ -296,7 +339,7 @@ class Ice(unittest.TestCase):
         np.testing.assert_allclose(rows["distance"], [0.25, 0.75, 1.25, 1.75])
         self.assertEqual(rows["columns"], [100] * 4)
 
-    def test_columns_of_a_tilted_block(self):
+    def columns_of_a_tilted_block(self):
         """Turned by 30 degrees about y: area in plan 2 (2 cos + 1 sin), its volume 4 m^3."""
         c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
         turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
@@ -308,7 +351,7 @@ class Ice(unittest.TestCase):
         self.assertAlmostEqual(top.max(), s + c / 2, 2)
         self.assertAlmostEqual(bottom.min(), -s - c / 2, 2)
 
-    def test_area_of_contact(self):
+    def area_of_contact(self):
         """A wall of 10 x 10 m at x = 0.9 in two blocks; one block on a cone's side, by the
         formula for its frustum."""
         bodies = fields.Bodies(Blocks([[2, 2, 1], [2, 1, 1]], [[0, 0, 0], [0, 3, 0]]), 0)
@@ -323,7 +366,7 @@ class Ice(unittest.TestCase):
         self.assertAlmostEqual(fields.contact_area(bodies, points, faces)
                                / (np.pi * 6 * np.sqrt(2)), 1, 3)
 
-    def test_waterline_and_distances(self):
+    def waterline_and_distances(self):
         points, faces = fields_frustum(360)
         line = fields.waterline(points, faces)
         np.testing.assert_allclose(np.linalg.norm(line, axis=1), 3, atol=1e-3)
@@ -332,7 +375,7 @@ class Ice(unittest.TestCase):
         np.testing.assert_allclose(away, [[1, 0], [0, -1], [-0.6, 0.8]], atol=1e-2)
         self.assertIsNone(fields.waterline(points + [0, 0, 10], faces))
 
-    def test_power_law(self):
+    def power_law(self):
         area = np.geomspace(0.1, 10, 50)
         noise = np.exp(0.1 * np.random.default_rng(7).normal(size=50))
         law = fields.power_law(list(zip(area, 7.4e6 * area**-0.7 * noise)))
@@ -341,7 +384,7 @@ class Ice(unittest.TestCase):
         self.assertAlmostEqual(law["scatter"], 0.1, delta=0.03)
         self.assertIsNone(fields.power_law([(1, 1)] * 9))
 
-    def test_sizes(self):
+    def sizes_of_fragments(self):
         """A disc of 4 m holds as much as four of 2 m: half of the mass is in each."""
         options = {"ice_density": "900", "sheet_thickness": "0.5"}
         mass = 900 * 0.5 * np.pi * np.array([4, 1, 1, 1, 1.0])
