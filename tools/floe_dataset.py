@@ -18,7 +18,7 @@ from floe_output import options_of, summary_of
 from floe_program import BadInput, reading
 
 with floe_program.packages():
-    import netCDF4  # noqa: F401, by which xarray writes
+    import netCDF4
     import xarray
 
 CONVENTIONS = "CF-1.8"
@@ -133,7 +133,8 @@ def dataset_of(folder, name=None):
                                            "rank of the piece by its mass")
     return xarray.Dataset(variables, coordinates, {
         "Conventions": CONVENTIONS, "title": "A run of floe, a simulator of floating sea ice",
-        "source": f"floe {version}", "history": f"floe netcdf of {folder.resolve()}",
+        "source": f"floe {version}",
+        "history": f"floe netcdf of {folder.resolve()} (netCDF4 {netCDF4.__version__})",
         "version": version, "scene": scene})
 
 

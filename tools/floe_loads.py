@@ -1,5 +1,5 @@
-"""What the forces on obstacles of one run or of many are as a load: mean, maxima of blocks, Gumbel's
-law with its bands, trend, peaks, spectrum (floe loads, docs/loads.md). SI units.
+"""What the forces on obstacles of one run or of many are as a load: mean, maxima of blocks,
+Gumbel's law with its bands, trend, peaks, spectrum (floe loads, docs/loads.md). SI units.
 
     runs, left_out = find_runs(["out/cone"])
     for parameters, group in groups(runs):
@@ -245,9 +245,10 @@ def spacing(filtered, dt):
 def state(runs, obstacle, settings):
     """The load on an obstacle as a statement: a dictionary of plain numbers, for JSON."""
     raw, filtered = records(runs, obstacle, settings)
-    dt, shortest = runs[0].dt, min(map(len, filtered)) * runs[0].dt
+    dt, shortest = runs[0].dt, min(map(len, raw)) * runs[0].dt
     block = min(settings.block, shortest)
-    each = [signals.block_maxima(record, dt, block) for record in filtered]
+    each = [signals.block_maxima(record, dt, block, len(raw[0]) - len(filtered[0]))
+            for record in filtered]
     maxima = np.concatenate(each)
     frequency, density = signals.spectrum(raw, dt)
     return {
@@ -257,7 +258,7 @@ def state(runs, obstacle, settings):
         **mean_of_runs(raw, settings.level),
         "largest_of_a_step": max(float(np.linalg.norm(run.peaks[obstacle])) for run in runs),
         "largest_of_an_interval": max(float(record.max()) for record in raw),
-        "block": block, "block_is_run": settings.block > shortest * (1 + 1e-6),
+        "block": block, "block_is_run": settings.block > shortest * 1.01,
         "maxima": maxima.tolist(),
         "largest_of_runs": [float(record.max()) for record in filtered],
         "positions": extremes.positions(len(maxima)).tolist(),

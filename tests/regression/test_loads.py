@@ -246,6 +246,8 @@ class Records(Checks):
         x = np.array([1, 5, 2, 3, 9, 0, 4.0])
         np.testing.assert_array_equal(signals.block_maxima(x, 0.5, 1.5), [5, 9])
         np.testing.assert_array_equal(signals.block_maxima(x, 0.5, 99), [9])
+        np.testing.assert_array_equal(signals.block_maxima(x, 0.5, 2, lost=1), [5, 9])
+        np.testing.assert_array_equal(signals.block_maxima(np.arange(1199), 0.5, 300), [599, 1198])
 
     def separate_peaks(self):
         for record, wanted in (([0, 1, 0.51, 1.2, 0], [3]),        # falls too little: one peak
