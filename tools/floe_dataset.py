@@ -145,12 +145,28 @@ def with_parameters(datasets, options):
     for key in keys:
         values = [each.get(key, "") for each in options]
         try:
-            values = [float(value) for value in values]
+            values, kind = [float(value) for value in values], float
         except ValueError:
-            values = [np.array(value, object) for value in values]
+            kind = object
         for data, value in zip(datasets, values):
-            data[f"option_{plain(key)}"] = ("run", np.array([value]),
+            data[f"option_{plain(key)}"] = ("run", np.array([value], kind),
                                             {"long_name": f"option {key} of the scene"})
+    return datasets
+
+
+def completed(datasets):
+    """The datasets, each with the variables of all: what a run lacks is nan, text empty. xarray
+    joins no others."""
+    known = {name: data.variables[name] for data in reversed(datasets) for name in data.data_vars}
+    axes = {dim: data.coords[dim] for data in reversed(datasets) for dim in data.dims}
+    for data in datasets:
+        for name, like in known.items():
+            if name in data:
+                continue
+            shape = [data.sizes.get(dim, axes[dim].size) for dim in like.dims]
+            values = np.full(shape, np.nan if like.dtype.kind == "f" else "", like.dtype)
+            data.coords.update({dim: axes[dim] for dim in like.dims if dim not in data.dims})
+            data[name] = (like.dims, values, like.attrs)
     return datasets
 
 
