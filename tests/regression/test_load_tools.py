@@ -107,6 +107,26 @@ class LoadTools(FolderTest):
         (along,) = json.loads((self.folder / "made/0.5_1/loads.json").read_text())
         self.assertAlmostEqual(along["maxima"][0] / 4e4, 1, 6)  # positive where its mean is
 
+    def test_rows_by_themselves(self):
+        """Statics have a row per load step, dynamics without `output: history` 200, or one per
+        step."""
+        for name, words in (("statics", ["-time_dt", "0.5"]),
+                            ("steps", ["-integrator", "explicit", "-time_end", "0.01"]),
+                            ("dynamics", ["-integrator", "explicit", "-time_end", "0.4"])):
+            done = run(REPOSITORY / "input/tension.yaml", "-sheet_length", "12", "-sheet_width",
+                       "10", *words, "-output_dir", name, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.tool("netcdf", name)
+            with xarray.open_dataset(self.folder / name / "run.nc") as data:
+                late = (data["sample_time"][0] - data["time"]).values
+                self.assertTrue(np.all(np.diff(data["time"]) > 0))
+                due = data["time"].values
+            self.assertTrue(np.all((late >= -1e-12) & (late < 0.001)))
+            if name == "dynamics":
+                np.testing.assert_allclose(due, 0.002 * np.arange(201), atol=1e-12)
+            else:
+                np.testing.assert_array_equal(late, 0)
+
     def test_runs_of_several_scenes(self):
         """Runs that lack what others have, and end earlier, are one file all the same."""
         self.made("a/r", lambda t: np.array([1.0, 0, 0]), speed="0.1")
