@@ -99,14 +99,39 @@ def rows_of(folder):
         return rows
 
 
+def options_of(folder):
+    """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""
+    options, sections = {}, []
+    path = Path(folder) / "options.yaml"
+    with reading(path):
+        lines = path.read_text().splitlines()
+    for line in lines:
+        match = re.match(r"( *)([^\s#:][^:]*):(?: (.*))?$", line)
+        if not match:
+            continue
+        indent, key, value = len(match[1]), match[2], (match[3] or "").strip()
+        sections = [(i, k) for i, k in sections if i < indent]
+        name = "_".join([k for _, k in sections] + [key])
+        if value:
+            options[name] = value.strip("\"'[]")
+        else:
+            sections.append((indent, key))
+    return options
+
+
+def summary_of(folder):
+    """summary.json; empty until the run has ended."""
+    path = Path(folder) / "summary.json"
+    with reading(path):
+        return json.loads(path.read_text()) if path.exists() else {}
+
+
 class Output(Lattice):
     """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        summary = self.folder / "summary.json"
-        with reading(summary):  # empty until the run has ended
-            self.summary = json.loads(summary.read_text()) if summary.exists() else {}
+        self.summary = summary_of(self.folder)
         super().__init__(self.folder / "lattice.h5")
         self._frames = frames_of(self.folder)
         self.times = np.array([time for time, _, _ in self._frames])
@@ -128,6 +153,12 @@ class Output(Lattice):
         _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
         with reading(path), h5py.File(path) as file:
             return file[group][name][:]
+
+    def has_field(self, name, time):
+        """Whether the sample nearest to `time` has the dataset `name`."""
+        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
+        with reading(path), h5py.File(path) as file:
+            return name in file[group]
 
     def body_quantity(self, name, time):
         """Values n of a quantity of BODY_QUANTITIES, its unit and label."""
@@ -151,23 +182,8 @@ class Output(Lattice):
         return np.array([float(row[name]) for row in rows])
 
     def options(self):
-        """options.yaml as {"sheet_length": "40", ...}: sections joined by _, values as text."""
-        options, sections = {}, []
-        path = self.folder / "options.yaml"
-        with reading(path):
-            lines = path.read_text().splitlines()
-        for line in lines:
-            match = re.match(r"( *)([^\s#:][^:]*):(?: (.*))?$", line)
-            if not match:
-                continue
-            indent, key, value = len(match[1]), match[2], (match[3] or "").strip()
-            sections = [(i, k) for i, k in sections if i < indent]
-            name = "_".join([k for _, k in sections] + [key])
-            if value:
-                options[name] = value.strip("\"'[]")
-            else:
-                sections.append((indent, key))
-        return options
+        """options_of the folder."""
+        return options_of(self.folder)
 
 
 def scaled(values, unit):

@@ -60,6 +60,24 @@ def parser(description, **options):
                   **options)
 
 
+# Of what Python imports: the Debian package that has it, where the names differ.
+DEBIAN = {"netCDF4": "python3-netcdf4"}
+
+
+@contextlib.contextmanager
+def packages():
+    """Around imports of what floe itself does without: what is missing ends the tool by one line
+    that names its package."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        module = (error.name or "").split(".")[0]
+        package = DEBIAN.get(module, f"python3-{module}")
+        print(f"floe {name()}: needs Python's {module}: apt-get install {package} (tools/setup does"
+              " it)", file=sys.stderr)
+        sys.exit(2)
+
+
 @contextlib.contextmanager
 def reading(path):
     """Whatever is wrong with a file while it is read becomes BadInput, which names it."""
