@@ -53,8 +53,11 @@ void append_corners(const Lattice& lattice, std::int32_t body, double tolerance,
 }
 
 /// Mean of GJ/(EI_y), each beam by its width and length: what the lattice's Poisson's ratio in
-/// bending follows from (model.md, section 3).
+/// bending follows from (model.md, section 3). 1 if the lattice gives no sections: such beams
+/// cannot break.
 double mean_twist(const Beams& b) {
+  const std::size_t all = b.bodies.size();
+  if (b.width.size() != all || b.torsion.size() != all || b.young.size() != all) return 1;
   double sum = 0, weights = 0;
   for (std::size_t m = 0; m < b.bodies.size(); ++m) {
     const double weight = b.width[m] * b.length[m];

@@ -68,7 +68,7 @@ TEST(Ranks, StripsRunTowardsWhereTheWorkGathers) {
     }
     return high - low;
   };
-  const Part part = partition(lattice, PETSC_COMM_WORLD, {-3, 0, 7});
+  const Part part = partition(lattice, PETSC_COMM_WORLD, Vec3<double>{-3, 0, 7});
   const Vec3<double> strip = extent(part);
   EXPECT_NEAR(strip.x, 5, 1.1);
   EXPECT_NEAR(strip.y, 29.0 / size(), 1.5);
@@ -76,9 +76,9 @@ TEST(Ranks, StripsRunTowardsWhereTheWorkGathers) {
   // Along y strips of two ranks would be too narrow, a direction without a part in plan is none:
   // both are as without one.
   const Part curve = partition(lattice, PETSC_COMM_WORLD);
-  EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 0, 1}).global, curve.global);
+  EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, Vec3<double>{0, 0, 1}).global, curve.global);
   if (size() > 1) {
-    EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, {0, 1, 0}).global, curve.global);
+    EXPECT_EQ(partition(lattice, PETSC_COMM_WORLD, Vec3<double>{0, 1, 0}).global, curve.global);
   }
 }
 
