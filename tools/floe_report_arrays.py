@@ -40,7 +40,7 @@ def pack(values):
     planes = max(1, (int(signed.max(initial=0)).bit_length() + 7) // 8)
     data = b"".join((signed >> 8 * p & 255).astype(np.uint8).tobytes() for p in range(planes))
     return {"shape": list(values.shape), "orders": orders,
-            "data": base64.b64encode(zlib.compress(data, 9)).decode()}
+            "data": base64.b64encode(zlib.compress(data, 6)).decode()}
 
 
 def unpack(packed):

@@ -29,13 +29,16 @@ const floeCharts = (() => {
   function ticksOf(low, high, log, most) {
     const found = [];
     if (log) {
-      const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
-      if (last - first < 1) {  // not two powers of ten
-        return ticksOf(low, high, false, most);
+      const first = Math.floor(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
+      const decades = Math.log10(high / low), every = Math.max(1, Math.round(decades / most));
+      const heads = 3 * decades <= most ? [1, 2, 5] : [1];
+      for (let power = first; power <= last; power += every) {
+        for (const head of heads) {
+          const value = Number(`${head}e${power}`);
+          if (value >= low * 0.9999 && value <= high * 1.0001) found.push(value);
+        }
       }
-      const every = Math.max(1, Math.ceil((last - first) / most));
-      for (let power = first; power <= last; power += every) found.push(10 ** power);
-      return found;
+      return found.length > 1 ? found : ticksOf(low, high, false, most);
     }
     const step = stepOf(high - low, most);
     for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {
@@ -72,7 +75,10 @@ const floeCharts = (() => {
   }
 
   function widened([low, high], log, zero) {
-    if (log) return low < high ? [low, high] : [low / 2, high * 2];
+    if (log) {
+      const more = low < high ? (high / low) ** 0.04 : 2;
+      return [low / more, high * more];
+    }
     if (zero) [low, high] = [Math.min(0, low), Math.max(0, high)];
     if (low === high) [low, high] = [low - 0.5, high + 0.5];
     const room = 0.05 * (high - low);
@@ -104,19 +110,12 @@ const floeCharts = (() => {
         stroke: '#fff', 'stroke-width': 0.8}));
       return;
     }
-    if (one.band) {
-      const there = pathOf({x: one.x, y: one.y}, x, y, spec);
-      const back = pathOf({x: [...one.x].reverse(), y: [...one.low].reverse()}, x, y, spec);
-      node(plot, 'path', {d: `${there}${back.replace('M', 'L')}Z`, fill: one.colour,
-                          opacity: 0.16});
-      return;
-    }
     node(plot, 'path', {d: pathOf(one, x, y, spec), fill: 'none', stroke: one.colour,
                         'stroke-width': one.width || 1.4, 'stroke-linejoin': 'round',
                         'stroke-dasharray': one.dash || 'none', opacity: one.opacity || 1});
   }
 
-  function drawAxes(svg, spec, box, x, y, ranges) {
+  function drawAxes(svg, spec, box, x, y, ranges) {  // before what the plot shows
     const [left, top, right, bottom] = box;
     const most = Math.max(2, Math.floor((right - left) / 75));
     for (const value of ticksOf(...ranges[0], spec.logX, most)) {
@@ -148,7 +147,7 @@ const floeCharts = (() => {
   function readout(spec, value) {
     const words = [];
     for (const one of spec.series) {
-      if (one.band || one.silent || !one.x.length) continue;
+      if (one.silent || !one.x.length) continue;
       const k = nearest(one.x, value);
       if (one.y[k] !== null) words.push(`${one.name} ${label(Number(one.y[k].toPrecision(4)))}`);
     }
@@ -174,10 +173,11 @@ const floeCharts = (() => {
                                      role: 'img', 'aria-label': spec.title});
     const box = [58, 24, width - 12, height - 42];
     const ranges = [spec.rangeX || rangeOf(spec.series, 'x', spec.logX),
-                    widened(spec.rangeY || rangeOf(spec.series.concat(
-                      spec.series.filter(one => one.band).map(one => ({y: one.low}))), 'y',
-                      spec.logY), spec.logY, spec.zero !== false)];
-    if (ranges[0][0] === ranges[0][1]) ranges[0] = widened(ranges[0], spec.logX, false);
+                    widened(spec.rangeY || rangeOf(spec.series, 'y', spec.logY), spec.logY,
+                            spec.zero !== false)];
+    if (ranges[0][0] === ranges[0][1] || spec.series.some(one => one.points) && !spec.time) {
+      ranges[0] = widened(ranges[0], spec.logX, false);
+    }
     const x = scaleOf(ranges[0], [box[0], box[2]], spec.logX);
     const y = scaleOf(ranges[1], [box[3], box[1]], spec.logY);
     drawAxes(svg, spec, box, x, y, ranges);
@@ -200,14 +200,14 @@ const floeCharts = (() => {
     const line = element(parent, 'p', 'legend');
     for (const one of shown) {
       const entry = element(line, 'span', 'entry');
-      const mark = element(entry, 'i', one.points ? 'dot' : one.band ? 'area' : 'line');
+      const mark = element(entry, 'i', one.points ? 'dot' : one.dash ? 'line dashed' : 'line');
       mark.style.setProperty('--colour', one.colour);
       entry.append(one.name);
     }
   }
 
   // spec: {title, labelX, labelY, unitX, logX, logY, rangeX, zero, time, series: [{name, colour, x,
-  // y, points, band (with low), step, dash, silent}]}
+  // y, points, step, dash, silent}]}
   function chart(parent, spec) {
     const figure = element(parent, 'figure', 'chart');
     element(figure, 'figcaption', '', spec.title);
@@ -249,6 +249,7 @@ const floeCharts = (() => {
     const ranges = [[edgesX[0], edgesX.at(-1)], [edgesY[0], edgesY.at(-1)]];
     const x = scaleOf(ranges[0], [box[0], box[2]]), y = scaleOf(ranges[1], [box[3], box[1]]);
     const largest = Math.max(...values.flat());
+    drawAxes(svg, spec, box, x, y, ranges);
     values.forEach((row, j) => row.forEach((value, i) => {
       if (value === null) return;
       const cell = node(svg, 'rect', {
@@ -260,7 +261,6 @@ const floeCharts = (() => {
           `${label(Number(((edgesY[j] + edgesY[j + 1]) / 2).toPrecision(3)))} m`;
       });
     }));
-    drawAxes(svg, spec, box, x, y, ranges);
     if (ranges[1][0] < 0 && ranges[1][1] > 0) {
       node(svg, 'line', {x1: box[0], x2: box[2], y1: y(0), y2: y(0), class: 'water'});
       node(svg, 'text', {x: box[2] - 4, y: y(0) - 4, class: 'tick water-word',

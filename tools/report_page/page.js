@@ -229,7 +229,7 @@
     const clock = control(first, 'span', {id: 'clock'});
     const second = element(made, 'div', 'controls');
     const speed = choice(second, 'speed', [0.2, 0.5, 1, 2, 5].map(
-      k => [k * view.speed, `${label(Number((k * view.speed).toPrecision(2)))} s a second`]));
+      k => [k * view.speed, `${label(Number((k * view.speed).toPrecision(2)))} s per second`]));
     speed.value = view.speed;
     const colour = choice(second, 'colour', [
       ['height', 'height'], ['fragment', 'fragment'], ['speed', 'speed']]);
@@ -275,7 +275,7 @@
       ramp(['#0d294d', '#33739e', '#9ec7e0', '#dbebf5', '#f7faff', '#fff2d6'],
            '3 m below still water', '3 m above');
     } else if (view.colour === 'speed') {
-      ramp(['#edf2f7', '#5cabd1', '#21578c', '#bf261a'], '0',
+      ramp(['#e6f0f7', '#80bfe0', '#facc5c', '#d63d1f'], '0',
            `${short(view.fastest, 3)} m/s and more`);
     } else {
       entry('#ccdbe8', 'the heaviest fragment');
@@ -284,9 +284,9 @@
     if (view.cracks) entry('#c7211a', 'cracks');
     if (view.arrows) {
       const kinds = view.scene.arrows.map(one => one.kind);
-      const scale = `1 m is ${newtons(view.newtonsPerMetre)}`;
-      if (kinds.includes('obstacle')) entry('#f24026', `force of ice on an obstacle (${scale})`);
-      if (kinds.includes('boundary')) entry('#7340bf', `force of a boundary on ice (${scale})`);
+      if (kinds.includes('obstacle')) entry('#0f9e38', 'force of the ice on an obstacle');
+      if (kinds.includes('boundary')) entry('#7340bf', 'force of a boundary on the ice');
+      element(key, 'span', '', `1 m of an arrow: ${newtons(view.newtonsPerMetre)}`);
     }
   }
 
@@ -321,8 +321,9 @@
   }
 
   async function sceneSection(made) {
-    const holder = control(made, 'div', {id: 'window'});
-    const panel = control(holder, 'div', {id: 'picked', hidden: ''});
+    const stage = element(made, 'div', 'stage');
+    const holder = control(stage, 'div', {id: 'window'});
+    const panel = control(stage, 'div', {id: 'picked', hidden: ''});
     try {
       const scene = await floeScene.unpackScene(report.scene);
       const view = new FloeView(holder, scene);

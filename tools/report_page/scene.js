@@ -224,7 +224,7 @@ const floeScene = (() => {
   }
 
   function speedColour(share) {
-    const stops = [[0.93, 0.95, 0.97], [0.36, 0.67, 0.82], [0.13, 0.34, 0.55], [0.75, 0.15, 0.10]];
+    const stops = [[0.90, 0.94, 0.97], [0.50, 0.75, 0.88], [0.98, 0.80, 0.36], [0.84, 0.24, 0.12]];
     const at = Math.min(2.999, Math.max(0, share) * 3), k = Math.floor(at), f = at - k;
     return stops[k].map((c, i) => c + f * (stops[k + 1][i] - c));
   }

@@ -17,10 +17,10 @@ class FloeView {
     this.speed = this.duration > 0 ? this.niceSpeed() : 1;
     this.makeRenderer();
     this.makeObjects();
+    this.resize();
     this.placeCamera();
     this.setFrame(0);
     new ResizeObserver(() => this.resize()).observe(parent);
-    this.resize();
   }
 
   niceSpeed() {  // the whole in about 15 s
@@ -160,7 +160,7 @@ class FloeView {
     if (!arrows.length) return;
     const sides = 12, position = [], body = [], index = [];
     // From its tail to its tip at the origin, one long, along +x.
-    const rings = [[-1, 0], [-1, 0.03], [-0.3, 0.03], [-0.3, 0.09], [0, 0]];
+    const rings = [[-1, 0], [-1, 0.035], [-0.3, 0.035], [-0.3, 0.1], [0, 0]];
     arrows.forEach((_, k) => {
       const first = position.length / 3;
       for (const [x, r] of rings) {
@@ -203,29 +203,25 @@ class FloeView {
     return this.box = {low, high};
   }
 
-  // Looks at the obstacles from behind the ice, from the side.
+  // Looks at the ice from behind, from the side, so that all of it is in the window.
   placeCamera() {
-    const {low, high} = this.extent(), solid = this.scene.obstacles.filter(o => !o.plane);
-    const middle = low.map((v, i) => (v + high[i]) / 2);
-    const size = Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
-    let target = middle, far = 0.95, azimuth = -2.1;
-    const flow = this.flow();
-    if (flow) azimuth = Math.atan2(flow[1], flow[0]) - 2.1;
-    if (solid.length === 1) {
-      const at = solid[0].origin;
-      target = [0, 1, 2].map(i => middle[i] + 0.6 * (at[i] - middle[i]));
-      target[2] = middle[2];
-      far = 0.75;
-    }
-    const elevation = 0.55, distance = far * size / Math.tan(35 * Math.PI / 360) / 1.7;
-    this.camera.position.set(
-      target[0] + distance * Math.cos(elevation) * Math.cos(azimuth),
-      target[1] + distance * Math.cos(elevation) * Math.sin(azimuth),
-      target[2] + distance * Math.sin(elevation));
+    const {low, high} = this.extent(), flow = this.flow();
+    const azimuth = (flow ? Math.atan2(flow[1], flow[0]) : 0) - 2.1, elevation = 0.6;
+    const back = new THREE.Vector3(Math.cos(elevation) * Math.cos(azimuth),
+                                   Math.cos(elevation) * Math.sin(azimuth), Math.sin(elevation));
+    const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const target = new THREE.Vector3(...low.map((v, i) => (v + high[i]) / 2));
+    const wide = Math.tan(this.camera.fov * Math.PI / 360);
+    const corners = Array.from({length: 8}, (_, k) => new THREE.Vector3(
+      ...low.map((v, i) => (k >> i & 1 ? high[i] : v))).sub(target));
+    const distance = 1.04 * Math.max(...corners.map(c => c.dot(back) + Math.max(
+      Math.abs(c.dot(up)) / wide, Math.abs(c.dot(right)) / (wide * this.camera.aspect))));
+    this.camera.position.copy(target).addScaledVector(back, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();
-    this.controls.target.set(...target);
+    this.controls.target.copy(target);
     this.controls.update();
     this.controls.saveState();
   }
@@ -329,7 +325,7 @@ class FloeView {
         new THREE.Vector3(1, 0, 0), new THREE.Vector3(...force).normalize());
       const pose = {place: at || [0, 0, 0], turn: [turn.x, turn.y, turn.z, turn.w]};
       floeScene.put(this.arrowPoses.data, i, pose, at ? size / this.newtonsPerMetre : 0,
-                    one.kind === 'obstacle' ? [0.95, 0.25, 0.15] : [0.45, 0.25, 0.75]);
+                    one.kind === 'obstacle' ? [0.06, 0.62, 0.22] : [0.45, 0.25, 0.75]);
     });
     if (this.arrowPoses) this.arrowPoses.texture.needsUpdate = true;
   }
