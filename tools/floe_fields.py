@@ -264,7 +264,7 @@ def profile(output, name, force, number=20):
 
 def profile_in_bins(found):
     """Means over columns of several runs by distance: a dictionary of lists [m], one number per
-    bin."""
+    bin of a body's side. columns: how many a run has; a body's area has FINE^2."""
     side = found[0][0]
     distance, top, bottom, solid = (np.concatenate([each[k] for each in found])
                                     for k in range(1, 5))
@@ -273,9 +273,10 @@ def profile_in_bins(found):
     number = np.floor(distance / side).astype(int)
     bins = np.unique(number)
     rows = {"distance": (bins + 0.5) * side, "top": [], "bottom": [], "highest": [], "deepest": [],
-            "porosity": []}
+            "porosity": [], "columns": []}
     for k in bins:
         of = number == k
+        rows["columns"].append(of.sum() / len(found))
         rows["top"].append(top[of].mean())
         rows["bottom"].append(bottom[of].mean())
         rows["highest"].append(top[of].max())
@@ -349,7 +350,9 @@ def lines_of(found):
                   f"{law['scatter']:.2f}" if law else ""))
     profile = found["profile"]
     if profile:
-        high, deep = np.argmax(profile["top"]), np.argmin(profile["bottom"])
+        few = np.array(profile["columns"]) < FINE**2  # less than one body a run
+        high = np.argmax(np.where(few, -np.inf, profile["top"]))
+        deep = np.argmin(np.where(few, np.inf, profile["bottom"]))
         pile = np.array(profile["distance"]) < profile["distance"][deep] + 1e-9
         yield (f"  pile         mean top {profile['top'][high]:.2f} m at "
                f"{profile['distance'][high]:.1f} m from the waterline, mean bottom "

@@ -1,5 +1,5 @@
-"""What the forces on obstacles of one run or of many are as a load: mean, maxima of blocks, Gumbel's
-law with its bands, trend, peaks, spectrum (floe loads, docs/loads.md). SI units.
+"""What the forces on obstacles of one run or of many are as a load: mean, maxima of blocks,
+Gumbel's law with its bands, trend, peaks, spectrum (floe loads, docs/loads.md). SI units.
 
     runs, left_out = find_runs(["out/cone"])
     for parameters, group in groups(runs):
@@ -120,18 +120,18 @@ def find_runs(folders):
     return found, left_out
 
 
-def differing(runs):
-    """Keys of the scenes, seeds aside, whose values differ between runs."""
-    keys = sorted({key for run in runs for key in run.options})
+def differing(options):
+    """Keys, seeds aside, whose values differ between the options of several runs."""
+    keys = sorted({key for each in options for key in each})
     return [key for key in keys if key not in DRAW_KEYS
             and key.split("_")[0] not in IDLE_SECTIONS
-            and len({run.options.get(key) for run in runs}) > 1]
+            and len({each.get(key) for each in options}) > 1]
 
 
 def groups(runs):
     """[({key: value}, runs)]: runs whose scenes differ by their seeds only, with what tells the
     group from the others."""
-    keys, found = differing(runs), {}
+    keys, found = differing([run.options for run in runs]), {}
     for run in runs:
         found.setdefault(tuple(run.options.get(key, "") for key in keys), []).append(run)
     return [(dict(zip(keys, values)), members) for values, members in found.items()]
@@ -174,6 +174,11 @@ def records(runs, obstacle, settings):
         raw.append(component(force[:, skip:], settings.component, sign))
         filtered.append(component(passed, settings.component, sign))
     return raw, filtered
+
+
+def untouched(runs, obstacle):
+    """Whether no ice pressed on an obstacle in any run."""
+    return not any(np.any(run.forces.get(obstacle, 1)) for run in runs)
 
 
 def mean_of_runs(raw, level):
@@ -240,9 +245,10 @@ def spacing(filtered, dt):
 def state(runs, obstacle, settings):
     """The load on an obstacle as a statement: a dictionary of plain numbers, for JSON."""
     raw, filtered = records(runs, obstacle, settings)
-    dt, shortest = runs[0].dt, min(map(len, filtered)) * runs[0].dt
+    dt, shortest = runs[0].dt, min(map(len, raw)) * runs[0].dt
     block = min(settings.block, shortest)
-    each = [signals.block_maxima(record, dt, block) for record in filtered]
+    each = [signals.block_maxima(record, dt, block, len(raw[0]) - len(filtered[0]))
+            for record in filtered]
     maxima = np.concatenate(each)
     frequency, density = signals.spectrum(raw, dt)
     return {
@@ -252,7 +258,7 @@ def state(runs, obstacle, settings):
         **mean_of_runs(raw, settings.level),
         "largest_of_a_step": max(float(np.linalg.norm(run.peaks[obstacle])) for run in runs),
         "largest_of_an_interval": max(float(record.max()) for record in raw),
-        "block": block, "block_is_run": settings.block > shortest * (1 + 1e-6),
+        "block": block, "block_is_run": settings.block > shortest * 1.01,
         "maxima": maxima.tolist(),
         "largest_of_runs": [float(record.max()) for record in filtered],
         "positions": extremes.positions(len(maxima)).tolist(),

@@ -155,6 +155,12 @@ class Output(Lattice):
         with reading(path), h5py.File(path) as file:
             return file[group][name][:]
 
+    def has_field(self, name, time):
+        """Whether the sample nearest to `time` has the dataset `name`."""
+        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
+        with reading(path), h5py.File(path) as file:
+            return name in file[group]
+
     def body_quantity(self, name, time):
         """Values n of a quantity of BODY_QUANTITIES, its unit and label."""
         dataset, column, unit, label = BODY_QUANTITIES[name]

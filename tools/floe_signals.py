@@ -128,11 +128,14 @@ def spring_force(values, dt, frequency, ratio):
     return signal.lfilter(numerator[0], denominator, values, axis=-1)
 
 
-def block_maxima(values, dt, length):
-    """Largest value of each whole block of `length` [s]; of the whole record if it is shorter."""
-    size = min(max(1, round(length / dt)), len(values))
-    count = len(values) // size
-    return np.asarray(values)[:count * size].reshape(count, size).max(axis=1)
+def block_maxima(values, dt, length, lost=0):
+    """Largest value of each whole block of `length` [s]; of the whole record if it is shorter. The
+    last block is whole if it lacks no more than 1 % of its length and the `lost` values by which a
+    running mean is shorter than its record."""
+    values = np.asarray(values)
+    size = max(1, round(length / dt))
+    count = max(1, math.floor((len(values) + lost) / size + 0.01))
+    return np.array([values[k * size:(k + 1) * size].max() for k in range(count)])
 
 
 def peaks(values, threshold, drop=0.5):
@@ -182,7 +185,8 @@ def trend(records, dt, least=4):
     spread = np.concatenate(records)
     if np.ptp(spread) == 0:
         return None
-    scale = float(np.mean([correlation_time(record, dt) for record in records]))
+    # of what is left without a straight line, since a trend would count as correlation
+    scale = float(np.mean([correlation_time(signal.detrend(record), dt) for record in records]))
     size = max(round(4 * scale / dt), math.ceil(length / 20), 1)
     count = length // size
     if count < least:

@@ -5,6 +5,7 @@ Needs ParaView and a virtual display (tools/setup --pictures); skipped where the
 """
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -25,6 +26,8 @@ from paraview.simple import OpenDataFile
 from paraview import servermanager
 
 def leaves(data):
+    if not data.IsA("vtkCompositeDataSet"):  # of VTKHDF
+        return {"bodies" if data.GetCellData().HasArray("body") else "cracks": data}
     # The reader that OpenDataFile takes forgets the grids' names; what they carry tells them apart.
     found, at = {}, data.NewIterator()
     while not at.IsDoneWithTraversal():
@@ -110,6 +113,37 @@ class ParaView(unittest.TestCase):
                         np.testing.assert_allclose(cracks["bounds"], bounds, atol=1e-6)
             self.assertEqual(numbers[0], 0)
             self.assertGreater(numbers[-1], 10)
+
+    def test_opens_vtkhdf(self):
+        """ParaView 5.12 and later read floe vtkhdf's files: the same points and values at every
+        time, and cracks that open."""
+        version = subprocess.run(["pvpython", "--version"], capture_output=True, text=True)
+        number = tuple(map(int, re.findall(r"(\d+)\.(\d+)", version.stdout + version.stderr)[0]))
+        if number < (5, 12):
+            self.skipTest("VTKHDF with time needs ParaView 5.12")
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([FLOE, str(REPOSITORY / "input/notch.yaml"), "-sheet_element_size",
+                                  "2", "-output_fields", "0.05", "-output_dir", f"{folder}/out"],
+                                 capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            made = subprocess.run([str(REPOSITORY / "tools/vtkhdf"), f"{folder}/out"],
+                                  capture_output=True, text=True)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            bodies, cracks = (self.look(Path(folder), Path(file)) for file in made.stdout.split())
+            with h5py.File(Path(folder, "out/fields.h5")) as fields:
+                samples = sorted((g for g in fields.values() if "time" in g.attrs),
+                                 key=lambda g: g.attrs["time"])
+                self.assertEqual([s["time"] for s in bodies],
+                                 [float(g.attrs["time"]) for g in samples])
+                for body, crack, group in zip(bodies, cracks, samples):
+                    points = group["points"][:]
+                    bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
+                    np.testing.assert_allclose(body["blocks"]["bodies"]["bounds"], bounds,
+                                               atol=1e-5)
+                    self.same_ranges(body["blocks"]["bodies"]["ranges"]["displacement"],
+                                     group["bodies_displacement"][:], 1e-6)
+                    self.assertEqual(crack["blocks"]["cracks"]["ranges"]["open"][0][1],
+                                     float("crack_beam" in group))
 
     def test_render_draws(self):
         """Pictures at given times with ice, water and obstacles, and a film."""

@@ -11,7 +11,8 @@ import unittest
 from launch import FLOE, REPOSITORY, temporary_folder
 
 TOOLS = REPOSITORY / "tools"
-READERS = ("plot_sheet", "plot_fragments", "plot_load", "plot_deflection", "campaign_report")
+READERS = ("plot_sheet", "plot_fragments", "plot_load", "plot_deflection", "campaign_report",
+           "loads", "netcdf", "vtkhdf")
 SCENE = """forces: [beam]
 sheet: {length: 10, thickness: 1, element_size: 3, iterations: 5}
 boundary: {names: [a], a: {set: left, fix: x y z rx ry rz}}
@@ -58,12 +59,16 @@ class ToolsBadInput(unittest.TestCase):
         self.refused("plot_fragments", self.copy("breaks"))
         (self.folder / "breaks/breaks.h5").write_text("no")
         self.refused("plot_fragments", "breaks", part="breaks.h5")
+        self.refused("loads", "history", part="history.csv")
+        self.refused("netcdf", "history", part="history.csv")
+        self.refused("vtkhdf", self.copy("vtkhdf_fields", "fields/*.h5"), part="fields")
         (self.folder / "history/history.csv").write_text("time,wall_peak_force_x\n0,x\n")
         self.refused("plot_load", "history", part="line 2")
 
     def test_runs_without_that_result(self):
         self.refused("plot_fragments", "out/s", part="nothing could break")
         self.refused("plot_load", "out/s", part="no obstacles")
+        self.refused("loads", "out/s", part="no obstacles")
         self.refused("plot_deflection", "out/s", part="bending")
 
     def test_arguments(self):
@@ -72,6 +77,17 @@ class ToolsBadInput(unittest.TestCase):
         self.refused("plot_sheet", "out/s", "--file", "x.zzz", part="must end in one of")
         self.refused("plot_sheet", "out/s", "--file", "none/x.png", part="no folder")
         self.refused("plot_sheet", "out/s", "--colour", "red", part="red")
+        for option, value in (("--filter", "low-pass"), ("--probability", "1.5"),
+                              ("--start", "-1")):
+            self.refused("loads", "out/s", option, value, part=value)
+
+    def test_packages_that_are_not_there(self):
+        (self.folder / "xarray.py").write_text("raise ModuleNotFoundError(name='xarray')")
+        run = subprocess.run([sys.executable, str(TOOLS / "netcdf"), "out/s"], cwd=self.folder,
+                             capture_output=True, text=True, timeout=600,
+                             env={**os.environ, "PYTHONPATH": str(self.folder)})
+        self.assertEqual((run.returncode, len(run.stderr.splitlines())), (2, 1), run.stderr)
+        self.assertIn("apt-get install python3-xarray", run.stderr)
 
     def test_campaigns(self):
         self.refused("campaign", "--only", "none", part="none")

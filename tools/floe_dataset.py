@@ -1,0 +1,178 @@
+"""Runs of floe as xarray datasets after the CF conventions, version 1.8 (floe netcdf).
+
+    dataset = ensemble([dataset_of("out/cone/seed1"), dataset_of("out/cone/seed2")])
+
+Dimensions: run, time, obstacle, axis (x y z), fragment. Times are the multiples of `output:
+history` at which rows are due, so that runs join; `sample_time` has the instants themselves, up to
+a step later. What one run has and another lacks is nan. SI units.
+"""
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+import floe_loads
+import floe_program
+from floe_output import options_of, summary_of
+from floe_program import BadInput, reading
+
+with floe_program.packages():
+    import netCDF4
+    import xarray
+
+CONVENTIONS = "CF-1.8"
+UNITS = ((r"^energy_", "J"), (r"_force_[xyz]$", "N"), (r"_moment_[xyz]$", "N m"),
+         (r"_displacement_[xyz]$", "m"), (r"_rotation_[xyz]$", "rad"))
+LABELS = {"force": ("N", "force on the obstacle at this instant"),
+          "moment": ("N m", "moment on the obstacle about its point at this instant")}
+
+
+def due_times(time, interval):
+    """The multiples of the interval at which rows at these times [s] were due; the time itself of a
+    row that came for another reason, as the last one."""
+    due = np.round(time / interval) * interval if interval > 0 else time.copy()
+    early = time < due - 1e-9 * np.maximum(due, interval)
+    again = np.append(False, np.diff(due) <= 0)
+    return np.where(early | again, time, due)
+
+
+def plain(name):
+    """A name that CF allows for a variable: letters, digits, underscores, a letter first."""
+    name = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return name if name[:1].isalpha() else f"n_{name}"
+
+
+def unit_of(column):
+    return next((unit for pattern, unit in UNITS if re.search(pattern, column)), "1")
+
+
+def variable(dims, values, units, label, **more):
+    return dims, values, {"units": units, "long_name": label, **more}
+
+
+def of_obstacles(table, names):
+    """Variables of the obstacles: forces, moments, impulses (run, time, obstacle, axis), largest
+    force (run, obstacle, axis)."""
+    def columns(what):
+        return np.stack([table[[f"{name}_{what}_{axis}" for axis in "xyz"]].to_numpy()
+                         for name in names], axis=1)[None]
+    dims = ("run", "time", "obstacle", "axis")
+    found = {f"obstacle_{what}": variable(dims, columns(what), units, label)
+             for what, (units, label) in LABELS.items()}
+    impulse = columns("mean_force") * table["time"].to_numpy()[None, :, None, None]
+    found["obstacle_impulse"] = variable(
+        dims, impulse, "N s", "integral of the force over all steps since the start of the run")
+    found["obstacle_largest_force"] = variable(
+        ("run", "obstacle", "axis"), columns("peak_force")[:, -1], "N",
+        "force on the obstacle in the step in which its norm was largest")
+    return found
+
+
+def of_history(table, names):
+    """Every other column of history.csv as a variable (run, time)."""
+    own = re.compile("(" + "|".join(map(re.escape, names)) +
+                     ")_(force|moment|peak_force|mean_force)_[xyz]$") if names else None
+    return {plain(column): variable(("run", "time"), table[column].to_numpy()[None],
+                                    unit_of(column), column.replace("_", " "))
+            for column in table if column != "time" and not (own and own.match(column))}
+
+
+def of_fragments(folder):
+    """Masses and numbers of bodies of the pieces at the end; nothing if the run cannot break."""
+    path = Path(folder) / "breaks.h5"
+    if not path.exists():
+        return {}
+    with reading(path), h5py.File(path) as file:
+        mass, bodies = file["fragments/mass"][:], file["fragments/bodies"][:]
+    order = np.argsort(-mass, kind="stable")
+    return {"fragment_mass": variable(("run", "fragment"), mass[order][None], "kg",
+                                      "mass of a piece at the end, the heaviest first"),
+            "fragment_bodies": variable(("run", "fragment"), bodies[order][None].astype(float), "1",
+                                        "number of bodies of a piece at the end")}
+
+
+def dataset_of(folder, name=None):
+    """A run as a dataset with a dimension run of length 1, called `name` (default: the folder's
+    name)."""
+    folder = Path(folder)
+    table, options, summary = floe_loads.history(folder), options_of(folder), summary_of(folder)
+    if not len(table):
+        raise BadInput(f"{folder}/history.csv has no rows yet")
+    names = floe_loads.obstacles_of(table)
+    path = folder / "options.yaml"
+    with reading(path):
+        scene = path.read_text()
+        time = table["time"].to_numpy()
+        interval = float(options.get("output_history", 0))
+        variables = {"sample_time": variable(("run", "time"), time[None], "s",
+                                             "time of the sample since the start of the run")}
+        variables |= of_obstacles(table, names) if names else {}
+        variables |= of_history(table, names) | of_fragments(folder)
+    version = str(summary.get("version", "unknown"))
+    for key, value, label in (("scene", scene, "every option of the run, as used (YAML)"),
+                              ("version", version, "version of floe"),
+                              ("status", str(summary.get("status", "under way")),
+                               "how the run ended")):
+        variables[key] = ("run", np.array([value], object), {"long_name": label})
+    if "sheet_seed" in options:
+        variables["seed"] = variable(("run",), np.array([float(options["sheet_seed"])]), "1",
+                                     "seed of the mesh")
+    coordinates = {"run": ("run", np.array([name or folder.resolve().name], object),
+                           {"long_name": "name of the run"}),
+                   "time": variable("time", due_times(time, interval), "s",
+                                    "time at which a row was due since the start of the run")}
+    if names:
+        coordinates["obstacle"] = ("obstacle", np.array(names, object),
+                                   {"long_name": "name of the obstacle"})
+        coordinates["axis"] = ("axis", np.array(list("xyz"), object),
+                               {"long_name": "axis of the world, z up"})
+    if "fragment_mass" in variables:
+        number = variables["fragment_mass"][1].shape[1]
+        coordinates["fragment"] = variable("fragment", np.arange(number), "1",
+                                           "rank of the piece by its mass")
+    return xarray.Dataset(variables, coordinates, {
+        "Conventions": CONVENTIONS, "title": "A run of floe, a simulator of floating sea ice",
+        "source": f"floe {version}",
+        "history": f"floe netcdf of {folder.resolve()} (netCDF4 {netCDF4.__version__})",
+        "version": version, "scene": scene})
+
+
+def with_parameters(datasets, options):
+    """The datasets of runs with a variable option_KEY (run) for each key, seeds aside, whose value
+    differs between their options: numbers where all are, else text."""
+    keys = floe_loads.differing(options)
+    for key in keys:
+        values = [each.get(key, "") for each in options]
+        try:
+            values = [float(value) for value in values]
+        except ValueError:
+            values = [np.array(value, object) for value in values]
+        for data, value in zip(datasets, values):
+            data[f"option_{plain(key)}"] = ("run", np.array([value]),
+                                            {"long_name": f"option {key} of the scene"})
+    return datasets
+
+
+def ensemble(datasets):
+    """The datasets of runs as one, along run."""
+    joined = xarray.concat(datasets, "run", join="outer", data_vars="all",
+                           combine_attrs="override")
+    joined.attrs |= {"title": f"{len(datasets)} runs of floe, a simulator of floating sea ice",
+                     "comment": "the attribute scene is that of the first run, the variable scene "
+                                "has all"}
+    return joined
+
+
+def write(dataset, path):
+    """As netCDF-4, compressed; whole or not at all."""
+    encoding = {name: {"zlib": True, "complevel": 4, "_FillValue": np.nan}
+                for name, data in dataset.data_vars.items() if data.dtype.kind == "f"}
+    encoding |= {name: {"_FillValue": None} for name, data in dataset.coords.items()
+                 if data.dtype.kind == "f"}
+    if "fragment_bodies" in dataset:
+        encoding["fragment_bodies"] |= {"dtype": "int32", "_FillValue": -1}
+    path = Path(path)
+    part = path.with_name(f".{path.name}.part")
+    dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4", encoding=encoding)
+    part.replace(path)
