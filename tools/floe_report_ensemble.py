@@ -9,10 +9,11 @@ import numpy as np
 import floe_extremes as extremes
 import floe_loads
 from floe_program import BadInput, reading
-from floe_report_run import COLOURS, centred, number, slim
+from floe_report_run import COLOURS, centred, log_of, number, slim
 from floe_report_series import rounded, series, unit_of
 
 COURSES = 12  # runs whose loads are drawn, at most
+RUN_COLOURS = [*COLOURS, "#7cb518", "#ff924c", "#1982c4", "#6a4c93"]
 
 
 def runs_in(folder):
@@ -51,7 +52,7 @@ def group_of(parameters, runs, name, settings):
     size, unit = unit_of(max(record.max() for record in raw))
     words = ", ".join(f"{key} {value}" for key, value in parameters.items())
     courses = [series(centred(passed, record, runs[0].dt, settings.start), passed / size,
-                      name=run.name, colour=COLOURS[k % len(COLOURS)], width=1, opacity=0.8)
+                      name=run.name, colour=RUN_COLOURS[k % len(RUN_COLOURS)], width=1, opacity=0.8)
                for k, (run, record, passed) in enumerate(zip(runs, raw, filtered)) if k < COURSES]
     density = np.array(found["spectrum"]["density"][1:]) / size**2
     return {"title": f"Load on {name}" + (f": {words}" if words else ""), "unit": unit,
@@ -110,8 +111,10 @@ def facts_of(folder, runs, found):
     levels = sorted({str(run.summary.get("built_for", "")) for run in runs})
     seconds = sum(run.summary.get("wall_s", 0) for run in runs)
     seeds = [run.options.get("sheet_seed", "") for run in runs]
-    return [["folder", str(folder)], ["runs", f"{len(found)}, {len(runs)} of them used"],
-            ["floe", f"version {', '.join(versions)}"], ["processor", ", ".join(levels)],
+    log = log_of(runs[0].folder)
+    return [["folder", str(folder)], ["command of the first run", log["command"]], ["runs", f"{len(found)}, {len(runs)} of them used"],
+            ["floe", f"version {', '.join(versions)}"],
+            ["processor", ", ".join(filter(None, (log["processor"], *levels)))],
             ["seeds", ", ".join(dict.fromkeys(filter(None, seeds)))],
             ["wall time", f"{number(seconds)} s of all runs together"]]
 

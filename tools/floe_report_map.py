@@ -1,10 +1,10 @@
-"""Where the force on an obstacle acts: the resultant of all contacts at the rows of a run's history,
-mapped over the obstacle's surface. SI units.
+"""Where the force on an obstacle acts: the resultant of all contacts at the rows of a run's
+history, mapped over the obstacle's surface. SI units.
 
-Outputs have the force F and moment M on an obstacle, not each contact's. The two are one force along
-the line r + s F with r = F x M/|F|^2 (the central axis, without the couple along it; Goldstein,
-Poole & Safko, Classical Mechanics, 2002, section 1.1 on moments): it meets the surface where it
-presses inwards. With contacts at several places it acts between them.
+Outputs have the force F and moment M on an obstacle, not each contact's. The two are one force
+along the line r + s F with r = F x M/|F|^2, Poinsot's central axis, without the couple along it.
+It meets the surface where it presses inwards. With contacts at several places it acts between
+them.
 """
 import numpy as np
 

@@ -146,7 +146,7 @@ def cracks_of(output, bodies, breaks, step):
 def obstacles_of(output, times):
     """Obstacles as polyhedra, with their places at these times; planes reach 2 m above and below
     the ice."""
-    if not len(times):
+    if not len(times) or not output.shapes:
         return []
     places = [output.position + output.field("bodies_displacement", t)
               for t in (times[0], times[-1])]
@@ -167,8 +167,8 @@ def about_origin(obstacle, origin):
 
 
 def scene_of(output, forces, most):
-    """The scene for the page, None without shapes or frames. forces: [{"name", "kind", "at", "force"}]
-    at all frames (see arrows_of); most: the most frames."""
+    """The scene for the page, None without shapes or frames. forces: [{"name", "kind", "at",
+    "force"}] at all frames (see arrows_of); most: the most frames."""
     if not len(output.times) or not output.shapes:
         return None  # no frame yet; a lattice file without shapes
     frames = chosen(len(output.times), most)

@@ -1,4 +1,4 @@
-"""Series of a report: thinned so that a plot shows what they show, rounded so that they are short."""
+"""Series of a report: thinned so that a plot shows what they show, rounded to be short."""
 import math
 
 import numpy as np

@@ -31,14 +31,17 @@ const floeCharts = (() => {
     if (log) {
       const first = Math.floor(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9);
       const decades = Math.log10(high / low), every = Math.max(1, Math.round(decades / most));
-      const heads = 3 * decades <= most ? [1, 2, 5] : [1];
-      for (let power = first; power <= last; power += every) {
-        for (const head of heads) {
-          const value = Number(`${head}e${power}`);
-          if (value >= low * 0.9999 && value <= high * 1.0001) found.push(value);
+      for (const heads of 3 * decades <= most ? [[1, 2, 5]] : [[1], [1, 3], [1, 2, 5]]) {
+        found.length = 0;
+        for (let power = first; power <= last; power += every) {
+          for (const head of heads) {
+            const value = Number(`${head}e${power}`);
+            if (value >= low * 0.9999 && value <= high * 1.0001) found.push(value);
+          }
         }
+        if (found.length > 1) return found;
       }
-      return found.length > 1 ? found : ticksOf(low, high, false, most);
+      return ticksOf(low, high, false, most);
     }
     const step = stepOf(high - low, most);
     for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) {

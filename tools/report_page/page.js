@@ -331,8 +331,8 @@
       makeControls(made, view);
       const rate = sceneNotes(made, report.scene);
       const say = () => {
-        const drawn = `${view.calls} draw calls, ${view.triangles.toLocaleString('en')} triangles ` +
-          'a frame';
+        const triangles = view.triangles.toLocaleString('en');
+        const drawn = `${view.calls} draw calls, ${triangles} triangles a frame`;
         rate.textContent = view.rate ? `Rate seen here: ${view.rate.toFixed(0)} frames a second; ` +
           `${drawn}.` : `Rate: play or turn to measure it; ${drawn}.`;
       };
@@ -395,7 +395,8 @@
       if (report.scene) place = section('scene', 'The scene');
       report.loads.forEach(loadSections);
       if (report.no_loads) {
-        element(section('load', 'Load'), 'p', 'soft', `No statistics of loads: ${report.no_loads}.`);
+        const words = `No statistics of loads: ${report.no_loads}.`;
+        element(section('load', 'Load'), 'p', 'soft', words);
       }
       if (report.reactions.series.length) {
         chart(section('reactions', 'Forces of boundaries'), {

@@ -82,9 +82,9 @@ const floeScene = (() => {
     let corner = 0, face = 0, side = 0;
     for (let b = 0; b < n; ++b) {
       for (let k = 0; k < scene.counts[b]; ++k) {
-        const at = 3 * (corner + k);
+        const at = 3 * (corner + k), [x, y, z] = [position[at], position[at + 1], position[at + 2]];
         body[corner + k] = b;
-        radius[b] = Math.max(radius[b], Math.hypot(...position.subarray(at, at + 3)));
+        radius[b] = Math.max(radius[b], Math.hypot(x, y, z));
       }
       for (let f = 0; f < scene.counts[n + b]; ++f, ++face) {
         const sides = scene.sides[face], ring = [];
