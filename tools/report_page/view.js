@@ -413,6 +413,7 @@ class FloeView {
   // The body seen at a place of the window, from 0, 0 (top left) to 1, 1; -1: none.
   bodyAt(across, down) {
     const caster = new THREE.Raycaster();
+    this.camera.updateMatrixWorld();
     caster.setFromCamera(new THREE.Vector2(2 * across - 1, 1 - 2 * down), this.camera);
     const {origin, direction} = caster.ray, {data} = this.poses;
     const o = new THREE.Vector3(), d = new THREE.Vector3(), q = new THREE.Quaternion();
