@@ -16,7 +16,7 @@ from floe_report_series import energy_unit, rounded, series, unit_of
 
 LOSSES = {"damping": "damping of beams", "drag": "drag of the water", "fracture": "fracture",
           "contact_viscous": "dashpots of contacts", "friction": "friction",
-          "crushing": "crushing", "released": "released", "numerical": "numerical damping"}
+          "crushing": "crushing", "released": "released by breaks", "numerical": "numerical damping"}
 STORED = {"kinetic": "motion", "strain": "beams", "gravity": "gravity", "water": "buoyancy",
           "contact": "springs of contacts"}
 INPUT = {"boundary": "work of boundaries and obstacles", "external": "work of loads"}
@@ -182,14 +182,15 @@ def energies_of(history):
     zero = np.zeros(len(history["time"]))
     put_in = sum((changes[key] for key in INPUT if key in changes), zero)
     stored = sum((changes[key] for key in STORED if key in changes), zero)
-    drawn = [("put in", put_in, "#111"), ("stored", stored, COLOURS[0])]
+    drawn = [("put in", put_in, "#111")] if any(key in changes for key in INPUT) else []
+    drawn.append(("stored", stored, COLOURS[0]))
     lost = sorted((key for key in LOSSES if key in changes and np.any(changes[key])),
                   key=lambda key: -np.abs(changes[key]).max())[:6]
     drawn += [(f"lost: {LOSSES[key]}", changes[key], COLOURS[1 + k]) for k, key in enumerate(lost)]
-    error = columns.get("balance_error", zero)
+    error = float(np.abs(columns["balance_error"]).max()) if "balance_error" in columns else None
     largest = max(np.abs(v).max() for v in changes.values()) or 1.0
-    return {"unit": unit, "size": size, "rows": rows, "error": float(np.abs(error).max()),
-            "error_share": float(np.abs(error).max() / largest),
+    return {"unit": unit, "size": size, "rows": rows, "error": error,
+            "error_share": None if error is None else float(error / largest),
             "course": [series(history["time"], values / size, name=name, colour=colour)
                        for name, values, colour in drawn]}
 

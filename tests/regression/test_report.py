@@ -203,6 +203,15 @@ class Run(FolderTest):
         exact = np.einsum("vij,vj->vi", matrices(output.orientation)[body], shapes["vertices"])
         np.testing.assert_allclose(unpack(scene["corners"]).T * scene["step"], exact,
                                    atol=0.5001 * scene["step"])
+        # all of it together: where the run says that the corners are in its last frame
+        poses = unpack(scene["poses"])[-1]
+        centres = (unpack(scene["places"]) + poses[:3]).T * scene["step"] + scene["origin"]
+        turn = scenes.rotations(poses[3:].T * scene["turn_step"])
+        points = centres[body] + np.einsum("vij,vj->vi", turn[body],
+                                           unpack(scene["corners"]).T * scene["step"])
+        reach = np.linalg.norm(exact, axis=1).max() * scene["turn_step"]
+        np.testing.assert_allclose(points, output.field("points", output.times[-1]),
+                                   atol=scene["step"] + reach)
         np.testing.assert_array_equal(unpack(scene["sides"])[0], np.diff(shapes["corner_of"]))
         np.testing.assert_array_equal(unpack(scene["counts"]), [np.diff(shapes["vertex_of"]),
                                                                 np.diff(shapes["face_of"])])

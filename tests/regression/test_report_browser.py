@@ -79,7 +79,8 @@ class InBrowser(FolderTest):
         self.assertIn("draw calls", words)
 
     def plays(self, scene):
-        self.browser.run(f"{VIEW}.speed *= 5; {VIEW}.setFrame(0); document.getElementById('play').click()")
+        self.browser.run(f"{VIEW}.speed *= 5; {VIEW}.setFrame(0); "
+                         "document.getElementById('play').click()")
         self.assertEqual(self.browser.run("document.getElementById('play').textContent"), "Pause")
         self.browser.until(f"{VIEW}.time > 0.5")
         self.browser.until(f"{VIEW}.rate > 0 || !{VIEW}.playing")

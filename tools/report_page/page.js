@@ -181,9 +181,13 @@
     const made = section('energy', 'Energy ledger');
     chart(made, {title: 'Energies since the start', labelX: 'time [s]', unitX: 's', time: true,
                  labelY: `energy [${energies.unit}]`, height: 300, series: energies.course});
-    element(made, 'p', 'soft', `What is put in less what is stored and lost leaves at most ` +
-      `${short(energies.error / energies.size, 3)} ${energies.unit}, ` +
-      `${short(100 * energies.error_share, 2)} % of the largest term.`);
+    if (energies.error !== null) {
+      element(made, 'p', 'soft', `What is put in less what is stored and lost leaves at most ` +
+        `${short(energies.error / energies.size, 3)} ${energies.unit}, ` +
+        `${short(100 * energies.error_share, 2)} % of the largest term.`);
+    } else {
+      element(made, 'p', 'soft', 'Statics keep no account of the work that is put in.');
+    }
     table(made, energies.rows.map(row => [
       row.name, row.kind, short(row.end / energies.size)]),
       {head: ['energy', 'kind', `since the start [${energies.unit}]`], numbers: [2]});
@@ -235,6 +239,7 @@
       ['height', 'height'], ['fragment', 'fragment'], ['speed', 'speed']]);
     colour.id = 'colour';
     for (const what of ['cracks', 'arrows', 'water', 'obstacles', 'edges']) {
+      if (!view.objectsOf(what).length) continue;
       const box = control(element(second, 'label'), 'input', {type: 'checkbox', checked: ''});
       box.parentElement.append(what);
       box.addEventListener('change', () => view.show(what, box.checked));
@@ -273,7 +278,7 @@
     };
     if (view.colour === 'height') {
       ramp(['#0d294d', '#33739e', '#9ec7e0', '#dbebf5', '#f7faff', '#fff2d6'],
-           '3 m below still water', '3 m above');
+           `3 m below ${view.scene.water ? 'still water' : 'z = 0'}`, '3 m above');
     } else if (view.colour === 'speed') {
       ramp(['#e6f0f7', '#80bfe0', '#facc5c', '#d63d1f'], '0',
            `${short(view.fastest, 3)} m/s and more`);
@@ -312,7 +317,7 @@
       `${scene.of_bodies.toLocaleString('en')} bodies nearest to the obstacles. ` : '';
     element(made, 'p', 'soft', `Drag to turn, wheel or two fingers to zoom (after a click into ` +
       `the scene), right button or two fingers to move, click a body for its numbers. ${seen}` +
-      `${scene.times.length} of ${scene.of_frames} frames; places are right to ` +
+      `${scene.times.length} of ${scene.of_frames} frames; centres are right to ` +
       `${short(500 * scene.step)} mm, rotations to ${short(500 * scene.turn_step)} mrad about ` +
       'each axis; between frames they are interpolated. Velocities are differences of places ' +
       'from the frame before to the one after.');

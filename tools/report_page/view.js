@@ -330,10 +330,13 @@ class FloeView {
     if (this.arrowPoses) this.arrowPoses.texture.needsUpdate = true;
   }
 
+  objectsOf(what) {
+    return {cracks: [this.cracks], arrows: [this.arrows], water: [this.water],
+            obstacles: [this.blocks, this.planes], edges: [this.edges]}[what].filter(Boolean);
+  }
+
   show(what, visible) {
-    const objects = {cracks: [this.cracks], arrows: [this.arrows], water: [this.water],
-                     obstacles: [this.blocks, this.planes], edges: [this.edges]}[what];
-    for (const object of objects) if (object) object.visible = visible;
+    for (const object of this.objectsOf(what)) object.visible = visible;
     this.request();
   }
 
