@@ -120,7 +120,7 @@ const floeCharts = (() => {
 
   function drawAxes(svg, spec, box, x, y, ranges) {  // before what the plot shows
     const [left, top, right, bottom] = box;
-    const most = Math.max(2, Math.floor((right - left) / 75));
+    const most = Math.max(2, Math.floor((right - left) / 58));
     for (const value of ticksOf(...ranges[0], spec.logX, most)) {
       const at = x(value).toFixed(1);
       node(svg, 'line', {x1: at, x2: at, y1: top, y2: bottom, class: 'grid'});

@@ -73,9 +73,9 @@
       `${newtons(s.mean_band[1])})` : '';
     const rows = [
       ['component', s.component], ['filter', s.filter],
-      ['record', `${s.seconds.map(v => short(v)).slice(0, 3).join(', ')}` +
-        `${s.seconds.length > 3 ? ', ...' : ''} s after ${short(s.start)} s of start-up, rows ` +
-        `every ${short(s.interval, 3)} s`],
+      ['record', `${s.seconds.length > 1 ? `${s.seconds.length} of ` : ''}` +
+        `${[...new Set(s.seconds.map(v => short(v)))].slice(0, 3).join(', ')} s after ` +
+        `${short(s.start)} s of start-up, rows every ${short(s.interval, 3)} s`],
       ['mean', newtons(s.mean) + band], ['deviation in time', newtons(s.deviation)],
       ['largest, filtered', newtons(Math.max(...s.largest_of_runs))],
       ['largest over a row', `${newtons(s.largest_of_an_interval)} (unfiltered)`],

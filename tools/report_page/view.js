@@ -427,17 +427,34 @@ class FloeView {
       const along = o.dot(direction), radius = this.mesh.radius[b];
       if (o.lengthSq() - along * along > radius * radius) continue;
       q.set(-data[at + 4], -data[at + 5], -data[at + 6], data[at + 7]);  // into the body's frame
-      const distance = this.entry(b, o.applyQuaternion(q), d.copy(direction).applyQuaternion(q));
+      const {planes, planeOf} = this.mesh;
+      const distance = this.entry(planes, planeOf[b], planeOf[b + 1], o.applyQuaternion(q),
+                                  d.copy(direction).applyQuaternion(q));
       if (distance < best) [best, found] = [distance, b];
     }
-    return found;
+    return this.hidden(caster.ray, best) ? -1 : found;
   }
 
-  // Where a ray enters a convex body; Infinity if it misses it.
-  entry(b, o, d) {
-    const {planes, planeOf} = this.mesh;
+  // Whether an obstacle that is no plane is nearer than this on a ray.
+  hidden({origin, direction}, distance) {
+    if (!this.blocks || !this.blocks.visible) return false;
+    const {data} = this.places;
+    return this.scene.obstacles.some((one, i) => {
+      if (one.plane) return false;
+      one.walls ||= one.faces.flatMap(
+        ring => floeScene.planeThrough(one.points.flat(), ring));
+      const at = 12 * i, o = origin.clone().sub(
+        new THREE.Vector3(data[at], data[at + 1], data[at + 2]));
+      const q = new THREE.Quaternion(-data[at + 4], -data[at + 5], -data[at + 6], data[at + 7]);
+      return this.entry(one.walls, 0, one.faces.length, o.applyQuaternion(q),
+                        direction.clone().applyQuaternion(q)) < distance;
+    });
+  }
+
+  // Where a ray enters what is within these planes; Infinity if it misses it.
+  entry(planes, first, end, o, d) {
     let from = -Infinity, to = Infinity;
-    for (let k = 4 * planeOf[b]; k < 4 * planeOf[b + 1]; k += 4) {
+    for (let k = 4 * first; k < 4 * end; k += 4) {
       const speed = planes[k] * d.x + planes[k + 1] * d.y + planes[k + 2] * d.z;
       const room = planes[k + 3] - planes[k] * o.x - planes[k + 1] * o.y - planes[k + 2] * o.z;
       if (Math.abs(speed) < 1e-12) {
