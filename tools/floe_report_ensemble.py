@@ -112,7 +112,8 @@ def facts_of(folder, runs, found):
     seconds = sum(run.summary.get("wall_s", 0) for run in runs)
     seeds = [run.options.get("sheet_seed", "") for run in runs]
     log = log_of(runs[0].folder)
-    return [["folder", str(folder)], ["command of the first run", log["command"]], ["runs", f"{len(found)}, {len(runs)} of them used"],
+    return [["folder", str(folder)], ["command of the first run", log["command"]],
+            ["runs", f"{len(found)}, {len(runs)} of them used"],
             ["floe", f"version {', '.join(versions)}"],
             ["processor", ", ".join(filter(None, (log["processor"], *levels)))],
             ["seeds", ", ".join(dict.fromkeys(filter(None, seeds)))],

@@ -16,10 +16,12 @@ from floe_report_series import energy_unit, rounded, series, unit_of
 
 LOSSES = {"damping": "damping of beams", "drag": "drag of the water", "fracture": "fracture",
           "contact_viscous": "dashpots of contacts", "friction": "friction",
-          "crushing": "crushing", "released": "released by breaks", "numerical": "numerical damping"}
+          "crushing": "crushing", "released": "released by breaks",
+          "numerical": "numerical damping"}
 STORED = {"kinetic": "motion", "strain": "beams", "gravity": "gravity", "water": "buoyancy",
           "contact": "springs of contacts"}
 INPUT = {"boundary": "work of boundaries and obstacles", "external": "work of loads"}
+NO_TERM = ("load", "balance_error")  # of the balance; every other energy is stored
 COLOURS = ["#22577a", "#c1440e", "#4c956c", "#8a5a9e", "#b8860b", "#5c677d", "#d1495b", "#2a9d8f"]
 
 
@@ -171,17 +173,18 @@ def energies_of(history):
     """The energy ledger over time, and what it is at the end since the start."""
     columns = {key.removeprefix("energy_"): values for key, values in history.items()
                if key.startswith("energy_")}
-    names = {**INPUT, **STORED, **LOSSES}
+    names = {**INPUT, **{key: key.replace("_", " ") for key in columns}, **STORED, **LOSSES}
+    names = {key: INPUT.get(key, name) for key, name in names.items() if key not in NO_TERM}
     changes = {key: values - values[0] for key, values in columns.items() if key in names}
     if not changes:
         return None
     size, unit = energy_unit(max(np.abs(v).max() for v in changes.values()))
     rows = [{"name": names[key], "kind": "put in" if key in INPUT else
-             "stored" if key in STORED else "lost", "end": float(changes[key][-1])}
+             "lost" if key in LOSSES else "stored", "end": float(changes[key][-1])}
             for key in names if key in changes]
     zero = np.zeros(len(history["time"]))
     put_in = sum((changes[key] for key in INPUT if key in changes), zero)
-    stored = sum((changes[key] for key in STORED if key in changes), zero)
+    stored = sum((changes[key] for key in changes if key not in {**INPUT, **LOSSES}), zero)
     drawn = [("put in", put_in, "#111")] if any(key in changes for key in INPUT) else []
     drawn.append(("stored", stored, COLOURS[0]))
     lost = sorted((key for key in LOSSES if key in changes and np.any(changes[key])),
