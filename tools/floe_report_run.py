@@ -173,8 +173,9 @@ def energies_of(history):
     """The energy ledger over time, and what it is at the end since the start."""
     columns = {key.removeprefix("energy_"): values for key, values in history.items()
                if key.startswith("energy_")}
-    names = {**INPUT, **{key: key.replace("_", " ") for key in columns}, **STORED, **LOSSES}
-    names = {key: INPUT.get(key, name) for key, name in names.items() if key not in NO_TERM}
+    others = {key: key.replace("_", " ") for key in columns
+              if key not in (*INPUT, *LOSSES, *NO_TERM)}
+    names = {**INPUT, **others, **STORED, **LOSSES}
     changes = {key: values - values[0] for key, values in columns.items() if key in names}
     if not changes:
         return None
