@@ -8,7 +8,7 @@ import numpy as np
 import floe_fields
 import floe_loads
 import floe_signals as signals
-from floe_output import Output, rows_of
+from floe_output import Output
 from floe_program import BadInput
 from floe_report_map import action, pressure_map
 from floe_report_scene import breaks_of, obstacles_of, scene_of
@@ -90,10 +90,10 @@ def number(value, digits=4):
 # -- loads ----------------------------------------------------------------------------------------
 def history_of(folder):
     """history.csv as {column: values}."""
-    rows = rows_of(folder)
-    if not rows:
+    table = floe_loads.history(folder)
+    if not len(table):
         raise BadInput(f"{folder}/history.csv has no rows yet")
-    return {key: np.array([float(row[key]) for row in rows]) for key in rows[0]}
+    return {key: table[key].to_numpy() for key in table}
 
 
 def centred(filtered, raw, dt, start):

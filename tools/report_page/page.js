@@ -338,7 +338,7 @@
       const say = () => {
         const triangles = view.triangles.toLocaleString('en');
         const drawn = `${view.calls} draw calls, ${triangles} triangles a frame`;
-        rate.textContent = view.rate ? `Rate seen here: ${view.rate.toFixed(0)} frames a second; ` +
+        rate.textContent = view.rate ? `Rate seen here: ${short(view.rate, 2)} frames a second; ` +
           `${drawn}.` : `Rate: play or turn to measure it; ${drawn}.`;
       };
       view.onRate = say;

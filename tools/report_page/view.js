@@ -361,8 +361,23 @@ class FloeView {
     }
   }
 
+  // Whether the graphics card has done what it was told last. Without this question a slow one is
+  // given frames faster than it draws, and the rate would be that of giving.
+  cardIsFree() {
+    if (!this.fence) return true;
+    const gl = this.renderer.getContext();
+    if (gl.clientWaitSync(this.fence, 0, 0) === gl.TIMEOUT_EXPIRED) return false;
+    gl.deleteSync(this.fence);
+    this.fence = null;
+    return true;
+  }
+
   draw(now) {
     this.waiting = false;
+    if (!this.cardIsFree()) {
+      this.request();
+      return;
+    }
     if (this.playing) {
       if (this.last !== null) this.setTime(this.time + this.speed * (now - this.last) / 1000);
       this.last = now;
@@ -370,6 +385,9 @@ class FloeView {
       else this.request();
     }
     this.renderer.render(this.world, this.camera);
+    const gl = this.renderer.getContext();
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
     this.measure(now);
   }
 
