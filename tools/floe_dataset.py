@@ -28,13 +28,26 @@ LABELS = {"force": ("N", "force on the obstacle at this instant"),
           "moment": ("N m", "moment on the obstacle about its point at this instant")}
 
 
+def interval_of(options):
+    """Time [s] between the rows of a run, 0 if each is at a load step."""
+    given = options.get("output_history", "auto")
+    if given != "auto":
+        return float(given)
+    statics = options.get("integrator", "quasistatic") == "quasistatic"
+    return 0.0 if statics else float(options["time_end"]) / 200
+
+
 def due_times(time, interval):
-    """The multiples of the interval at which rows at these times [s] were due; the time itself of a
-    row that came for another reason, as the last one."""
-    due = np.round(time / interval) * interval if interval > 0 else time.copy()
-    early = time < due - 1e-9 * np.maximum(due, interval)
-    again = np.append(False, np.diff(due) <= 0)
-    return np.where(early | again, time, due)
+    """The multiples of the interval at which rows at these times [s] were due, up to a step
+    earlier; the times themselves where steps are longer than the interval, and of a last row that
+    came since the run ended."""
+    if interval <= 0:
+        return time.copy()
+    number = np.floor(time / interval + 1e-6)
+    follows = np.append(True, np.diff(number) == 1)
+    if not np.all(follows[:-1]):
+        return time.copy()
+    return np.where(follows, number * interval, time)
 
 
 def plain(name):
@@ -104,7 +117,7 @@ def dataset_of(folder, name=None):
     with reading(path):
         scene = path.read_text()
         time = table["time"].to_numpy()
-        interval = float(options.get("output_history", 0))
+        interval = interval_of(options)
         variables = {"sample_time": variable(("run", "time"), time[None], "s",
                                              "time of the sample since the start of the run")}
         variables |= of_obstacles(table, names) if names else {}
@@ -145,12 +158,28 @@ def with_parameters(datasets, options):
     for key in keys:
         values = [each.get(key, "") for each in options]
         try:
-            values = [float(value) for value in values]
+            values, kind = [float(value) for value in values], float
         except ValueError:
-            values = [np.array(value, object) for value in values]
+            kind = object
         for data, value in zip(datasets, values):
-            data[f"option_{plain(key)}"] = ("run", np.array([value]),
+            data[f"option_{plain(key)}"] = ("run", np.array([value], kind),
                                             {"long_name": f"option {key} of the scene"})
+    return datasets
+
+
+def completed(datasets):
+    """The datasets, each with the variables of all: what a run lacks is nan, text empty. xarray
+    joins no others."""
+    known = {name: data.variables[name] for data in reversed(datasets) for name in data.data_vars}
+    axes = {dim: data.coords[dim] for data in reversed(datasets) for dim in data.dims}
+    for data in datasets:
+        for name, like in known.items():
+            if name in data:
+                continue
+            shape = [data.sizes.get(dim, axes[dim].size) for dim in like.dims]
+            values = np.full(shape, np.nan if like.dtype.kind == "f" else "", like.dtype)
+            data.coords.update({dim: axes[dim] for dim in like.dims if dim not in data.dims})
+            data[name] = (like.dims, values, like.attrs)
     return datasets
 
 

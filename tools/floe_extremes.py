@@ -15,6 +15,7 @@ import numpy as np
 EULER = 0.5772156649015329
 METHODS = ("moments", "likelihood")
 DRAWS, SEED = 10000, 20260101
+LARGEST = 20_000_000  # numbers drawn at once: fewer draws of so many maxima, which scatter less
 
 
 def l_moments(samples):
@@ -90,10 +91,17 @@ def quantile(mu, beta, probability):
     return mu + beta * reduced(probability)
 
 
+def _samples(number, draws, seed):
+    """`draws` x `number` numbers of the standard law; of very many numbers fewer draws, but
+    1,000."""
+    draws = max(min(draws, LARGEST // number), min(draws, 1000))
+    return np.random.default_rng([seed, number]).gumbel(size=(draws, number))
+
+
 @functools.lru_cache(maxsize=64)
 def _standard(number, method, draws, seed):
     """mu and beta of `draws` samples of this many maxima of the standard law (mu 0, beta 1)."""
-    found = fit(np.random.default_rng([seed, number]).gumbel(size=(draws, number)), method)
+    found = fit(_samples(number, draws, seed), method)
     for values in found:
         values.setflags(write=False)
     return found
@@ -129,8 +137,8 @@ def anderson_darling(samples, mu, beta):
 @functools.lru_cache(maxsize=16)
 def _standard_distances(number, draws, seed):
     """A^2 of samples of Gumbel's law, each against the law fitted to it by likelihood; sorted."""
-    samples = np.random.default_rng([seed, number]).gumbel(size=(draws, number))
-    return np.sort(anderson_darling(samples, *_standard(number, "likelihood", draws, seed)))
+    return np.sort(anderson_darling(_samples(number, draws, seed),
+                                    *_standard(number, "likelihood", draws, seed)))
 
 
 def goodness(samples, draws=DRAWS, seed=SEED):

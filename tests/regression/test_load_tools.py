@@ -107,6 +107,51 @@ class LoadTools(FolderTest):
         (along,) = json.loads((self.folder / "made/0.5_1/loads.json").read_text())
         self.assertAlmostEqual(along["maxima"][0] / 4e4, 1, 6)  # positive where its mean is
 
+    def test_rows_by_themselves(self):
+        """Statics have a row per load step, dynamics without `output: history` 200, or one per
+        step."""
+        for name, words in (("statics", ["-time_dt", "0.5"]),
+                            ("steps", ["-integrator", "explicit", "-time_end", "0.01"]),
+                            ("dynamics", ["-integrator", "explicit", "-time_end", "0.4"])):
+            done = run(REPOSITORY / "input/tension.yaml", "-sheet_length", "12", "-sheet_width",
+                       "10", *words, "-output_dir", name, cwd=self.folder)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.tool("netcdf", name)
+            with xarray.open_dataset(self.folder / name / "run.nc") as data:
+                late = (data["sample_time"][0] - data["time"]).values
+                self.assertTrue(np.all(np.diff(data["time"]) > 0))
+                due = data["time"].values
+            self.assertTrue(np.all((late >= -1e-12) & (late < 0.001)))
+            if name == "dynamics":
+                np.testing.assert_allclose(due, 0.002 * np.arange(201), atol=1e-12)
+            else:
+                np.testing.assert_array_equal(late, 0)
+
+    def test_runs_of_several_scenes(self):
+        """Runs that lack what others have, and end earlier, are one file all the same."""
+        self.made("a/r", lambda t: np.array([1.0, 0, 0]), speed="0.1")
+        self.made("b/r", lambda t: np.array([2.0, 0, 0]))
+        rows = pandas.read_csv(self.folder / "made/b/r/history.csv")
+        rows.iloc[:100].assign(energy_drag=3.0).to_csv(self.folder / "made/b/r/history.csv",
+                                                      index=False)
+        with h5py.File(self.folder / "made/b/r/breaks.h5", "w") as file:
+            file["fragments/mass"], file["fragments/bodies"] = [5.0, 7.0], [1, 2]
+        files, _ = self.tool("netcdf", "made")
+        paths = [self.folder / file for file in files]
+        with xarray.open_dataset(paths[2]) as ensemble, xarray.open_mfdataset(
+                paths[:2], combine="nested", concat_dim="run") as joined:
+            xarray.testing.assert_equal(joined.load(), ensemble.load())
+            self.assertEqual(list(ensemble["run"].values), ["a/r", "b/r"])
+            self.assertEqual(ensemble.sizes["time"], 401)
+            self.assertEqual(ensemble["option_water_current"].values.tolist(),
+                             ["0.1, 0, 0", "0.5, 0, 0"])
+            a, b = (ensemble.sel(run=name) for name in ensemble["run"].values)
+            self.assertTrue(np.all(np.isnan(a["energy_drag"])))
+            np.testing.assert_array_equal(b["fragment_mass"], [7, 5])
+            np.testing.assert_array_equal(np.isnan(b["energy_drag"]), np.arange(401) >= 100)
+            last = a["obstacle_impulse"].sel(obstacle="leg", axis="x")[-1]
+            self.assertAlmostEqual(float(last), 20)
+
     def test_runs_of_floe(self):
         for seed in (1, 2):
             (self.folder / "s.yaml").write_text(SCENE)
