@@ -74,8 +74,9 @@ def rows_of_facts(output):
              ("ice", " x ".join(filter(None, sheet)) + " m" if any(sheet) else
               options.get("lattice_file", "")),
              ("bodies, beams", f"{len(output.position):,}, {summary.get('beams', 0):,}"),
-             ("time", f"{number(summary.get('time'))} s in {summary.get('steps', 0):,} steps of "
-              f"{number(summary.get('dt'))} s" if "time" in summary else ""),
+             ("time", f"to {number(summary.get('time'))} s, {summary.get('steps', 0):,} "
+              f"step{'s' * (summary.get('steps') != 1)} of {number(summary.get('dt'))} s"
+              if "time" in summary else ""),
              ("wall time", f"{number(summary.get('wall_s'))} s" if "wall_s" in summary else ""),
              ("obstacles", ", ".join(f"{name} ({options.get(f'obstacle_{name}_shape')})" for name in
                                      options.get("obstacle_names", "").replace(",", " ").split()))]
