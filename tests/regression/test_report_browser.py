@@ -36,7 +36,9 @@ class InBrowser(FolderTest):
         self.assertIsNone(self.browser.run("window.floe.error"))
 
     def run_of_cone(self):
-        run_cone(self.folder / "cone")
+        """A cone that comes nearer and turns."""
+        run_cone(self.folder / "cone", "-obstacle_cone_velocity", "-0.1, 0, 0",
+                 "-obstacle_cone_angular_velocity", "0, 0, 0.3")
         make_report(self.folder / "cone")
         return self.folder / "cone/report.html"
 
@@ -70,6 +72,14 @@ class InBrowser(FolderTest):
                                 f"Array.from({VIEW}.poses.data.slice(0, 3)))")
         middle = places[:, 0] + poses[last - 1:, :3, 0].mean(axis=0)
         np.testing.assert_allclose(card, middle * scene["step"], atol=1e-5)
+
+        # and of the obstacle
+        time = self.browser.run(f"{VIEW}.time")
+        card = self.browser.run(f"Array.from({VIEW}.places.data.slice(0, 8))")
+        base = np.array([12.2 - 0.1 * time, 0, -4]) - scene["origin"]
+        np.testing.assert_allclose(card[:3], base, atol=1e-3)
+        np.testing.assert_allclose(card[4:], [0, 0, np.sin(0.15 * time), np.cos(0.15 * time)],
+                                   atol=1e-3)
 
     def draws_little_at_a_time(self):
         self.browser.until(f"{VIEW}.calls > 0")
