@@ -25,6 +25,8 @@ file(GLOB modules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/*.py)
 set(share ${CMAKE_INSTALL_DATADIR}/floe)
 install(PROGRAMS ${tools} DESTINATION ${share}/tools COMPONENT program)
 install(FILES ${modules} DESTINATION ${share}/tools COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/report_page DESTINATION ${share}/tools
+        COMPONENT program)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input DESTINATION ${share} COMPONENT program)
 
 # The page is what the program says, like docs/options.md.

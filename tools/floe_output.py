@@ -47,6 +47,7 @@ class Lattice:
         with reading(path), h5py.File(path) as file:
             self.position = file["bodies/position"][:]      # n x 3 [m]
             self.orientation = file["bodies/orientation"][:]  # n x 4
+            self.mass = file["bodies/mass"][:]              # n [kg]
             self.beams = {name: data[:] for name, data in file.get("beams", {}).items()}
             self.sets = {name: data[:] for name, data in file.get("sets", {}).items()}
             self.shapes = {name: data[:] for name, data in file.get("shapes", {}).items()}

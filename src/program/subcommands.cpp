@@ -24,6 +24,7 @@ constexpr std::array table{
     Subcommand{"loads", "a load's mean, maxima, Gumbel's law, peaks; of one run or of many"},
     Subcommand{"netcdf", "writes runs as netCDF-4 by the CF conventions"},
     Subcommand{"vtkhdf", "writes the frames of a run as VTKHDF with time"},
+    Subcommand{"report", "one HTML file of a run or an ensemble, with its scene to turn and play"},
     Subcommand{"render", "pictures and films of a run in space (needs ParaView)"},
     Subcommand{"make_lattice", "writes lattices of one's own: frames, regular sheets, blocks"},
     Subcommand{"strength", "the strength of whole sheets over that of their beams"},

@@ -157,6 +157,9 @@ class Gumbel(Checks):
         self.assertTrue(0.03 <= np.mean(np.array(p) < 0.05) <= 0.07)
         p = [extremes.goodness(x)[1] for x in self.random.uniform(size=(100, 100))]
         self.assertGreater(np.mean(np.array(p) < 0.05), 0.9)
+        # two maxima say nothing of the law
+        for x in ([72.28, 75.46], [190.3, 191.0], [1, 1e6]):
+            self.assertEqual(extremes.goodness(x)[1], 1)
 
 
 class Records(Checks):

@@ -50,6 +50,13 @@ class ToolsBadInput(unittest.TestCase):
             for folder in ("none", "empty"):
                 self.refused(tool, folder, part=folder)
 
+    def test_reports(self):
+        self.refused("report", "none", part="no folder")
+        self.refused("report", "out", part="no obstacles")
+        self.refused("report", "out/s", "--file", "x.txt", part=".html")
+        self.refused("report", "out/s", "--filter", "x", part="filter 'x'")
+        self.refused("report", self.copy("report_fields", "fields/*.h5"), part="fields")
+
     def test_damaged_files(self):
         for tool in ("plot_sheet", "plot_deflection"):
             self.refused(tool, self.copy(f"{tool}_summary", "summary.json"), part="summary.json")
