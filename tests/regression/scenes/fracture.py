@@ -64,7 +64,7 @@ def check_strength_bending(test, run):
 
 
 def check_edge_uplift(test, run):
-    output = run(status=1)  # the broken end is lifted out of the water
+    output = run()
     time, place = breaks(output, "time"), breaks(output, "place")[:, 0] + 30
     first = time.min()
     test.assertAlmostEqual(6e4 * first / 8 / 5672, 1, delta=0.07)
@@ -85,8 +85,7 @@ def check_point_breakthrough(test, run):
     test.assertGreater(np.mean(along[early] < 0.5), 2 * np.mean(along[early] > 0.8))
     test.assertGreater(np.mean(along[late] > 0.8), 1.5 * np.mean(along[late] < 0.5))
     around = (along > 0.8) & (radius > 4)  # not under the load
-    test.assertTrue(0.6 < np.median(radius[around & ~late]) / 8.245 < 1.1)
-    test.assertTrue(0.9 < np.median(radius[around & late]) / 8.245 < 1.9)
+    test.assertTrue(1.0 < np.median(radius[around]) / 8.245 < 1.9, np.median(radius[around]))
 
 
 def check_notch_snap_back(test, run):
