@@ -53,8 +53,8 @@ void append_corners(const Lattice& lattice, std::int32_t body, double tolerance,
 }
 
 /// Mean of GJ/(EI_y), each beam by its width and length: what the lattice's Poisson's ratio in
-/// bending follows from (model.md, section 3). 1 if the lattice gives no sections: such beams
-/// cannot break.
+/// bending follows from (model.md, "Effective moduli of the lattice, calibrated sheets"). 1 if the
+/// lattice gives no sections: such beams cannot break.
 double mean_twist(const Beams& b) {
   const std::size_t all = b.bodies.size();
   if (b.width.size() != all || b.torsion.size() != all || b.young.size() != all) return 1;
@@ -173,7 +173,7 @@ Junctions find_junctions(const Lattice& lattice) {
   if (lattice.beams.size() == 0) return found;
   if (lattice.shapes.empty())
     throw InputError(
-        "fracture: propagation: energy (the default) needs the vertices of the facets between "
+        "fracture: propagation: energy needs the vertices of the facets between "
         "bodies, and the lattice file has no /shapes: add them, or take propagation: strength");
   double mean = 0;
   for (const double length : lattice.beams.length) mean += length;

@@ -114,7 +114,7 @@ constexpr std::array table{
     OptionSpec{"fracture: energy_shear", number, "(energy)", "J/m^2", ">= 1e-9, <= 1e12",
                "the same in shear or torsion"},
     OptionSpec{
-        "fracture: propagation", choice, "energy", "", "strength | energy",
+        "fracture: propagation", choice, "strength", "", "strength | energy",
         "at a crack's tip beams break by their strengths, as elsewhere; or when the crack releases "
         "`energy` per area, by their stress and its opening, whatever the size of the elements"},
     OptionSpec{"fracture: weibull_modulus", number, "(none: equal strengths)", "", ">= 0.1, <= 1e6",

@@ -51,7 +51,7 @@ template <class Space>
 Ending run(const Scene& scene, const Lattice& lattice, MPI_Comm comm, By by) {
   const auto loads = place_loads(scene, lattice);
   Model<Space> model(lattice, comm, scene.boundaries);
-  add_forces(scene, loads, model);
+  add_forces(scene, loads, model, &lattice);
   add_contact(scene, lattice, model);
   Ending ending;
   const auto look = [&](const Accepted<Space>& a) {

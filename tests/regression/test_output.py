@@ -241,8 +241,9 @@ class Available(OutputTest):
                                       "1e12",
                                       "-fracture_shear_strength", "1e12", "-fracture_energy",
                                       "15")):
+            # rotations come from unit quaternions: large enough for their rounding, 1e-16
             folder = self.run_scene(InThePlane.MOVING, "-model_planar", "false", "-forces", forces,
-                                    *words, name=name)
+                                    "-load_p_moment", "0,0,1e7", *words, name=name)
             frames[name] = self.frames(folder)[-1][1]
         for name in ("touch", "break"):
             for key in ("bodies_displacement", "bodies_rotation", "beams_force", "beams_moment"):

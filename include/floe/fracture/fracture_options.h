@@ -26,7 +26,7 @@ struct FractureOptions {
   double weibull_modulus = 0;  ///< m; 0: all beams have the same strengths
   double weibull_area = 0;     ///< A_ref [m^2]; 0: the mean section of the lattice
   std::uint64_t seed = 1;      ///< of the scatter
-  Propagation propagation = Propagation::energy;
+  Propagation propagation = Propagation::strength;
   /// Damage follows each evaluation, with the strain increments of a step taken from velocities;
   /// false (statics): damage changes by Fracture::advance() only.
   bool dynamic = true;

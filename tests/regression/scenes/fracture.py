@@ -84,8 +84,8 @@ def check_point_breakthrough(test, run):
     early, late = time <= np.quantile(time, 0.25), time >= np.quantile(time, 0.6)
     test.assertGreater(np.mean(along[early] < 0.5), 2 * np.mean(along[early] > 0.8))
     test.assertGreater(np.mean(along[late] > 0.8), 1.5 * np.mean(along[late] < 0.5))
-    around = (along > 0.8) & (radius > 4)  # not under the load
-    test.assertTrue(1.0 < np.median(radius[around]) / 8.245 < 1.9, np.median(radius[around]))
+    around = radius[late & (along > 0.8)]
+    test.assertTrue(0.7 < np.median(around) / 8.245 < 1.5, np.median(around))
 
 
 def check_notch_snap_back(test, run):
@@ -104,8 +104,8 @@ def check_notch_snap_back(test, run):
 
 
 def check_notch(test, run):
-    tough = largest(run("-time_dt", "0.1", "-fracture_propagation", "strength"), "left_force_x")
-    sharp = run("-time_dt", "0.1")
+    tough = largest(run("-time_dt", "0.1"), "left_force_x")
+    sharp = run("-time_dt", "0.1", "-fracture_propagation", "energy")
     test.assertTrue(0.25 < largest(sharp, "left_force_x") / tough < 0.45)  # 1/3.0 of three meshes
     test.assertGreater(sharp.summary["broken_area_at_tips"], 10)
     output = run()
