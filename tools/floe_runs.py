@@ -19,7 +19,6 @@ from pathlib import Path
 
 import floe_program
 
-DIES_WITH_US = ["setpriv", "--pdeathsig", "KILL"]  # util-linux
 GRACE = 60       # [s] that a run has for its checkpoint when it is asked to stop
 STOPPED = 3      # floe's exit code with a checkpoint to go on from
 # One thread per rank. Ranks of several runs must not be bound to the same cores, and processors may
@@ -31,6 +30,14 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
                "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+
+
+def dies_with(parent):
+    """Words before a command that is killed when the process that starts it ends.
+
+    parent: what the shell's PPID must be, as a comparison: if the starter has ended before setpriv
+    (util-linux) asks for its death's signal, none comes, and the command is not run at all."""
+    return ["setpriv", "--pdeathsig", "KILL", "sh", "-c", f'[ "$PPID" {parent} ] && exec "$@"', "sh"]
 
 
 @dataclass
@@ -50,9 +57,9 @@ class Run:
 
     def command(self, output, ranks=1):
         given = [word for key, value in self.options.items() for word in (f"-{key}", f"{value}")]
-        launcher = ["mpiexec", "-n", str(ranks), *DIES_WITH_US] if ranks > 1 else []
-        return [*DIES_WITH_US, *launcher, floe_program.floe(), self.scene, *given, *self.words,
-                "-output_dir", str(output)]
+        launcher = ["mpiexec", "-n", str(ranks), *dies_with("!= 1")] if ranks > 1 else []
+        return [*dies_with(f"= {os.getpid()}"), *launcher, floe_program.floe(), self.scene, *given,
+                *self.words, "-output_dir", str(output)]
 
 
 @dataclass

@@ -19,7 +19,7 @@ from running import processes_with
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_ensemble  # noqa: E402
 from floe_program import BadInput  # noqa: E402
-from floe_runs import Ended, Process, Progress, Run, clock  # noqa: E402
+from floe_runs import Ended, Process, Progress, Run, clock, dies_with  # noqa: E402
 
 TOOL = str(REPOSITORY / "tools/ensemble")
 SCENE = """integrator: explicit
@@ -309,6 +309,10 @@ class Runs(EnsembleTest):
         process.send_signal(signal.SIGKILL)
         process.wait()
         self.gone()
+
+    def test_no_run_starts_once_the_ensemble_has_ended(self):
+        for parent, status in ((f"= {os.getpid()}", 0), ("= 1", 1), ("!= 1", 0)):
+            self.assertEqual(subprocess.run([*dies_with(parent), "true"]).returncode, status)
 
     def test_the_longest_first(self):
         self.fake()
