@@ -37,7 +37,8 @@ def dies_with(parent):
 
     parent: what the shell's PPID must be, as a comparison: if the starter has ended before setpriv
     (util-linux) asks for its death's signal, none comes, and the command is not run at all."""
-    return ["setpriv", "--pdeathsig", "KILL", "sh", "-c", f'[ "$PPID" {parent} ] && exec "$@"', "sh"]
+    start = f'[ "$PPID" {parent} ] && exec "$@"'
+    return ["setpriv", "--pdeathsig", "KILL", "sh", "-c", start, "sh"]
 
 
 @dataclass

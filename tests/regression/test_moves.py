@@ -10,7 +10,7 @@ import unittest
 import h5py
 import numpy as np
 
-from test_restart import INTERRUPTED, Killing, RestartTest, contents, stop_file
+from test_restart import Killing, RestartTest, contents
 
 SCENE = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
