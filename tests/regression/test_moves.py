@@ -7,7 +7,6 @@ history when bodies move. The step is given, since a stable one is a sum over ra
 import json
 import unittest
 
-import h5py
 import numpy as np
 
 from test_restart import Killing, RestartTest, contents
