@@ -9,12 +9,12 @@
 ///
 ///     d = T^T (u_j - u_i), e = (l0, 0, 0) + d, l = |e|
 ///     a, b = q_i, q_j, of the two signs of b that with |b - a| <= |b + a|
-///     tau = Im((a + b)* (b - a))/|a + b|^2       tan(phi/4) about the axis of the relative
-///     rotation psi = 4 atan(|tau|) tau/|tau|              relative rotation [rad], phi = |psi| m =
-///     (a + b)/|a + b|, E = R_m^T e           the chord in the mean triad Delta = d.(2 (l0, 0, 0) +
-///     d)/(l + l0)      elongation [m], exact at any rotation and strain gamma_y = l0 E_2/l,
-///     gamma_z = l0 E_3/l     the chord against the mean triad, as a length [m] U = 1/2 (kn Delta^2
-///     + ksz gamma_y^2 + ksy gamma_z^2
+///     tau = Im((a + b)* (b - a))/|a + b|^2       tan(phi/4) about the axis of rotation
+///     psi = 4 atan(|tau|) tau/|tau|              relative rotation [rad], phi = |psi|
+///     m = (a + b)/|a + b|, E = R_m^T e           the chord in the mean triad
+///     Delta = d.(2 (l0, 0, 0) + d)/(l + l0)      elongation [m], exact at any rotation and strain
+///     gamma_y = l0 E_2/l, gamma_z = l0 E_3/l     the chord against the mean triad, as a length [m]
+///     U = 1/2 (kn Delta^2 + ksz gamma_y^2 + ksy gamma_z^2
 ///              + kt psi_1^2 + kby psi_2^2 + kbz psi_3^2)
 ///
 /// With x = |b - a|^2/4 = sin^2(phi/4):  |a + b|^2 = 4 (1 - x), |tau|^2 = x/(1 - x). With

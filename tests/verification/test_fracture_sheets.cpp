@@ -299,7 +299,9 @@ TEST(FractureOfSheets, IntactBreakableBeamsAreBeams) {
   beams.damping_ratio = 0.3;
   const auto plain = make_beam_force<Spatial>(part, beams);
   const auto breakable = make_breakable_beams(
-      part, beams, {.tensile_strength = 1e12, .shear_strength = 1e12}, find_junctions(lattice));
+      part, beams,
+      {.tensile_strength = 1e12, .shear_strength = 1e12, .propagation = Propagation::energy},
+      find_junctions(lattice));
   State<Spatial> state(static_cast<std::size_t>(part.local));
   test::Random random(3);
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
