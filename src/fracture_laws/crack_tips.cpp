@@ -52,19 +52,15 @@ void append_corners(const Lattice& lattice, std::int32_t body, double tolerance,
   }
 }
 
-/// Mean of GJ/(EI_y), each beam by its width and length: what the lattice's Poisson's ratio in
-/// bending follows from (model.md, "Effective moduli of the lattice, calibrated sheets"). 1 if the
-/// lattice gives no sections: such beams cannot break.
-double mean_twist(const Beams& b) {
+/// Moduli of the sheet over its beams' Young's modulus, for means of its beams. Those of the beams
+/// themselves if the lattice gives no sections: such beams cannot break.
+LatticeModuli moduli_of(const Lattice& lattice, Shear shear) {
+  const Beams& b = lattice.beams;
   const std::size_t all = b.bodies.size();
-  if (b.width.size() != all || b.torsion.size() != all || b.young.size() != all) return 1;
-  double sum = 0, weights = 0;
-  for (std::size_t m = 0; m < b.bodies.size(); ++m) {
-    const double weight = b.width[m] * b.length[m];
-    sum += weight * b.shear_modulus[m] * b.torsion[m] / (b.young[m] * b.inertia_y[m]);
-    weights += weight;
-  }
-  return sum / weights;
+  if (b.width.size() != all || b.torsion.size() != all || b.young.size() != all)
+    return {
+        .young = 1, .poisson = 0, .shear = 0.5, .bulk = 0.5, .bending = 1, .bending_poisson = 0};
+  return lattice_moduli(lattice_ratios(lattice, shear), 0, shear);
 }
 
 /// Global beams by their bodies, sorted.
@@ -166,7 +162,7 @@ void add_facets(const Lattice& lattice, const std::vector<Meeting>& meetings, Ju
 
 }  // namespace
 
-Junctions find_junctions(const Lattice& lattice) {
+Junctions find_junctions(const Lattice& lattice, Shear shear) {
   Junctions found;
   found.facet_of.assign(lattice.beams.bodies.size(), Junctions::none);
   found.first = {0};
@@ -198,7 +194,7 @@ Junctions find_junctions(const Lattice& lattice) {
                    [](const Meeting& a, const Meeting& b) { return a.bodies < b.bodies; });
 
   add_facets(lattice, meetings, found);
-  found.twist = mean_twist(lattice.beams);
+  found.moduli = moduli_of(lattice, shear);
   return found;
 }
 
@@ -286,14 +282,27 @@ void CrackTips::append_bodies(std::span<const CrackBehind> cracks,
   }
 }
 
+namespace {
+/// The mode I intensity whose hoop stress ahead of a tip is the largest of modes I and II together
+/// (Erdogan & Sih 1963): it is in the direction t with k1 sin t + k2 (3 cos t - 1) = 0.
+double hoop_intensity(double k1, double k2) {
+  if (k2 == 0) return k1;
+  const double half = std::atan((k1 - std::sqrt(k1 * k1 + 8 * k2 * k2)) / (4 * k2));
+  const double cosine = std::cos(half);
+  return cosine * (k1 * cosine * cosine - 1.5 * k2 * std::sin(2 * half));
+}
+}  // namespace
+
 double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
                           const std::function<BodyPose(std::int32_t)>& pose_of) const {
   const auto displaced = [linear](const BodyPose& p, const Point3& arm) {
     const Vec3<double> v{p.q.x, p.q.y, p.q.z}, t = cross(v, arm);
     return p.u + (linear ? 2.0 * t : 2.0 * (p.q.w * t + cross(v, t)));
   };
-  Vec3<double> slides{0, 0, 0}, turns{0, 0, 0};
-  double weight = 0;
+  // Normal equations of the fit of (c + b r) g, g = sqrt(r (1 - r/L)), to the jumps
+  Vec3<double> jumps{0, 0, 0}, jumps_r{0, 0, 0}, turns{0, 0, 0}, back{0, 0, 0};
+  double gg = 0, grg = 0, rgrg = 0, weight = 0;
+  Quat<double> turned{1, 0, 0, 0};
   Point2 nearer = crack.tip;
   for (std::size_t k = 0; k < crack.size; ++k) {
     const CrackFacet& f = item(junctions_.facets, crack.facets[k]);
@@ -312,9 +321,12 @@ double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
     if (!linear && turn.w < 0) psi = -psi;
     psi = psi - dot(psi, up) * up;
     const double shape2 = r * std::max(0.0, 1 - r / crack.length);
-    slides = slides + (side * f.width * std::sqrt(shape2)) * jump;
-    turns = turns + (side * f.width * std::sqrt(shape2)) * psi;
-    weight += f.width * shape2;
+    const double far = f.width * r * r, g = side * std::sqrt(shape2);
+    jumps = jumps + (far * g) * jump, jumps_r = jumps_r + (far * r * g) * jump;
+    gg += far * shape2, grg += far * r * shape2, rgrg += far * r * r * shape2;
+    turns = turns + (f.width * g) * psi, weight += f.width * shape2;
+    back = back + f.width * Vec3<double>{crack.tip[0] - f.middle.x, crack.tip[1] - f.middle.y, 0};
+    if (k == 0 && !linear) turned = i.q;
     const std::int32_t next = k + 1 < crack.size ? crack.facets[k + 1] : Junctions::none;
     if (next == Junctions::none) break;
     for (const std::int32_t end : f.junctions) {
@@ -324,8 +336,17 @@ double CrackTips::opening(const CrackBehind& crack, double bent, bool linear,
     }
   }
   if (weight == 0) return 0;
-  const double square = dot(slides, slides) + bent * dot(turns, turns);
-  return std::numbers::pi / 32 * square / (weight * weight);
+  const double determinant = gg * rgrg - grg * grg;
+  // Facets at one distance do not tell r from its root.
+  const Vec3<double> c = determinant > 1e-9 * gg * rgrg
+                             ? (1 / determinant) * (rgrg * jumps - grg * jumps_r)
+                             : (1 / gg) * jumps;
+  const Vec3<double> b = (1 / weight) * turns;
+  const Vec3<double> along = rotate(turned, (1 / std::sqrt(dot(back, back))) * back),
+                     left = cross(rotate(turned, Vec3<double>{0, 0, 1}), along);
+  const double opened = std::max(0.0, dot(c, left));
+  const double hoop = hoop_intensity(std::sqrt(opened * opened + bent * dot(b, b)), dot(c, along));
+  return std::numbers::pi / 32 * hoop * hoop;
 }
 
 }  // namespace floe

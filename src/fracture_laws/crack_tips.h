@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "floe/beams/moduli.h"
 #include "floe/lattice/lattice.h"
 
 namespace floe {
@@ -32,8 +33,8 @@ struct Junctions {
   std::vector<Point2> places;  ///< per junction: in plan at rest [m]
   /// Junction k has the facets facets_at[first[k]] to facets_at[first[k + 1] - 1], three or more.
   std::vector<std::int32_t> first, facets_at;
-  std::vector<std::int32_t> facet_of;  ///< per global beam: its facet, or none
-  double twist = 1;                    ///< g: mean of GJ/(EI_y), each beam by its width and length
+  std::vector<std::int32_t> facet_of;          ///< per global beam: its facet, or none
+  LatticeModuli moduli{1, 0, 0.5, 0.5, 1, 0};  ///< of the sheet, D over E_b h^3/12
 
   std::int32_t size() const { return static_cast<std::int32_t>(places.size()); }
   std::span<const std::int32_t> at(std::int32_t junction) const {
@@ -45,8 +46,9 @@ struct Junctions {
 
 /// Finds the junctions of a lattice of prisms from the vertices of its shapes. Places on the
 /// outline are none. Not collective.
+/// \param shear  stiffness of the beams in shear, of which the sheet's moduli follow
 /// \throws InputError if the lattice has beams and no shapes
-Junctions find_junctions(const Lattice& lattice);
+Junctions find_junctions(const Lattice& lattice, Shear shear);
 
 /// The gone facets behind a tip, the nearest first.
 struct CrackBehind {
@@ -85,10 +87,12 @@ class CrackTips {
   std::vector<CrackBehind> behind(std::int32_t beam) const;
   /// Appends the bodies beside these cracks, with repetitions.
   void append_bodies(std::span<const CrackBehind> cracks, std::vector<std::int32_t>& bodies) const;
-  /// (pi/32) |c|^2, times E the energy release rate that a crack's opening shows [m]: c is the fit
-  /// of c sqrt(r (1 - r/L)) to the jumps over its facets, r their distance from the tip, L the
-  /// distance of its other tip (model.md, "Fracture").
-  /// \param bent     weight of the faces' turn against each other, h^2/12 (3 + nu)/(1 + nu) [m^2]
+  /// (pi/32) c^2, times the sheet's E* the energy release rate that a crack's opening shows [m]: c
+  /// is that of the mode I whose hoop stress is the largest ahead of the tip, by the fit of
+  /// (c + b r) sqrt(r (1 - r/L)) to the jumps over its facets, and of c sqrt(r (1 - r/L)) to their
+  /// turns; r is their distance from the tip, L that of its other tip. Faces that press on each
+  /// other are not open (model.md, "Fracture").
+  /// \param bent     weight of the faces' turn against each other, D/(h E*) (1 - nu)(3 + nu) [m^2]
   /// \param linear   rotations are linearised
   /// \param pose_of  of a global body
   double opening(const CrackBehind& crack, double bent, bool linear,

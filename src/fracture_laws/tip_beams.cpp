@@ -47,8 +47,9 @@ TipBeams::Strengths TipBeams::armed(std::int32_t m, const Strengths& whole) cons
 /// Square of the opening that counts as much as a unit turn of the faces against each other, of
 /// the plate that the lattice is [m^2].
 double TipBeams::bent_opening(std::int32_t m) const {
-  const double g = tips_.junctions().twist, nu = (1 - g) / (3 + g), h = item(part_.beams.height, m);
-  return h * h / 48 * (3 + g) * (1 - nu) * (3 + nu);
+  const LatticeModuli& sheet = tips_.junctions().moduli;
+  const double nu = sheet.bending_poisson, h = item(part_.beams.height, m);
+  return h * h / 12 * sheet.bending / sheet.young * (1 - nu) * (3 + nu);
 }
 
 /// Poses of bodies of the whole lattice. Collective. \param bodies  sorted, alike on all ranks
@@ -77,8 +78,9 @@ std::vector<TipOverload> TipBeams::overloads(const std::vector<ArmedBeam>& mine,
                                              const State<Spatial>& state) const {
   std::vector<double> rows;
   for (const auto& [s, m] : mine)
-    rows.insert(rows.end(), {static_cast<double>(item(part_.global_beam, m)), s,
-                             item(part_.beams.young, m), bent_opening(m)});
+    rows.insert(rows.end(),
+                {static_cast<double>(item(part_.global_beam, m)), s,
+                 item(part_.beams.young, m) * tips_.junctions().moduli.young, bent_opening(m)});
   rows = all_gathered(rows, part_.comm);
   if (rows.empty()) return {};
   struct Tip {

@@ -125,7 +125,8 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
       if (by_energy && lattice == nullptr)
         throw std::invalid_argument("add_forces: propagation: energy looks at the whole lattice");
       BreakableForce breakable = make_breakable_beams(
-          part, scene.beam, scene.fracture, by_energy ? find_junctions(*lattice) : Junctions{});
+          part, scene.beam, scene.fracture,
+          by_energy ? find_junctions(*lattice, scene.beam.shear) : Junctions{});
       model.set_fracture(breakable.fracture);
       model.set_beams(std::move(breakable.force), scene.beam.kinematics);
     }

@@ -60,7 +60,7 @@ TEST(CrackTips, JunctionsOfASheetAreThoseOfItsPlaneGraph) {
   Lattice lattice = test::sheet(12, 9, 1);
   for (const bool reordered : {false, true}) {
     if (reordered) reorder(lattice);
-    const Junctions found = find_junctions(lattice);
+    const Junctions found = find_junctions(lattice, Shear::one_point);
     EXPECT_EQ(found.size(), lattice.beams.size() - lattice.bodies.size() + 1);
     for (std::int32_t k = 0; k < found.size(); ++k) {
       std::set<std::int32_t> bodies;
@@ -80,7 +80,7 @@ TEST(CrackTips, JunctionsOfASheetAreThoseOfItsPlaneGraph) {
 
 TEST(CrackTips, ABrokenBeamMakesTipsAtBothEndsAndFlanksMakeNone) {
   const Lattice lattice = test::sheet(12, 9, 1);
-  const Junctions found = find_junctions(lattice);
+  const Junctions found = find_junctions(lattice, Shear::one_point);
   const std::int32_t inner = inner_beam(lattice), beams = lattice.beams.size();
   CrackTips cracks(found);
   EXPECT_TRUE(tips(cracks, beams).empty());
@@ -110,7 +110,8 @@ TEST(CrackTips, ABrokenBeamMakesTipsAtBothEndsAndFlanksMakeNone) {
 TEST(CrackTips, ACutHasATipAtItsEndOnly) {
   Lattice lattice = test::sheet(12, 9, 1);
   cut(lattice, {0, -9}, {0, 0});
-  const std::set<std::int32_t> at = tips(CrackTips(find_junctions(lattice)), lattice.beams.size());
+  const std::set<std::int32_t> at =
+      tips(CrackTips(find_junctions(lattice, Shear::one_point)), lattice.beams.size());
   EXPECT_EQ(at.size(), 2U);
   for (const std::int32_t m : at) {
     const auto [i, j] = item(lattice.beams.bodies, m);
@@ -121,7 +122,8 @@ TEST(CrackTips, ACutHasATipAtItsEndOnly) {
   }
   // All through the sheet: no tip is left.
   cut(lattice, {0, -9}, {0, 9});
-  EXPECT_TRUE(tips(CrackTips(find_junctions(lattice)), lattice.beams.size()).empty());
+  EXPECT_TRUE(
+      tips(CrackTips(find_junctions(lattice, Shear::one_point)), lattice.beams.size()).empty());
 }
 
 /// A sheet with a cut from its lower side to the middle, and the crack behind a beam at its tip.
@@ -132,7 +134,7 @@ struct CutSheet {
 
   CutSheet() {
     cut(lattice, {0, -9}, {0, 0});
-    tips.emplace(find_junctions(lattice));
+    tips.emplace(find_junctions(lattice, Shear::one_point));
     cracks = tips->behind(*floe::tips(*tips, lattice.beams.size()).begin());
   }
   /// (pi/32) |c|^2 of a motion that depends on the place, x right of the cut or left of it.
@@ -161,23 +163,35 @@ TEST(CrackTips, ACrackIsFollowedAlongItsFacets) {
 
 /// Faces that open by c sqrt(r) have (pi/32) c^2, where r is the distance from the tip; so the
 /// energy release rate pi E c^2/32 is K^2/E by the opening 8 K/E sqrt(r/(2 pi)) of Williams' field.
-/// Sliding counts as opening does. Motion of the sheet as a whole counts nothing.
+/// Faces that slide have 4/3 of it: the hoop stress of mode II is 2/sqrt(3) of that of mode I
+/// (Erdogan & Sih 1963). Faces that press on each other have none, nor has motion of the sheet as a
+/// whole.
 TEST(CrackTips, OpeningIsFittedByTheRootOfTheDistance) {
   const CutSheet sheet;
   const Point2 tip = sheet.cracks.front().tip;
-  for (const Vec3<double>& c : {Vec3<double>{2e-4, 0, 0}, Vec3<double>{0, 2e-4, 0}}) {
-    // Bodies beside the cut: their motion at the height of the body, so r is not exact.
-    const double fitted = sheet.opening([&](const Point3& x) {
+  // Bodies beside the cut: their motion at the height of the body, so r is not exact. The sheet
+  // as a whole is turned by `turned`.
+  const auto apart = [&](const Vec3<double>& c, const Quat<double>& turned) {
+    return sheet.opening([&](const Point3& x) {
       const double r = std::hypot(x.x - tip[0], x.y - tip[1]);
-      return BodyPose{(x.x > 0 ? 0.5 : -0.5) * std::sqrt(r) * c, {1, 0, 0, 0}};
-    });
-    EXPECT_NEAR(fitted / (std::numbers::pi / 32 * 4e-8), 1, 0.15);
-  }
+      const Vec3<double> moved = x + (x.x > 0 ? 0.5 : -0.5) * std::sqrt(r) * c;
+      return BodyPose{rotate(turned, moved) - x, turned};
+    }) / (std::numbers::pi / 32 * 4e-8);
+  };
+  const Quat<double> as_is{1, 0, 0, 0};
+  const Vec3<double> across{2e-4, 0, 0}, along{0, 2e-4, 0};
+  const double opened = apart(across, as_is), slid = apart(along, as_is);
+  EXPECT_NEAR(opened, 1, 0.15);
+  EXPECT_NEAR(slid / opened, 4.0 / 3, 0.1);  // the cut runs along y but for its zigzag
+  EXPECT_NEAR(apart(-along, as_is) / opened, 4.0 / 3, 0.1);
+  EXPECT_LT(apart(-across, as_is), 0.02);
   const Quat<double> turn = exp_rotation({0.3, -0.2, 0.7});
   EXPECT_LT(sheet.opening([&](const Point3& x) {
     return BodyPose{rotate(turn, x) - x + Vec3<double>{3, 2, 1}, turn};
   }),
             1e-28);
+  EXPECT_NEAR(apart(across, turn), opened, 1e-9);
+  EXPECT_NEAR(apart(along, turn), slid, 1e-9);
 }
 
 /// One side may be lifted against the other, however far, also where the sheet lies at a slope:
@@ -204,7 +218,7 @@ TEST(CrackTips, AnInnerCrackOpensAsAnEllipse) {
   for (const double half : {3.0, 4.0, 8.0}) {
     Lattice lattice = test::sheet(12, 30, 1);
     cut(lattice, {0, -half}, {0, half});
-    const CrackTips cracks(find_junctions(lattice));
+    const CrackTips cracks(find_junctions(lattice, Shear::one_point));
     int ends = 0;
     for (const std::int32_t m : tips(cracks, lattice.beams.size())) {
       const std::vector<CrackBehind> behind = cracks.behind(m);
@@ -255,7 +269,7 @@ TEST(CrackTips, ABlockCutOutHasNoCracksBehindItsTips) {
   Lattice lattice = test::sheet(20, 20, 1);
   const std::array<Point2, 5> corners{{{-4, -4}, {4, -4}, {4, 4}, {-4, 4}, {-4, -4}}};
   for (std::size_t k = 0; k < 4; ++k) cut(lattice, corners[k], corners[k + 1]);
-  const CrackTips cracks(find_junctions(lattice));
+  const CrackTips cracks(find_junctions(lattice, Shear::one_point));
   for (const std::int32_t m : tips(cracks, lattice.beams.size()))
     EXPECT_TRUE(cracks.behind(m).empty());
 }
@@ -283,10 +297,20 @@ Lattice squares(std::int32_t columns, std::int32_t rows, std::int32_t cut) {
   return lattice;
 }
 
+/// The largest hoop stress of modes I and II of one intensity over that of mode I, by search.
+double hoop_of_both() {
+  double most = 0;
+  for (int k = -100000; k <= 100000; ++k) {
+    const double t = std::numbers::pi / 2 * k / 100000, c = std::cos(t / 2);
+    most = std::max(most, c * (c * c - 1.5 * std::sin(t)));
+  }
+  return most;
+}
+
 /// Where cells are mirrored at a cut four facets meet: a straight cut has flanks and one tip.
 TEST(CrackTips, FourFacetsMayMeet) {
   const Lattice lattice = squares(8, 3, 5);
-  const Junctions found = find_junctions(lattice);
+  const Junctions found = find_junctions(lattice, Shear::one_point);
   ASSERT_EQ(found.size(), 7 * 2);
   for (std::int32_t k = 0; k < found.size(); ++k) EXPECT_EQ(found.at(k).size(), 4U);
   const CrackTips cracks(found);
@@ -297,18 +321,28 @@ TEST(CrackTips, FourFacetsMayMeet) {
     ASSERT_EQ(behind.size(), 1U);
     EXPECT_EQ(behind[0].size, 5U);
     EXPECT_EQ(behind[0].tip, (Point2{4.5, 0.5}));
-    // Faces that open by 2e-4 sqrt(r) along y, at middles r = 0.5, 1.5, ... from the tip
-    const double opening = cracks.opening(behind[0], 0, true, [](std::int32_t body) {
-      return BodyPose{{0, body < 8 ? 0 : 2e-4 * std::sqrt(4.5 - body % 8), 0}, {1, 0, 0, 0}};
-    });
-    EXPECT_NEAR(opening / (std::numbers::pi / 32 * 4e-8), 1, 1e-12);
+    // Faces apart by c sqrt(r) + b r sqrt(r) at middles r = 0.5, 1.5, ... from the tip: of K only
+    // c tells, whatever the stress along the crack. k1, k2: parts of c that open and that slide
+    const auto opening = [&](double k1, double k2, double b) {
+      return cracks.opening(behind[0], 0, true, [&](std::int32_t body) {
+        const double r = 4.5 - body % 8, root = body < 8 ? 0 : std::sqrt(r);
+        return BodyPose{{(k2 + b * r) * root, (k1 + b * r) * root, 0}, {1, 0, 0, 0}};
+      }) / (std::numbers::pi / 32);
+    };
+    for (const double b : {0.0, 1e-4, -3e-4}) {
+      EXPECT_NEAR(opening(2e-4, 0, b) / 4e-8, 1, 1e-11);
+      EXPECT_NEAR(opening(0, 2e-4, b) / 4e-8, 4.0 / 3, 1e-11);
+      EXPECT_NEAR(opening(-2e-4, 2e-4, b) / 4e-8, 4.0 / 3, 1e-11) << "pressed faces";
+      EXPECT_NEAR(std::sqrt(opening(2e-4, 2e-4, b)) / 2e-4, hoop_of_both(), 1e-9);
+      EXPECT_NEAR(std::sqrt(opening(2e-4, -2e-4, b)) / 2e-4, hoop_of_both(), 1e-9);
+    }
   }
 }
 
 TEST(CrackTips, ALatticeWithoutShapesIsRefused) {
   Lattice lattice = test::sheet(6, 6, 1);
   lattice.shapes = {};
-  EXPECT_THROW((void)find_junctions(lattice), InputError);
+  EXPECT_THROW((void)find_junctions(lattice, Shear::one_point), InputError);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ struct CutSheet {
   Lattice lattice = cut_lattice();
   Part part = partition(lattice, PETSC_COMM_SELF);
   FractureOptions options;
-  CrackTips cracks{find_junctions(lattice)};
-  TipBeams tips{part, options, false, find_junctions(lattice)};
+  CrackTips cracks{find_junctions(lattice, Shear::one_point)};
+  TipBeams tips{part, options, false, find_junctions(lattice, Shear::one_point)};
   std::vector<std::int32_t> at;  ///< beams at the tip
 
   CutSheet() {
@@ -64,7 +64,8 @@ struct CutSheet {
     const double g = cracks.opening(cracks.behind(m).front(), 0, false, [&](std::int32_t body) {
       return BodyPose{displacement(state, static_cast<std::size_t>(body)), {1, 0, 0, 0}};
     });
-    return std::sqrt(item(part.beams.young, m) * g / options.energy);
+    const double young = cracks.junctions().moduli.young * item(part.beams.young, m);
+    return std::sqrt(young * g / options.energy);
   }
 };
 

@@ -301,7 +301,7 @@ TEST(FractureOfSheets, IntactBreakableBeamsAreBeams) {
   const auto breakable = make_breakable_beams(
       part, beams,
       {.tensile_strength = 1e12, .shear_strength = 1e12, .propagation = Propagation::energy},
-      find_junctions(lattice));
+      find_junctions(lattice, Shear::one_point));
   State<Spatial> state(static_cast<std::size_t>(part.local));
   test::Random random(3);
   for (std::size_t b = 0; b < static_cast<std::size_t>(part.local); ++b) {
