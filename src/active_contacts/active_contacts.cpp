@@ -5,9 +5,17 @@
 namespace floe {
 
 void ActiveContacts::start(std::size_t slots) {
-  size_ = 0;
+  pairs_.clear();
   touching_ = 0;
   on_bodies_.resize(slots);
+}
+
+ContactBlock& ActiveContacts::add(std::span<const std::int32_t> pairs, std::int64_t counted) {
+  touching_ += counted;
+  const std::size_t block = pairs_.size() / lanes;
+  pairs_.insert(pairs_.end(), pairs.begin(), pairs.end());
+  if (block == blocks_.size()) blocks_.resize(2 * block + 16);
+  return blocks_[block];
 }
 
 void ActiveContacts::begin_forces() {

@@ -2,11 +2,14 @@
 /// The contacts of one evaluation, with the wrenches and powers that they add up to.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "active_contacts/energies.h"
+#include "base/simd.h"
 #include "contact/pair_list.h"
 #include "contact/places.h"
 #include "contact_laws/response.h"
@@ -14,21 +17,24 @@
 namespace floe {
 
 /// Wrench of contacts on a body, about its centroid [N, N m].
-struct ContactWrench {
-  Vec3<double> force{}, moment{};
+template <class T>
+struct ContactWrenchOf {
+  Vec3<T> force{}, moment{};
 
   /// Returns the power of the wrench on a body that moves so [W].
   double power(const Vec3<double>& velocity, const Vec3<double>& spin) const {
     return dot(force, velocity) + dot(moment, spin);
   }
 };
+using ContactWrench = ContactWrenchOf<double>;
 inline ContactWrench operator+(const ContactWrench& a, const ContactWrench& b) {
   return {.force = a.force + b.force, .moment = a.moment + b.moment};
 }
 
 /// The terms of the wrench of contacts on a body.
-struct TermWrenches {
-  ContactWrench elastic, viscous, friction;
+template <class T>
+struct TermWrenchesOf {
+  ContactWrenchOf<T> elastic, viscous, friction;
 
   ContactWrench sum() const { return elastic + viscous + friction; }
   /// Adds the powers of the terms on a body that moves so.
@@ -39,19 +45,31 @@ struct TermWrenches {
     power.friction += friction.power(velocity, spin);
   }
 };
+using TermWrenches = TermWrenchesOf<double>;
 
-/// A contact of an evaluation.
-struct ActiveContact {
-  std::int32_t pair = 0;  ///< index in the list
-  bool deep = false;      ///< is_deep()
-  Vec3<double> centre{};  ///< of the overlap, from the centroid of A [m]
-  ContactTrial trial;
-  Friction springs{};  ///< of friction, within the limit of the last forces
+/// Whether the mean elastic depth (V - V_p)/|S| of a contact exceeds a quarter of the least width
+/// of the thinner one of A and B [m].
+template <class T>
+MaskOf<T> is_deep(const T& thinner, const ContactTrialOf<T>& contact) {
+  constexpr double holds = 0.25;
+  return contact.volume - contact.memory.plastic > holds * thinner * contact.area;
+}
 
-  /// Whether one body lies inside the other: there is no direction for a force.
-  bool is_enclosed() const { return dot(trial.normal, trial.normal) == 0; }
-  /// Returns the history of the pair once the step is committed.
-  PairHistory memory() const { return history_of(trial, springs); }
+/// Contacts of an evaluation, one per lane.
+struct alignas(64) ContactBlock {
+  Vec3<Lanes> centre{};  ///< of the overlap, from the centroid of A [m]
+  Vec3<Lanes> apart{};   ///< x_A - x_B [m]
+  ContactTrialOf<Lanes> trial;
+  FrictionOf<Lanes> springs;   ///< of friction, within the limit of the last forces
+  std::uint32_t enclosed = 0;  ///< bits of contacts of which one body lies inside the other: there
+                               ///< is no direction for a force
+  std::uint32_t deep = 0;      ///< bits of contacts that are deep: is_deep()
+
+  /// Sets the bits. \param thinner  least width of the thinner one of A and B [m]
+  void mark(const Lanes& thinner) {
+    enclosed = bits_of(dot(trial.normal, trial.normal) == 0.0);
+    deep = bits_of(is_deep(thinner, trial));
+  }
 };
 
 /// The contacts of the last evaluation, until its step is committed.
@@ -62,26 +80,56 @@ class ActiveContacts {
 
   /// Begins an evaluation. \param slots  number of involved bodies
   void start(std::size_t slots);
-  /// Adds a contact, of which all members are to be set: they are those of an earlier one.
-  ActiveContact& add(bool counted) {
-    touching_ += counted ? 1 : 0;
-    if (size_ == room_.size()) room_.resize(2 * size_ + 16);
-    return room_[size_++];
-  }
+  /// Adds contacts, at most one per lane; only the last block may have fewer. All members of the
+  /// block are to be set, in all lanes: they are those of an earlier one.
+  /// \param pairs    indices in the list, in its order
+  /// \param counted  number of these that are counted
+  ContactBlock& add(std::span<const std::int32_t> pairs, std::int64_t counted);
   /// Sets the forces of all contacts anew, and with them the wrenches on bodies and obstacles.
-  /// \param force_of  function from contact and pair to the contact's force
-  void act(const PairList& list, const Places& places, auto force_of);
+  /// \param force_of  function from block and indices of its pairs to the forces of its contacts
+  void act(const PairList& list, auto force_of);
   /// Adds the sums of the terms of all contacts to the wrenches on bodies only, and sets no forces.
   /// \param wrenches  by slot
-  void add_sums(const PairList& list, const Places& places, auto force_of,
-                std::span<ContactWrench> wrenches) const;
+  void add_sums(const PairList& list, auto force_of, std::span<ContactWrench> wrenches) const;
   /// Forgets the contacts; forces on obstacles stay.
-  void clear() { size_ = 0; }
+  void clear() { pairs_.clear(); }
 
-  /// Returns the contacts, in list order.
-  std::span<const ActiveContact> contacts() const { return std::span(room_).first(size_); }
-  /// Returns the number of counted contacts.
+  /// Returns the number of contacts, which are in list order.
+  std::size_t size() const { return pairs_.size(); }
+  /// Returns the number of counted contacts of the last evaluation.
   std::int64_t touching() const { return touching_; }
+  /// Returns the index of a contact's pair in the list.
+  std::int32_t pair(std::size_t contact) const { return pairs_[contact]; }
+  /// Whether one body lies inside the other.
+  bool is_enclosed(std::size_t contact) const {
+    return (block(contact).enclosed >> contact % lanes & 1U) != 0;
+  }
+  bool is_deep_in(std::size_t contact) const {
+    return (block(contact).deep >> contact % lanes & 1U) != 0;
+  }
+  Vec3<double> normal(std::size_t contact) const {
+    return one_lane<Vec3>(block(contact).trial.normal, contact % lanes);
+  }
+  /// Returns V_p of a contact [m^3].
+  double plastic(std::size_t contact) const {
+    return block(contact).trial.memory.plastic[contact % lanes];
+  }
+  ContactTrial trial(std::size_t contact) const {
+    return one_lane<ContactTrialOf>(block(contact).trial, contact % lanes);
+  }
+  /// Returns the springs of friction within the limit of the last forces.
+  Friction springs(std::size_t contact) const {
+    return one_lane<FrictionOf>(block(contact).springs, contact % lanes);
+  }
+  /// Returns the history of a contact's pair once the step is committed.
+  PairHistory memory(std::size_t contact) const {
+    const std::size_t lane = contact % lanes;
+    PairHistory now = one_lane<PairHistoryOf>(block(contact).trial.memory, lane);
+    const Friction in_springs = springs(contact);
+    now.springs.force = in_springs.force;
+    now.twist.couple = in_springs.couple;
+    return now;
+  }
   /// Returns the wrench on an involved body.
   const TermWrenches& on_body(std::int32_t slot) const { return item(on_bodies_, slot); }
   /// Returns the force [N] and the moment about the origin of its frame [N m] of the bodies of this
@@ -96,56 +144,67 @@ class ActiveContacts {
 
  private:
   void begin_forces();
+  const ContactBlock& block(std::size_t contact) const { return blocks_[contact / lanes]; }
+  std::span<const std::int32_t> pairs_from(std::size_t first) const {
+    return std::span(pairs_).subspan(first, std::min(lanes, pairs_.size() - first));
+  }
 
-  std::vector<ActiveContact> room_;         ///< the contacts, then room for more
-  std::size_t size_ = 0;                    ///< number of contacts
+  std::vector<std::int32_t> pairs_;         ///< of the contacts
+  std::vector<ContactBlock> blocks_;        ///< those of the contacts, then room for more
   std::vector<TermWrenches> on_bodies_;     ///< by slot
   std::vector<TermWrenches> on_obstacles_;  ///< about the origins of their frames
   std::int64_t touching_ = 0;
 };
 
-/// Adds a force at two arms, and a couple, to the wrenches on A and B.
-inline void add_pair(const Vec3<double>& force, const Vec3<double>& couple,
-                     const Vec3<double>& arm_a, const Vec3<double>& arm_b, ContactWrench& on_a,
-                     ContactWrench& on_b) {
-  on_a.force = on_a.force + force;
-  on_a.moment = on_a.moment + (cross(arm_a, force) + couple);
-  on_b.force = on_b.force - force;
-  on_b.moment = on_b.moment - (cross(arm_b, force) + couple);
-}
+/// Forces at the overlaps of a block, and couples, as wrenches on A, and on B with the other sign.
+template <class T>
+struct OnBoth {
+  ContactWrenchOf<T> a, b;
 
-void ActiveContacts::act(const PairList& list, const Places& places, auto force_of) {
+  OnBoth(const Vec3<T>& force, const Vec3<T>& couple, const Vec3<T>& arm_a, const Vec3<T>& arm_b)
+      : a{force, cross(arm_a, force) + couple}, b{force, cross(arm_b, force) + couple} {}
+};
+
+void ActiveContacts::act(const PairList& list, auto force_of) {
   begin_forces();
-  for (ActiveContact& active : std::span(room_).first(size_)) {
-    active.springs = {};
-    if (active.is_enclosed()) continue;
-    const Pair& pair = list.pair(active.pair);
-    const ContactForce contact = force_of(active, pair);
+  for (std::size_t first = 0; first < pairs_.size(); first += lanes) {
+    ContactBlock& active = blocks_[first / lanes];
+    const std::span<const std::int32_t> pairs = pairs_from(first);
+    const ContactForceOf<Lanes> contact = force_of(active, pairs);
     active.springs = contact.springs;
-    const Vec3<double>& arm_a = active.centre;
-    const Vec3<double> arm_b = arm_a + (places.of_a(pair).x - places.of_b(pair).x);
-    TermWrenches& a = item(on_bodies_, pair.slot_a);
-    TermWrenches& b = is_obstacle(pair.b) ? on_obstacles_[obstacle_number(pair.b)]
-                                          : item(on_bodies_, pair.slot_b);
-    const Vec3<double>& n = contact.normal;
-    add_pair(contact.elastic * n, contact.couple, arm_a, arm_b, a.elastic, b.elastic);
-    add_pair(contact.viscous * n, contact.viscous_couple, arm_a, arm_b, a.viscous, b.viscous);
-    add_pair(contact.friction.force, contact.friction.couple * n, arm_a, arm_b, a.friction,
-             b.friction);
+    const Vec3<Lanes>&n = contact.normal, &arm_a = active.centre;
+    const Vec3<Lanes> arm_b = arm_a + active.apart;
+    const OnBoth elastic(contact.elastic * n, contact.couple, arm_a, arm_b),
+        viscous(contact.viscous * n, contact.viscous_couple, arm_a, arm_b),
+        friction(contact.friction.force, contact.friction.couple * n, arm_a, arm_b);
+    const LaneRows<TermWrenchesOf> on_a({elastic.a, viscous.a, friction.a}),
+        on_b({elastic.b, viscous.b, friction.b});
+    for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
+      if ((active.enclosed >> lane & 1U) != 0) continue;
+      const Pair& pair = list.pair(pairs[lane]);
+      on_a.add(lane, item(on_bodies_, pair.slot_a));
+      on_b.subtract(lane, is_obstacle(pair.b) ? on_obstacles_[obstacle_number(pair.b)]
+                                              : item(on_bodies_, pair.slot_b));
+    }
   }
 }
 
-void ActiveContacts::add_sums(const PairList& list, const Places& places, auto force_of,
+void ActiveContacts::add_sums(const PairList& list, auto force_of,
                               std::span<ContactWrench> wrenches) const {
   ContactWrench on_obstacles;
-  for (const ActiveContact& active : contacts()) {
-    if (active.is_enclosed()) continue;
-    const Pair& pair = list.pair(active.pair);
-    const ContactForce contact = force_of(active, pair);
-    add_pair(contact.force(), contact.whole_couple(), active.centre,
-             active.centre + (places.of_a(pair).x - places.of_b(pair).x),
-             item(wrenches, pair.slot_a),
-             is_obstacle(pair.b) ? on_obstacles : item(wrenches, pair.slot_b));
+  for (std::size_t first = 0; first < pairs_.size(); first += lanes) {
+    const ContactBlock& active = blocks_[first / lanes];
+    const std::span<const std::int32_t> pairs = pairs_from(first);
+    const ContactForceOf<Lanes> contact = force_of(active, pairs);
+    const OnBoth sum(contact.force(), contact.whole_couple(), active.centre,
+                     active.centre + active.apart);
+    const LaneRows<ContactWrenchOf> on_a(sum.a), on_b(sum.b);
+    for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
+      if ((active.enclosed >> lane & 1U) != 0) continue;
+      const Pair& pair = list.pair(pairs[lane]);
+      on_a.add(lane, item(wrenches, pair.slot_a));
+      on_b.subtract(lane, is_obstacle(pair.b) ? on_obstacles : item(wrenches, pair.slot_b));
+    }
   }
 }
 

@@ -58,14 +58,14 @@ void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
   active_.start(list_.involved().size());
   std::visit([&](const auto& law) { evaluate_pairs(law, offloaded); }, law_);
-  const auto force_of = [](const ActiveContact& active, const Pair&) {
+  const auto force_of = [](const ContactBlock& active, std::span<const std::int32_t>) {
     return without_dashpots(active.trial);
   };
   if (damps()) {
     std::fill(wrenches.begin(), wrenches.end(), ContactWrench{});
-    active_.add_sums(list_, places_, force_of, wrenches);
+    active_.add_sums(list_, force_of, wrenches);
   } else {
-    active_.act(list_, places_, force_of);
+    active_.act(list_, force_of);
     write_sums(active_, wrenches);
   }
 }
@@ -73,10 +73,20 @@ void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverla
 void Contacts::damp(std::span<const Acceleration> accelerations,
                     std::span<ContactWrench> wrenches) {
   places_.predict(solids_, 0.5 * last_dt_, accelerations);
-  active_.act(list_, places_, [&](const ActiveContact& active, const Pair& pair) {
-    return with_dashpots(active.trial, places_.predicted_motion(pair, active.centre));
+  active_.act(list_, [&](const ContactBlock& active, std::span<const std::int32_t> pairs) {
+    return with_dashpots(active.trial, predicted_motion(active, pairs));
   });
   write_sums(active_, wrenches);
+}
+
+RelativeMotionOf<Lanes> Contacts::predicted_motion(const ContactBlock& active,
+                                                   std::span<const std::int32_t> pairs) const {
+  const auto pair = [&](std::size_t lane) -> const Pair& {
+    return list_.pair(pairs[std::min(lane, pairs.size() - 1)]);
+  };
+  const auto a = gathered<BodyVelocityOf>([&](auto k) { return &places_.predicted_a(pair(k)); });
+  const auto b = gathered<BodyVelocityOf>([&](auto k) { return &places_.predicted_b(pair(k)); });
+  return relative_motion(a, b, active.centre, active.apart);
 }
 
 Acceleration Contacts::acceleration(std::int32_t slot, const ContactWrench& wrench) const {
@@ -93,37 +103,81 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
   for (Pair& pair : list_.pairs()) {
     const Placed &a = places_.of_a(pair), &b = places_.of_b(pair);
     const PairHistory* memory = histories.of(index);
+    PairOverlap& met = met_.overlaps[met_.number];
     if (pair.offloaded) {
       if (given.empty()) given = offloaded();
-      touch(law, index, given[taken++], memory);
+      met = given[taken++];
+      touch(law, index, memory);
     } else if (memory != nullptr || !narrow_.is_apart(solids_, pair, a, b)) {
-      touch(law, index, narrow_.overlap(solids_, wear_, pair, a, b), memory);
+      narrow_.overlap(solids_, wear_, pair, a, b, met);
+      touch(law, index, memory);
     }
     ++index;
   }
+  if (met_.number > 0) find_trials(law);
 }
 
-/// Adds the contact of a pair, unless there is no overlap.
+/// Takes over a pair whose overlap is the last of met_, unless there is no overlap.
 /// \param memory  null: the pair has no history
 template <IsContactLaw Law>
-void Contacts::touch(const Law& law, std::int32_t index, const PairOverlap& met,
-                     const PairHistory* memory) {
-  const Overlap& overlap = met.overlap;
+void Contacts::touch(const Law& law, std::int32_t index, const PairHistory* memory) {
+  static constexpr PairHistory none{};
+  const std::size_t k = met_.number;
+  const Overlap& overlap = met_.overlaps[k].overlap;
   if (!(overlap.volume > 0)) return;
   const Pair& pair = list_.pair(index);
-  const Placed &a = places_.of_a(pair), &b = places_.of_b(pair);
-  const Mobility mobility{.a = places_.mobility(pair.slot_a),
-                          .b = is_obstacle(pair.b) ? BodyMobility{} : places_.mobility(pair.slot_b),
-                          .apart = a.x - b.x};
-  const bool wet = a.x.z + overlap.centroid.z < 0;
-  const LastStep last{.dt = last_dt_, .touched = memory != nullptr || pair.newly_eligible};
-  ActiveContact& active = active_.add(pair.counted);
-  active.pair = index;
-  active.centre = overlap.centroid;
-  find_trial(law, pair_constants(solids_, options_, pair, wet), overlap, met.depth,
-             places_.motion(pair, overlap.centroid), mobility, last, 0.5 * (a.spin + b.spin),
-             memory != nullptr ? *memory : PairHistory{}, pair.newly_eligible, active.trial);
-  active.deep = is_deep(solids_, pair, active.trial);
+  const bool wet = places_.of_a(pair).x.z + overlap.centroid.z < 0;
+  met_.pairs[k] = index;
+  met_.given[k] = {.constants = pair_constants(solids_, options_, pair, wet),
+                   .thinner = std::min(solids_.width(pair.a), solids_.width(pair.b)),
+                   .touched = memory != nullptr || pair.newly_eligible ? 1.0 : 0.0,
+                   .newly_eligible = pair.newly_eligible ? 1.0 : 0.0};
+  met_.memories[k] = memory != nullptr ? memory : &none;
+  met_.counted += pair.counted ? 1 : 0;
+  if (++met_.number == lanes) find_trials(law);
+}
+
+/// Finds the contacts of met_. The lanes beyond their number repeat the last one.
+template <IsContactLaw Law>
+void Contacts::find_trials(const Law& law) {
+  const std::size_t last_lane = met_.number - 1;
+  const auto k = [&](std::size_t lane) { return std::min(lane, last_lane); };
+  const auto pair = [&](std::size_t lane) -> const Pair& {
+    return list_.pair(met_.pairs[k(lane)]);
+  };
+  const auto a = [&](std::size_t lane) -> const Placed& { return places_.of_a(pair(lane)); };
+  const auto b = [&](std::size_t lane) -> const Placed& { return places_.of_b(pair(lane)); };
+  const auto vector = [&](const auto& of, Vec3<double> Placed::*part) {
+    const auto [x, y, z, after] =
+        gather_four([&](std::size_t lane) { return &(of(lane).*part).x; });
+    return Vec3<Lanes>{x, y, z};
+  };
+  const auto overlap =
+      gathered<PairOverlapOf>([&](std::size_t lane) { return &met_.overlaps[k(lane)]; });
+  const auto given =
+      gathered<MetPairs::GivenOf>([&](std::size_t lane) { return &met_.given[k(lane)]; });
+  const auto memory =
+      gathered<PairHistoryOf>([&](std::size_t lane) { return met_.memories[k(lane)]; });
+  const MobilityOf<Lanes> mobility{.a = gathered<BodyMobilityOf>([&](std::size_t lane) {
+                                     return &places_.mobility_of_a(pair(lane));
+                                   }),
+                                   .b = gathered<BodyMobilityOf>([&](std::size_t lane) {
+                                     return &places_.mobility_of_b(pair(lane));
+                                   }),
+                                   .apart = vector(a, &Placed::x) - vector(b, &Placed::x)};
+  const BodyVelocityOf<Lanes> of_a{vector(a, &Placed::velocity), vector(a, &Placed::spin)},
+      of_b{vector(b, &Placed::velocity), vector(b, &Placed::spin)};
+  const Vec3<Lanes>& centre = overlap.overlap.centroid;
+  ContactBlock& active = active_.add(std::span(met_.pairs).first(met_.number), met_.counted);
+  active.centre = centre;
+  active.apart = mobility.apart;
+  find_trial(law, given.constants, overlap.overlap, overlap.depth,
+             relative_motion(of_a, of_b, centre, mobility.apart), mobility,
+             {.dt = last_dt_, .touched = given.touched != 0.0}, 0.5 * (of_a.spin + of_b.spin),
+             memory, given.newly_eligible != 0.0, active.trial);
+  active.mark(given.thinner);
+  met_.number = 0;
+  met_.counted = 0;
 }
 
 /// Returns the energy that the counted contacts store.
@@ -131,9 +185,9 @@ StoredEnergy Contacts::stored() const {
   StoredEnergy sum;
   std::visit(
       [&](const auto& law) {
-        for (const ActiveContact& active : active_.contacts()) {
-          if (!list_.pair(active.pair).counted) continue;
-          const StoredEnergy of = stored_energy(law, active.trial, active.springs);
+        for (std::size_t k = 0; k < active_.size(); ++k) {
+          if (!list_.pair(active_.pair(k)).counted) continue;
+          const StoredEnergy of = stored_energy(law, active_.trial(k), active_.springs(k));
           sum.normal += of.normal;
           sum.tangential += of.tangential;
         }
@@ -144,10 +198,12 @@ StoredEnergy Contacts::stored() const {
 
 void Contacts::commit() {
   history_.start();
-  for (const ActiveContact& active : active_.contacts()) {
-    const Pair& pair = list_.pair(active.pair);
-    if (pair.counted) events_.note(active, pair, places_.time());
-    history_.add({.a = pair.a, .b = pair.b, .pair = active.pair, .memory = active.memory()});
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const std::int32_t index = active_.pair(k);
+    const Pair& pair = list_.pair(index);
+    if (pair.counted)
+      events_.note(active_.is_enclosed(k), active_.is_deep_in(k), pair, places_.time());
+    history_.add({.a = pair.a, .b = pair.b, .pair = index, .memory = active_.memory(k)});
   }
   if (wears()) find_crushed();
   if (!start_.is_known) start_.take(stored());
@@ -159,13 +215,13 @@ void Contacts::commit() {
 void Contacts::find_crushed() {
   ContactHistory::Cursor before = history_.before();
   crushing_.start();
-  for (const ActiveContact& active : active_.contacts()) {
-    const double after = active.trial.memory.plastic;
-    const Pair& pair = list_.pair(active.pair);
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const double after = active_.plastic(k);
+    const Pair& pair = list_.pair(active_.pair(k));
     if (!pair.counted || after == 0) continue;
-    const PairHistory* memory = before.of(active.pair);
+    const PairHistory* memory = before.of(active_.pair(k));
     const double born = pair.newly_eligible ? after : 0.0;
-    crushing_.take(pair, memory != nullptr ? memory->plastic : born, after, active.trial.normal,
+    crushing_.take(pair, memory != nullptr ? memory->plastic : born, after, active_.normal(k),
                    places_.of_a(pair).axes, places_.of_b(pair).axes);
   }
   crushing_.end();
@@ -202,15 +258,15 @@ void Contacts::restore_wear(std::span<const double> crushed, std::span<const dou
 
 std::vector<BodyPair> Contacts::enclosed() const {
   std::vector<BodyPair> found;
-  for (const ActiveContact& active : active_.contacts()) {
-    const Pair& pair = list_.pair(active.pair);
-    if (pair.counted && active.is_enclosed()) found.push_back({pair.a, pair.b});
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const Pair& pair = list_.pair(active_.pair(k));
+    if (pair.counted && active_.is_enclosed(k)) found.push_back({pair.a, pair.b});
   }
   return found;
 }
 
 std::vector<Penetration> Contacts::penetrations() const {
-  return floe::penetrations(solids_, list_, places_, active_.contacts());
+  return floe::penetrations(solids_, list_, places_, active_);
 }
 
 void Contacts::restore(std::span<const double> rows, std::span<const BodyPair> released,

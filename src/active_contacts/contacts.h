@@ -12,6 +12,8 @@
 /// body does not depend on how bodies are distributed over ranks.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -32,6 +34,25 @@
 #include "contact_laws/laws.h"
 
 namespace floe {
+
+/// Overlapping pairs of an evaluation whose contacts are not found yet, at most one per lane.
+struct MetPairs {
+  /// What a contact depends on beside its overlap, history and motion.
+  template <class T>
+  struct GivenOf {
+    PairConstantsOf<T> constants;
+    T thinner = 0;         ///< least width of the thinner one of A and B [m]
+    T touched = 0;         ///< 1 where the pair touched when the last step began, else 0
+    T newly_eligible = 0;  ///< 1 where the overlap is stress-free, else 0
+  };
+
+  std::size_t number = 0;
+  std::int64_t counted = 0;
+  std::array<std::int32_t, lanes> pairs;  ///< indices in the list
+  std::array<GivenOf<double>, lanes> given;
+  std::array<PairOverlap, lanes> overlaps;
+  std::array<const PairHistory*, lanes> memories;
+};
 
 /// The contacts of the bodies of one rank. No function is collective: exchange between ranks is
 /// left to the caller.
@@ -156,7 +177,11 @@ class Contacts {
   template <IsContactLaw Law>
   void evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded);
   template <IsContactLaw Law>
-  void touch(const Law& law, std::int32_t index, const PairOverlap& met, const PairHistory* memory);
+  void touch(const Law& law, std::int32_t index, const PairHistory* memory);
+  template <IsContactLaw Law>
+  void find_trials(const Law& law);
+  RelativeMotionOf<Lanes> predicted_motion(const ContactBlock& active,
+                                           std::span<const std::int32_t> pairs) const;
   StoredEnergy stored() const;
   void find_crushed();
   WearCut cut_of(const Crush& crush);
@@ -167,6 +192,7 @@ class Contacts {
   PairList list_;
   Places places_;
   NarrowPhase narrow_;
+  MetPairs met_;
   ActiveContacts active_;
   double last_dt_ = 0;  ///< length of the last step [s]
   ContactHistory history_;

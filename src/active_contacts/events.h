@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "active_contacts/active_contacts.h"
+#include "contact/pair.h"
 
 namespace floe {
 
@@ -19,10 +19,12 @@ struct ContactEvent {
 class ContactEvents {
  public:
   /// Notes the events of a contact.
-  /// \param time  of the evaluation [s]
-  void note(const ActiveContact& active, const Pair& pair, double time) {
-    ContactEvent& first = active.is_enclosed() ? enclosed_ : pressed_through_;
-    if (first.happened || !(active.is_enclosed() || active.deep)) return;
+  /// \param enclosed  whether one body lies inside the other
+  /// \param deep      is_deep()
+  /// \param time      of the evaluation [s]
+  void note(bool enclosed, bool deep, const Pair& pair, double time) {
+    ContactEvent& first = enclosed ? enclosed_ : pressed_through_;
+    if (first.happened || !(enclosed || deep)) return;
     first = {.happened = true, .time = time, .a = pair.a, .b = pair.b};
   }
 

@@ -16,13 +16,12 @@ double smaller_size(const Solids& solids, const Pair& pair) {
 /// The depth is the extent of the overlap along the normal where only corners or edges overlap, and
 /// the distance by which two faces would have to part.
 std::vector<Penetration> penetrations(const Solids& solids, const PairList& list,
-                                      const Places& places,
-                                      std::span<const ActiveContact> contacts) {
+                                      const Places& places, const ActiveContacts& contacts) {
   std::vector<Penetration> found;
-  for (const ActiveContact& active : contacts) {
-    const Pair& pair = list.pair(active.pair);
-    if (!pair.counted || active.is_enclosed()) continue;
-    const Vec3<double>& n = active.trial.normal;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Pair& pair = list.pair(contacts.pair(k));
+    if (!pair.counted || contacts.is_enclosed(k)) continue;
+    const Vec3<double> n = contacts.normal(k);
     const Placed &a = places.of_a(pair), &b = places.of_b(pair);
     const auto [low, high] = reaches(solids, pair, a, b, n);
     const double depth = high + dot(n, b.x - a.x) - low;
@@ -30,12 +29,6 @@ std::vector<Penetration> penetrations(const Solids& solids, const PairList& list
         {.a = pair.a, .b = pair.b, .depth = depth, .share = depth / smaller_size(solids, pair)});
   }
   return found;
-}
-
-bool is_deep(const Solids& solids, const Pair& pair, const ContactTrial& contact) {
-  constexpr double holds = 0.25;
-  const double elastic = contact.volume - contact.memory.plastic;
-  return elastic > holds * std::min(solids.width(pair.a), solids.width(pair.b)) * contact.area;
 }
 
 }  // namespace floe

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "active_contacts/active_contacts.h"
@@ -23,11 +22,6 @@ struct Penetration {
 
 /// Returns the penetrations of counted pairs, of contacts that have a normal, in list order.
 std::vector<Penetration> penetrations(const Solids& solids, const PairList& list,
-                                      const Places& places,
-                                      std::span<const ActiveContact> contacts);
-
-/// Whether the mean elastic depth (V - V_p)/|S| of a contact exceeds a quarter of the least width
-/// of the thinner one of two solids.
-bool is_deep(const Solids& solids, const Pair& pair, const ContactTrial& contact);
+                                      const Places& places, const ActiveContacts& contacts);
 
 }  // namespace floe

@@ -17,7 +17,7 @@ PairConstants pair_constants(const Solids& solids, const ContactOptions& options
     return {.stiffness = options.young / (0.5 * size),
             .area = size * size,
             .friction = at_place(obstacle.friction, obstacle.friction_wet),
-            .half_space = solids.is_half_space(pair.b)};
+            .half_space = solids.is_half_space(pair.b) ? 1.0 : 0.0};
   }
   const double other_size = solids.size(pair.b);
   const double smaller = std::min(size, other_size);
@@ -25,7 +25,7 @@ PairConstants pair_constants(const Solids& solids, const ContactOptions& options
   return {.stiffness = young / (0.5 * (size + other_size)),
           .area = smaller * smaller,
           .friction = at_place(options.friction, options.friction_wet),
-          .half_space = false};
+          .half_space = 0};
 }
 
 ContactRates contact_rates(const Solids& solids, const ContactOptions& options,

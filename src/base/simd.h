@@ -19,6 +19,8 @@
 #include <immintrin.h>
 #endif
 
+#include "floe/base/rotation.h"
+
 /// Attributes of a function of which there must be one copy: contraction to fused operations may
 /// differ between two copies of a loop.
 #if defined(__clang__)
@@ -86,6 +88,54 @@ inline Lanes where_not_negative(const Lanes& of, Lanes x) {
 template <class T>
 double where_not_negative(const T& of, double x) {
   return of < 0.0 ? 0.0 : x;
+}
+
+/// Answers of a comparison: one bool, or one per lane.
+template <class T>
+using MaskOf = decltype(T{} < T{});
+
+/// Returns a where the mask is true, else b.
+inline double chosen(bool mask, double a, double b) { return mask ? a : b; }
+inline Lanes chosen(const Lanes::mask_type& mask, const Lanes& a, Lanes b) {
+  where(mask, b) = a;
+  return b;
+}
+
+template <class Mask, class T>
+Vec3<T> chosen(const Mask& mask, const Vec3<T>& a, const Vec3<T>& b) {
+  return {chosen(mask, a.x, b.x), chosen(mask, a.y, b.y), chosen(mask, a.z, b.z)};
+}
+
+/// Return the smaller (larger) one, as std::min and std::max do: a if neither is.
+template <class T>
+T smaller_of(const T& a, const T& b) {
+  return chosen(b < a, b, a);
+}
+template <class T>
+T larger_of(const T& a, const T& b) {
+  return chosen(a < b, b, a);
+}
+
+/// Whether no answer is true.
+inline bool none_of(bool mask) { return !mask; }
+using std::experimental::none_of;
+
+/// Calls a function of doubles lane by lane.
+template <class Function>
+double by_lane(Function function, double a, double b) {
+  return function(a, b);
+}
+template <class Function>
+Lanes by_lane(Function function, const Lanes& a, const Lanes& b) {
+  return Lanes([&](auto k) { return function(double{a[k]}, double{b[k]}); });
+}
+
+/// Returns a mask of bits from one of lanes.
+inline std::uint32_t bits_of(const Lanes::mask_type& mask) {
+  std::uint32_t bits = 0;
+  if (std::experimental::none_of(mask)) return bits;
+  for (std::size_t k = 0; k < lanes; ++k) bits |= std::uint32_t{mask[k] ? 1U : 0U} << k;
+  return bits;
 }
 
 /// Prefetches all cache lines of an object that is read soon.
@@ -183,9 +233,13 @@ inline Row lane_sums(const FewLanes& a, const FewLanes& b, const FewLanes& c, co
 #endif
 }
 
-/// Add four doubles to memory, subtract four, subtract two.
+/// Add four doubles to memory, subtract four, add two, subtract two.
 inline void add_row(double* p, const Row& row) { store_row(p, load_row(p) + row); }
 inline void subtract_row(double* p, const Row& row) { store_row(p, load_row(p) - row); }
+inline void add_pair(double* p, detail::Two pair) {
+  pair = detail::load_vector<detail::Two>(p) + pair;
+  __builtin_memcpy(p, &pair, sizeof pair);
+}
 inline void subtract_pair(double* p, detail::Two pair) {
   pair = detail::load_vector<detail::Two>(p) - pair;
   __builtin_memcpy(p, &pair, sizeof pair);
@@ -228,6 +282,49 @@ template <class At>
   return {std::bit_cast<Lanes>(evens(a.low, b.low)), std::bit_cast<Lanes>(odds(a.low, b.low)),
           std::bit_cast<Lanes>(evens(a.high, b.high)), std::bit_cast<Lanes>(odds(a.high, b.high))};
 #endif
+}
+
+/// Number of the numbers of a struct whose members are all of one type T.
+template <template <class> class Struct>
+inline constexpr std::size_t numbers_of = sizeof(Struct<double>) / sizeof(double);
+
+/// Returns struct a where the mask is true, else b.
+template <template <class> class Struct, class T>
+Struct<T> chosen_of(const MaskOf<T>& mask, const Struct<T>& a, const Struct<T>& b) {
+  using Numbers = std::array<T, sizeof(Struct<T>) / sizeof(T)>;
+  const auto from = std::bit_cast<Numbers>(a);
+  auto to = std::bit_cast<Numbers>(b);
+  for (std::size_t k = 0; k < to.size(); ++k) to[k] = chosen(mask, from[k], to[k]);
+  return std::bit_cast<Struct<T>>(to);
+}
+
+/// Returns a struct of lanes, of one struct of doubles per lane: at least four numbers.
+/// \param at  function from the lane to the address of its struct
+template <template <class> class Struct, class At>
+[[gnu::always_inline]] inline Struct<Lanes> gathered(At at) {
+  constexpr std::size_t n = numbers_of<Struct>;
+  static_assert(n >= 4 && sizeof(Struct<Lanes>) == n * sizeof(Lanes));
+  static_assert(std::is_trivially_copyable_v<Struct<Lanes>>);
+  Struct<Lanes> all;
+  for (std::size_t k = 0; k < n; k += 4) {
+    const std::size_t first = k + 4 <= n ? k : n - 4;
+    const std::array<Lanes, 4> four = gather_four(
+        [&](std::size_t lane) { return reinterpret_cast<const double*>(at(lane)) + first; });
+    __builtin_memcpy(reinterpret_cast<char*>(&all) + first * sizeof(Lanes), &four, sizeof four);
+  }
+  return all;
+}
+
+/// Returns the struct of one lane.
+template <template <class> class Struct>
+Struct<double> one_lane(const Struct<Lanes>& all, std::size_t lane) {
+  constexpr std::size_t n = numbers_of<Struct>;
+  static_assert(sizeof(Struct<Lanes>) == n * sizeof(Lanes));
+  std::array<double, n> numbers;
+  const char* const from = reinterpret_cast<const char*>(&all) + lane * sizeof(double);
+  for (std::size_t k = 0; k < n; ++k)
+    __builtin_memcpy(&numbers[k], from + k * sizeof(Lanes), sizeof(double));
+  return std::bit_cast<Struct<double>>(numbers);
 }
 
 /// Two numbers per lane side by side, the first step of the transpose from lanes to records: the
@@ -310,5 +407,41 @@ inline void scatter_four(const std::array<Lanes, 4>& in, std::array<Row, lanes>&
   rows[1] = {odds(two(0), two(1)), odds(two(2), two(3))};
 #endif
 }
+
+/// Structs of doubles, one per lane, as rows of n numbers that are filled up to whole rows.
+/// \tparam Struct  of 4 k + 2 numbers
+template <template <class> class Struct>
+class LaneRows {
+ public:
+  explicit LaneRows(const Struct<Lanes>& all) {
+    const auto from = std::bit_cast<std::array<Lanes, n>>(all);
+    for (std::size_t k = 0; k < n; k += 4) {
+      const std::size_t third = k + 2 < n ? k + 2 : k;
+      std::array<Row, lanes> four;
+      scatter_four({from[k], from[k + 1], from[third], from[third + 1]}, four);
+      for (std::size_t lane = 0; lane < lanes; ++lane) store_row(&rows_[lane][k], four[lane]);
+    }
+  }
+
+  /// Adds the numbers of a lane.
+  void add(std::size_t lane, Struct<double>& to) const {
+    double* const p = reinterpret_cast<double*>(&to);
+    const double* const row = rows_[lane].data();
+    for (std::size_t k = 0; k + 4 <= n; k += 4) add_row(p + k, load_row(row + k));
+    add_pair(p + n - 2, detail::load_vector<detail::Two>(row + n - 2));
+  }
+  /// Subtracts the numbers of a lane.
+  void subtract(std::size_t lane, Struct<double>& from) const {
+    double* const p = reinterpret_cast<double*>(&from);
+    const double* const row = rows_[lane].data();
+    for (std::size_t k = 0; k + 4 <= n; k += 4) subtract_row(p + k, load_row(row + k));
+    subtract_pair(p + n - 2, detail::load_vector<detail::Two>(row + n - 2));
+  }
+
+ private:
+  static constexpr std::size_t n = numbers_of<Struct>;
+  static_assert(n % 4 == 2);
+  alignas(64) std::array<std::array<double, n + 2>, lanes> rows_;
+};
 
 }  // namespace floe

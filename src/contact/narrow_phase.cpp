@@ -165,21 +165,21 @@ void NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& tu
   found = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
 }
 
-PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair,
-                                 const Placed& a, const Placed& b) {
+void NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair, const Placed& a,
+                          const Placed& b, PairOverlap& met) {
   const auto [turn, x] = Relative(a, b);
   worn_.clear();
   for (const HalfSpace& left : wear.of(pair.a)) {
     const Vec3<double> normal = turn.to_world(left.normal);
     worn_.push_back({normal, left.offset + dot(normal, x)});
   }
-  PairOverlap met;
+  met = {};
   Overlap& o = met.overlap;
   clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)}, o);
   const double radius = solids.radius(pair.a);
   if (o.volume <= rounding_volume * radius * radius * radius) {
     o.volume = 0;
-    return met;
+    return;
   }
   const HalfSpace& face = solids.planes(pair.b)[0];
   met.depth = face.offset - dot(face.normal, o.centroid);
@@ -187,7 +187,6 @@ PairOverlap NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& p
   o.area = b.axes.to_world(o.area);
   o.moment = b.axes.to_world(o.moment);
   if (with_patch_) to_world(o.patch, b.axes, b.x - a.x);
-  return met;
 }
 
 }  // namespace floe

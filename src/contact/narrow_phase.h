@@ -14,10 +14,12 @@
 namespace floe {
 
 /// The overlap of a pair, in world axes from the centroid of A; no overlap: volume 0.
-struct PairOverlap {
-  Overlap overlap;
-  double depth = 0;  ///< of the centroid of the overlap below the first face of B [m]
+template <class T>
+struct PairOverlapOf {
+  OverlapOf<T> overlap;
+  T depth = 0;  ///< of the centroid of the overlap below the first face of B [m]
 };
+using PairOverlap = PairOverlapOf<double>;
 
 /// How far A reaches down and B reaches up along an axis from B to A, each from its own origin.
 struct Reaches {
@@ -49,7 +51,14 @@ class NarrowPhase {
 
   /// Returns the overlap of what wear has left of a pair.
   PairOverlap overlap(const Solids& solids, const Wear& wear, Pair& pair, const Placed& a,
-                      const Placed& b);
+                      const Placed& b) {
+    PairOverlap met;
+    overlap(solids, wear, pair, a, b, met);
+    return met;
+  }
+  /// Sets the same. \param met  overwritten
+  void overlap(const Solids& solids, const Wear& wear, Pair& pair, const Placed& a, const Placed& b,
+               PairOverlap& met);
   /// Forgets the records of cuts of all pairs, for a new list. No number depends on them.
   void forget_cuts() { records_.clear(); }
 

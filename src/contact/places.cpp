@@ -28,26 +28,26 @@ void Places::restart(std::size_t slots) {
   counts_travels_ = false;
 }
 
-void Places::move(Placed& solid, const Placed& to, double radius) const {
-  const double travelled =
-      counts_travels_ ? solid.travelled + farthest_travel(solid, to, radius) : 0.0;
-  solid = to;
-  solid.travelled = travelled;
-}
-
 void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
                    std::span<const MovingPose> bodies, double time, double motion) {
   for (std::size_t s = 0; s < bodies.size(); ++s) {
     const MovingPose& body = bodies[s];
-    const Placed to{
+    Placed& was = bodies_[s];
+    Placed to{
         .x = body.pose.x, .axes = triad(body.pose.q), .velocity = body.velocity, .spin = body.spin};
-    move(bodies_[s], to, solids.radius(involved[s]));
+    if (counts_travels_)
+      to.travelled = was.travelled + farthest_travel(was, to, solids.radius(involved[s]));
+    was = to;
     const InverseInertia inverse = solids.inverse_inertia(involved[s]);
     mobility_[s] = {inverse.mass, SymmetricMatrix::along(to.axes, inverse.moments)};
   }
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     const std::int32_t index = obstacle_index(k);
-    move(obstacles_[k], place_of(solids.obstacle(index), time, motion), solids.radius(index));
+    Placed& was = obstacles_[k];
+    Placed to = place_of(solids.obstacle(index), time, motion);
+    if (counts_travels_)
+      to.travelled = was.travelled + farthest_travel(was, to, solids.radius(index));
+    was = to;
   }
   time_ = time;
   counts_travels_ = true;

@@ -40,9 +40,11 @@ struct Placed {
 Placed place_of(const Obstacle& obstacle, double position, double motion);
 
 /// Velocity and spin of a body or obstacle [m/s, rad/s].
-struct BodyVelocity {
-  Vec3<double> velocity{}, spin{};
+template <class T>
+struct BodyVelocityOf {
+  Vec3<T> velocity{}, spin{};
 };
+using BodyVelocity = BodyVelocityOf<double>;
 
 /// Acceleration of a body [m/s^2, rad/s^2].
 struct Acceleration {
@@ -52,8 +54,9 @@ struct Acceleration {
 /// Returns the motion of A relative to B at a point.
 /// \param centre  the point, from the centroid of A [m]
 /// \param apart   x_A - x_B [m]
-inline RelativeMotion relative_motion(const BodyVelocity& a, const BodyVelocity& b,
-                                      const Vec3<double>& centre, const Vec3<double>& apart) {
+template <class T>
+RelativeMotionOf<T> relative_motion(const BodyVelocityOf<T>& a, const BodyVelocityOf<T>& b,
+                                    const Vec3<T>& centre, const Vec3<T>& apart) {
   return {.velocity =
               (a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, centre + apart)),
           .spin = a.spin - b.spin};
@@ -78,38 +81,35 @@ class Places {
   const Placed& of_slot(std::int32_t slot) const { return item(bodies_, slot); }
   /// Returns what the body in a slot opposes to contacts.
   const BodyMobility& mobility(std::int32_t slot) const { return item(mobility_, slot); }
+  const BodyMobility& mobility_of_a(const Pair& pair) const { return mobility(pair.slot_a); }
+  const BodyMobility& mobility_of_b(const Pair& pair) const {
+    return is_obstacle(pair.b) ? of_obstacle_ : mobility(pair.slot_b);
+  }
   const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
   const Placed& of_b(const Pair& pair) const {
     return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
-  }
-  /// Returns the motion of A relative to B at a point in the middle of the last step.
-  /// \param centre  the point, from the centroid of A [m]
-  RelativeMotion motion(const Pair& pair, const Vec3<double>& centre) const {
-    const Placed &a = of_a(pair), &b = of_b(pair);
-    return relative_motion({a.velocity, a.spin}, {b.velocity, b.spin}, centre, a.x - b.x);
   }
   /// Predicts the velocities of bodies a time after those of the last evaluation, and sets those of
   /// obstacles at the time of the evaluation.
   /// \param after          [s]
   /// \param accelerations  of bodies, by slot
   void predict(const Solids& solids, double after, std::span<const Acceleration> accelerations);
-  /// Returns the motion of A relative to B at a point, as predicted.
-  RelativeMotion predicted_motion(const Pair& pair, const Vec3<double>& centre) const {
-    const BodyVelocity& b = is_obstacle(pair.b) ? predicted_obstacles_[obstacle_number(pair.b)]
-                                                : item(predicted_, pair.slot_b);
-    return relative_motion(item(predicted_, pair.slot_a), b, centre, of_a(pair).x - of_b(pair).x);
+  /// Return the predicted velocities of A and B.
+  const BodyVelocity& predicted_a(const Pair& pair) const { return item(predicted_, pair.slot_a); }
+  const BodyVelocity& predicted_b(const Pair& pair) const {
+    return is_obstacle(pair.b) ? predicted_obstacles_[obstacle_number(pair.b)]
+                               : item(predicted_, pair.slot_b);
   }
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }
 
  private:
-  void move(Placed& solid, const Placed& to, double radius) const;
-
   std::vector<Placed> bodies_;                     ///< per slot
   std::vector<BodyMobility> mobility_;             ///< per slot
   std::vector<Placed> obstacles_;                  ///< per obstacle
   std::vector<BodyVelocity> predicted_;            ///< per slot
   std::vector<BodyVelocity> predicted_obstacles_;  ///< per obstacle
+  BodyMobility of_obstacle_{};
   double time_ = 0;
   bool counts_travels_ = false;  ///< place() was called since restart()
 };

@@ -10,6 +10,7 @@
 #include <concepts>
 #include <cstddef>
 #include <stdexcept>
+#include <type_traits>
 #include <variant>
 
 #include "contact_laws/overlap.h"
@@ -23,17 +24,19 @@ using ContactLaws = std::variant<OverlapLaw, PotentialLaw>;
 /// - `word`, by which a scene names it;
 /// - a constructor from the options, from which the law takes its constants;
 /// - `constants`, of the terms that laws share;
-/// - `term`, the elastic force of a contact with a direction;
+/// - `term`, the elastic force of a contact with a direction, or of one in each lane;
 /// - `stored`, the energy that this force stores;
 /// - `steepness`, for the bound of the stable step: the largest factor by which the elastic force
 ///   rises with the overlap faster than k_v |S|, from the area of the largest face of a body and
 ///   from its A_r [m^2].
 template <class Law>
 concept IsContactLaw = std::constructible_from<Law, const ContactOptions&> &&
-    requires(const Law& law, const ContactState& state, const ContactTrial& trial) {
+    requires(const Law& law, const ContactState& state, const ContactStateOf<Lanes>& states,
+             const ContactTrial& trial) {
   { Law::word } -> std::convertible_to<ContactLaw>;
   { law.constants } -> std::convertible_to<SharedConstants>;
   { law.term(state) } -> std::same_as<ElasticTerm>;
+  { law.term(states) } -> std::same_as<ElasticTermOf<Lanes>>;
   { law.stored(trial) } -> std::same_as<double>;
   { law.steepness(0.0, 0.0) } -> std::same_as<double>;
 };
@@ -59,34 +62,36 @@ ContactLaws law_of(const ContactOptions& options) {
 /// \param memory          history of the pair
 /// \param newly_eligible  the overlap is stress-free: V_p = V
 /// \param trial           filled
-template <IsContactLaw Law>
-void find_trial(const Law& law, const PairConstants& pair, const Overlap& overlap, double depth,
-                const RelativeMotion& motion, const Mobility& mobility, LastStep last,
-                const Vec3<double>& mean_spin, PairHistory memory, bool newly_eligible,
-                ContactTrial& trial) {
-  if (newly_eligible) {
-    memory.plastic = overlap.volume;
-    last.dt = 0;  // nothing has slipped yet
-  }
-  const double area = length(overlap.area);
-  if (area <= 1e-12 * pair.area) {
-    memory.springs.force = {};
-    memory.twist.couple = 0;
-    trial = {};
-    trial.memory = memory;
-    return;
-  }
-  const Vec3<double> normal = (1 / area) * overlap.area;
+/// \tparam T             double, or Lanes for a contact in each lane
+template <IsContactLaw Law, class T>
+void find_trial(const Law& law, const PairConstantsOf<T>& pair, const OverlapOf<T>& overlap,
+                const std::type_identity_t<T>& depth,
+                const std::type_identity_t<RelativeMotionOf<T>>& motion,
+                const MobilityOf<T>& mobility, std::type_identity_t<LastStepOf<T>> last,
+                const std::type_identity_t<Vec3<T>>& mean_spin, PairHistoryOf<T> memory,
+                const MaskOf<T>& newly_eligible, ContactTrialOf<T>& trial) {
+  memory.plastic = chosen(newly_eligible, overlap.volume, memory.plastic);
+  last.dt = chosen(newly_eligible, T(0.0), last.dt);  // nothing has slipped yet
+  const T size = length(overlap.area);
+  const auto enclosed = size <= 1e-12 * pair.area;
+  const T area = chosen(enclosed, T(1.0), size);
+  const Vec3<T> normal = (1.0 / area) * overlap.area;
   last.mean_turn = last.dt * dot(mean_spin, normal);
-  const ContactState state{.pair = pair,
-                           .overlap = overlap,
-                           .depth = depth,
-                           .motion = motion,
-                           .mobility = mobility,
-                           .last = last,
-                           .area = area,
-                           .normal = normal};
+  const ContactStateOf<T> state{.pair = pair,
+                                .overlap = overlap,
+                                .depth = depth,
+                                .motion = motion,
+                                .mobility = mobility,
+                                .last = last,
+                                .area = area,
+                                .normal = normal};
   find_trial_along(law.constants, state, law.term(state), memory, trial);
+  if (none_of(enclosed)) return;
+  ContactTrialOf<T> none;
+  none.memory = memory;
+  none.memory.springs.force = {};
+  none.memory.twist.couple = 0;
+  trial = chosen_of<ContactTrialOf>(enclosed, none, trial);
 }
 
 /// Returns the energy that a contact stores.

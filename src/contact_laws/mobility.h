@@ -13,13 +13,14 @@ struct InverseInertia {
 };
 
 /// A symmetric matrix of three rows.
-struct SymmetricMatrix {
-  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+template <class T>
+struct SymmetricMatrixOf {
+  T xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
   /// Returns the matrix with principal values along axes.
-  static SymmetricMatrix along(const Triad<double>& axes, const Vec3<double>& principal) {
+  static SymmetricMatrixOf along(const Triad<T>& axes, const Vec3<T>& principal) {
     const auto& [e, f, g] = axes;
-    const Vec3<double> a = principal.x * e, b = principal.y * f, c = principal.z * g;
+    const Vec3<T> a = principal.x * e, b = principal.y * f, c = principal.z * g;
     return {.xx = a.x * e.x + b.x * f.x + c.x * g.x,
             .yy = a.y * e.y + b.y * f.y + c.y * g.y,
             .zz = a.z * e.z + b.z * f.z + c.z * g.z,
@@ -27,50 +28,55 @@ struct SymmetricMatrix {
             .xz = a.x * e.z + b.x * f.z + c.x * g.z,
             .yz = a.y * e.z + b.y * f.z + c.y * g.z};
   }
-  Vec3<double> operator*(const Vec3<double>& v) const {
+  Vec3<T> operator*(const Vec3<T>& v) const {
     return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
             xz * v.x + yz * v.y + zz * v.z};
   }
-  SymmetricMatrix operator+(const SymmetricMatrix& m) const {
+  SymmetricMatrixOf operator+(const SymmetricMatrixOf& m) const {
     return {xx + m.xx, yy + m.yy, zz + m.zz, xy + m.xy, xz + m.xz, yz + m.yz};
   }
-  double trace() const { return xx + yy + zz; }
+  T trace() const { return xx + yy + zz; }
 };
+using SymmetricMatrix = SymmetricMatrixOf<double>;
 
 /// A body as a contact moves it: inverse mass [1/kg] and inverse tensor of inertia in the world
 /// [1/(kg m^2)]; zeros for an obstacle.
-struct BodyMobility {
-  double mass = 0;
-  SymmetricMatrix turning{};
+template <class T>
+struct BodyMobilityOf {
+  T mass = 0;
+  SymmetricMatrixOf<T> turning{};
 };
+using BodyMobility = BodyMobilityOf<double>;
 
 /// The bodies A and B of a contact, as rigid bodies.
-struct Mobility {
-  BodyMobility a{}, b{};
-  Vec3<double> apart{};  ///< x_A - x_B [m]
+template <class T>
+struct MobilityOf {
+  BodyMobilityOf<T> a{}, b{};
+  Vec3<T> apart{};  ///< x_A - x_B [m]
 
   /// Returns 1/m_eff = 1/m_a + 1/m_b + (r_a x d).I_a^-1 (r_a x d) + (r_b x d).I_b^-1 (r_b x d),
   /// the relative acceleration at a point per force, along the force [1/kg].
   /// \param r  the point, from x_A [m]
   /// \param d  a unit vector
-  double along(const Vec3<double>& r, const Vec3<double>& d) const {
+  T along(const Vec3<T>& r, const Vec3<T>& d) const {
     return a.mass + b.mass + form(a, cross(r, d)) + form(b, cross(r + apart, d));
   }
   /// Returns the mean of along() over the directions across a unit vector [1/kg]. Over three
   /// directions at right angles the terms of a body add up to tr(I^-1) r.r - r.I^-1 r.
-  double across(const Vec3<double>& r, const Vec3<double>& d) const {
-    return 0.5 * (3 * (a.mass + b.mass) + all(a, r) + all(b, r + apart) - along(r, d));
+  T across(const Vec3<T>& r, const Vec3<T>& d) const {
+    return 0.5 * (3.0 * (a.mass + b.mass) + all(a, r) + all(b, r + apart) - along(r, d));
   }
   /// Returns I_a^-1 + I_b^-1, the relative angular acceleration per couple [1/(kg m^2)].
-  SymmetricMatrix turning() const { return a.turning + b.turning; }
+  SymmetricMatrixOf<T> turning() const { return a.turning + b.turning; }
 
  private:
-  static double form(const BodyMobility& body, const Vec3<double>& v) {
+  static T form(const BodyMobilityOf<T>& body, const Vec3<T>& v) {
     return dot(v, body.turning * v);
   }
-  static double all(const BodyMobility& body, const Vec3<double>& r) {
+  static T all(const BodyMobilityOf<T>& body, const Vec3<T>& r) {
     return body.turning.trace() * dot(r, r) - form(body, r);
   }
 };
+using Mobility = MobilityOf<double>;
 
 }  // namespace floe

@@ -14,7 +14,8 @@ struct OverlapLaw {
 
   explicit OverlapLaw(const ContactOptions& options) : constants(options) {}
 
-  ElasticTerm term(const ContactState& state) const {
+  template <class T>
+  ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
     return {
         .rate = state.pair.stiffness, .couple = {}, .stiffness = state.pair.stiffness * state.area};
   }
@@ -22,7 +23,7 @@ struct OverlapLaw {
   /// Returns the energy that the elastic force stores [J].
   static double stored(const ContactTrial& trial) {
     const double k = trial.pair.stiffness, plastic = trial.memory.plastic;
-    if (trial.pair.half_space)
+    if (trial.pair.half_space != 0)
       return k * stored_volume(trial.volume, trial.area, trial.depth, plastic);
     const double elastic = std::max(trial.volume - plastic, 0.0);
     return 0.5 * k * elastic * elastic / trial.area;

@@ -18,8 +18,9 @@ struct PotentialLaw {
 
   explicit PotentialLaw(const ContactOptions& options) : constants(options) {}
 
-  ElasticTerm term(const ContactState& state) const {
-    const double stiffness = state.pair.stiffness, reference = state.pair.area;
+  template <class T>
+  ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
+    const T stiffness = state.pair.stiffness, reference = state.pair.area;
     return {.rate = stiffness * state.area / reference,
             .couple = (stiffness / reference) * state.overlap.moment,
             .stiffness = stiffness / reference * state.area * state.area};

@@ -31,27 +31,37 @@ inline double plastic_pressure(const PlasticLimit& limit, double area, double ap
     pressure *= limit.fast + (1 - limit.fast) * std::exp(-approach / limit.speed);
   return pressure;
 }
+/// The same lane by lane.
+template <class T>
+T plastic_pressures(const PlasticLimit& limit, const T& area, const T& approach) {
+  if (limit.exponent == 0 && limit.fast == 1) return limit.pressure;
+  return by_lane([&](double a, double v) { return plastic_pressure(limit, a, v); }, area, approach);
+}
 
 /// Returns the part of the last step in which the dashpot acts: in the first step of a touch the
 /// impulse of the half step before t_n counts from the time t_c of the touch on, which is at most
 /// a step ago.
 /// \param approach  speed of approach in the middle of the last step [m/s]
-inline double touched_for(const ContactState& state, double approach) {
-  const double dt = state.last.dt;
-  if (state.last.touched || !(dt > 0) || !(approach > 0)) return dt;
-  return std::min(dt, state.overlap.volume / (state.area * approach));
+template <class T>
+T touched_for(const ContactStateOf<T>& state, const T& approach) {
+  const T& dt = state.last.dt;
+  const auto begins = !state.last.touched && dt > 0.0 && approach > 0.0;
+  const T since = state.overlap.volume / chosen(begins, T(state.area * approach), T(1.0));
+  return chosen(begins, smaller_of(dt, since), dt);
 }
 
 /// A dashpot c = 2 zeta sqrt(stiffness/yields) as it acts over a step on a velocity that c itself
 /// slows down: with c/(1 + (dt/2) c yields).
+template <class T>
 struct StepDashpot {
-  double slows = 0;      ///< 1 + (dt/2) c yields
-  double over_step = 0;  ///< c/slows
+  T slows = 0;      ///< 1 + (dt/2) c yields
+  T over_step = 0;  ///< c/slows
 
   /// \param yields  relative acceleration per force of the dashpot
-  StepDashpot(double damping_ratio, double stiffness, double yields, double dt) {
-    const double rate = 2 * damping_ratio * std::sqrt(stiffness * yields);  // c yields
-    slows = 1 + 0.5 * dt * rate;
+  StepDashpot(double damping_ratio, const T& stiffness, const T& yields, const T& dt) {
+    using std::sqrt;
+    const T rate = 2 * damping_ratio * sqrt(T(stiffness * yields));  // c yields
+    slows = 1.0 + 0.5 * dt * rate;
     over_step = rate / (yields * slows);
   }
 };
@@ -63,38 +73,44 @@ struct StepDashpot {
 /// \param springs       stiffnesses of the springs of friction
 /// \param touched       part of the last step in which the pair touched [s]
 /// \param inverse_area  1/|S|
-inline Dashpots dashpots_of(double damping_ratio, const ContactState& state, double stiffness,
-                            const PairHistory& springs, double touched, double inverse_area) {
-  const Patch& patch = state.overlap.patch;
-  const double dt = state.last.dt;
-  const Vec3<double>& n = state.normal;
-  const Vec3<double> middle = patch.area > 0 ? patch.middle : state.overlap.centroid;
-  const StepDashpot along(damping_ratio, stiffness, state.mobility.along(middle, n), dt);
-  Dashpots d;
-  d.counts = state.last.touched || !(dt > 0) ? 1.0 : (touched + 0.5 * dt) / dt;
+template <class T>
+DashpotsOf<T> dashpots_of(double damping_ratio, const ContactStateOf<T>& state, const T& stiffness,
+                          const PairHistoryOf<T>& springs, const T& touched,
+                          const T& inverse_area) {
+  using std::sqrt;
+  const PatchOf<T>& patch = state.overlap.patch;
+  const T& dt = state.last.dt;
+  const Vec3<T>& n = state.normal;
+  const Vec3<T> middle = chosen(patch.area > 0.0, patch.middle, state.overlap.centroid);
+  const StepDashpot<T> along(damping_ratio, stiffness, state.mobility.along(middle, n), dt);
+  DashpotsOf<T> d;
+  const auto whole = state.last.touched || !(dt > 0.0);
+  d.counts = chosen(whole, T(1.0), T((touched + 0.5 * dt) / chosen(whole, T(1.0), dt)));
   d.normal = d.counts * along.over_step;
   d.arm = middle - state.overlap.centroid;
   d.area = along.slows * along.over_step * inverse_area;
-  d.widest = std::sqrt(std::max(patch.largest(), 0.0) * inverse_area);
+  d.widest = sqrt(T(larger_of(patch.largest(), T(0.0)) * inverse_area));
   d.turning = state.mobility.turning();
-  if (state.pair.friction > 0) {
-    const double slides = state.mobility.across(state.overlap.centroid, n),
-                 turns = dot(n, d.turning * n);
-    d.slip = StepDashpot(damping_ratio, springs.springs.stiffness, slides, dt).over_step;
-    if (turns > 0)
-      d.twist = StepDashpot(damping_ratio, springs.twist.stiffness, turns, dt).over_step;
-  }
+  const auto rubs = state.pair.friction > 0.0;
+  if (none_of(rubs)) return d;
+  const T slides = state.mobility.across(state.overlap.centroid, n), turns = dot(n, d.turning * n);
+  const StepDashpot<T> slip(damping_ratio, springs.springs.stiffness, slides, dt);
+  d.slip = chosen(rubs, slip.over_step, T(0.0));
+  const auto twists = rubs && turns > 0.0;
+  const StepDashpot<T> twist(damping_ratio, springs.twist.stiffness, chosen(twists, turns, T(1.0)),
+                             dt);
+  d.twist = chosen(twists, twist.over_step, T(0.0));
   return d;
 }
 
 /// Returns the springs of friction advanced by the slip of the last step, before their limit.
 /// \param stiffness  k_t [N/m], and that against spin about n [N m]
-inline Friction advanced_springs(const ContactState& state, double stiffness, double twist,
-                                 const PairHistory& memory, double touched) {
-  const Vec3<double>& n = state.normal;
-  const Vec3<double>& v = state.motion.velocity;
-  const Vec3<double> before =
-      turned(carried(memory.springs, n, stiffness), n, state.last.mean_turn);
+template <class T>
+FrictionOf<T> advanced_springs(const ContactStateOf<T>& state, const T& stiffness, const T& twist,
+                               const PairHistoryOf<T>& memory, const T& touched) {
+  const Vec3<T>& n = state.normal;
+  const Vec3<T>& v = state.motion.velocity;
+  const Vec3<T> before = turned(carried(memory.springs, n, stiffness), n, state.last.mean_turn);
   return {.force = before - (touched * stiffness) * (v - dot(v, n) * n),
           .couple = carried(memory.twist, twist) - touched * twist * dot(state.motion.spin, n)};
 }
@@ -103,27 +119,29 @@ inline Friction advanced_springs(const ContactState& state, double stiffness, do
 /// \param term    of the law
 /// \param memory  history of the pair
 /// \param trial   filled
-inline void find_trial_along(const SharedConstants& constants, const ContactState& state,
-                             const ElasticTerm& term, const PairHistory& memory,
-                             ContactTrial& trial) {
-  const double approach = -dot(state.motion.velocity, state.normal);
-  const double yield = plastic_pressure(constants.plastic_limit, state.area, approach) * state.area;
-  const double volume = state.overlap.volume;
-  const Patch& patch = state.overlap.patch;
+template <class T>
+void find_trial_along(const SharedConstants& constants, const ContactStateOf<T>& state,
+                      const ElasticTermOf<T>& term, const PairHistoryOf<T>& memory,
+                      ContactTrialOf<T>& trial) {
+  const T approach = -dot(state.motion.velocity, state.normal);
+  const T yield = plastic_pressures(constants.plastic_limit, state.area, approach) * state.area;
+  const T volume = state.overlap.volume;
+  const PatchOf<T>& patch = state.overlap.patch;
   trial.normal = state.normal;
   trial.memory = memory;
-  double& plastic = trial.memory.plastic;
-  if (term.rate * (volume - plastic) > yield) plastic = volume - yield / term.rate;
-  const double pressed = state.elastic_volume(plastic);
+  T& plastic = trial.memory.plastic;
+  const auto crushes = term.rate * (volume - plastic) > yield;
+  plastic = chosen(crushes, T(volume - yield / term.rate), plastic);
+  const T pressed = state.elastic_volume(plastic);
   trial.elastic = term.rate * pressed;
   trial.couple = pressed * term.couple;
   trial.yield = yield;
   trial.friction = state.pair.friction;
-  const double inverse_area = 1 / state.area;
+  const T inverse_area = 1.0 / state.area;
   trial.reach = patch.reach * inverse_area;
-  const double stiffness = 0.6 * term.stiffness,
-               twist = stiffness * ((patch.uu + patch.vv) * inverse_area);
-  const double touched = touched_for(state, approach);
+  const T stiffness = 0.6 * term.stiffness,
+          twist = stiffness * ((patch.uu + patch.vv) * inverse_area);
+  const T touched = touched_for(state, approach);
   trial.springs = advanced_springs(state, stiffness, twist, memory, touched);
   trial.memory.springs.stiffness = stiffness;
   trial.memory.twist.stiffness = twist;
@@ -139,9 +157,10 @@ inline void find_trial_along(const SharedConstants& constants, const ContactStat
 }
 
 /// Returns the force of a contact without its dashpots.
-inline ContactForce without_dashpots(const ContactTrial& trial) {
-  const double pressing = std::min(trial.elastic, trial.yield);
-  const Friction springs = within(trial.springs, trial.friction * pressing, trial.reach);
+template <class T>
+ContactForceOf<T> without_dashpots(const ContactTrialOf<T>& trial) {
+  const T pressing = smaller_of(trial.elastic, trial.yield);
+  const FrictionOf<T> springs = within(trial.springs, T(trial.friction * pressing), trial.reach);
   return {.normal = trial.normal,
           .elastic = trial.elastic,
           .viscous = pressing - trial.elastic,
@@ -153,42 +172,51 @@ inline ContactForce without_dashpots(const ContactTrial& trial) {
 
 /// Returns the couple -(c/|S|) T omega of the viscous pressure, of the spin across n that it slows
 /// down itself.
-inline Vec3<double> rocking_couple(const ContactTrial& trial, const Vec3<double>& across) {
-  const double w2 = dot(across, across);
-  if (!(w2 > 0)) return {};
-  const Dashpots& d = trial.dashpots;
-  const Vec3<double> tw = trial.patch.rocking(across);
-  const double slows = 0.5 * trial.dt * d.area * dot(across, tw) * dot(across, d.turning * across);
-  return (-d.counts * d.area * w2 * w2 / (w2 * w2 + slows)) * tw;
+template <class T>
+Vec3<T> rocking_couple(const ContactTrialOf<T>& trial, const Vec3<T>& across) {
+  const T w2 = dot(across, across);
+  const auto rocks = w2 > 0.0;
+  const DashpotsOf<T>& d = trial.dashpots;
+  const Vec3<T> tw = trial.patch.rocking(across);
+  const T slows = 0.5 * trial.dt * d.area * dot(across, tw) * dot(across, d.turning * across);
+  const T share = -d.counts * d.area * w2 * w2 / chosen(rocks, T(w2 * w2 + slows), T(1.0));
+  return chosen(rocks, share * tw, Vec3<T>{});
 }
 
 /// Returns the couple of the viscous pressure under its limits. Where the force along the normal is
 /// cut, couples are cut by the same factor; none exceeds what the force can carry over the facets.
 /// \param viscous  before any limit: force along n and couple of the pressure
-inline Vec3<double> limited_couple(const ContactTrial& trial, double viscous,
-                                   const Vec3<double>& rocking, double pressing) {
-  if (!(pressing > 0)) return -trial.couple;
-  const double raw = trial.elastic + viscous;
-  Vec3<double> couple = (pressing - trial.elastic) * cross(trial.dashpots.arm, trial.normal);
-  couple = couple + (pressing < raw ? pressing / raw : 1.0) * rocking;
-  const double most = pressing * trial.dashpots.widest, size2 = dot(couple, couple);
-  if (size2 > most * most) couple = (most / std::sqrt(size2)) * couple;
+template <class T>
+Vec3<T> limited_couple(const ContactTrialOf<T>& trial, const T& viscous, const Vec3<T>& rocking,
+                       const T& pressing) {
+  using std::sqrt;
+  const T raw = trial.elastic + viscous;
+  const auto presses = pressing > 0.0, cut = pressing < raw;
+  Vec3<T> couple = (pressing - trial.elastic) * cross(trial.dashpots.arm, trial.normal);
+  couple = couple + chosen(cut, T(pressing / chosen(cut, raw, T(1.0))), T(1.0)) * rocking;
+  const T most = pressing * trial.dashpots.widest, size2 = dot(couple, couple);
+  const auto wide = size2 > most * most;
+  couple = chosen(wide, T(most / sqrt(chosen(wide, size2, T(1.0)))), T(1.0)) * couple;
   // An elastic couple ends with the force along the normal.
-  if (pressing < trial.elastic) couple = couple + (pressing / trial.elastic - 1) * trial.couple;
-  return couple;
+  const auto tears = pressing < trial.elastic;
+  const T share = pressing / chosen(tears, trial.elastic, T(1.0)) - 1.0;
+  couple = chosen(tears, couple + share * trial.couple, couple);
+  return chosen(presses, couple, -trial.couple);
 }
 
 /// Returns the force of a contact with its dashpots.
 /// \param predicted  motion of A relative to B at c on which dashpots act
-inline ContactForce with_dashpots(const ContactTrial& trial, const RelativeMotion& predicted) {
-  const Vec3<double>&n = trial.normal, &v = predicted.velocity, &w = predicted.spin;
-  const Dashpots& d = trial.dashpots;
-  const double about = dot(w, n);
-  const Vec3<double> across = w - about * n;
-  const double viscous = -d.normal * dot(v + cross(w, d.arm), n);
-  const double pressing = std::min(std::max(trial.elastic + viscous, 0.0), trial.yield);
-  const double most = trial.friction * pressing;
-  ContactForce force{
+template <class T>
+ContactForceOf<T> with_dashpots(const ContactTrialOf<T>& trial,
+                                const RelativeMotionOf<T>& predicted) {
+  const Vec3<T>&n = trial.normal, &v = predicted.velocity, &w = predicted.spin;
+  const DashpotsOf<T>& d = trial.dashpots;
+  const T about = dot(w, n);
+  const Vec3<T> across = w - about * n;
+  const T viscous = -d.normal * dot(v + cross(w, d.arm), n);
+  const T pressing = smaller_of(larger_of(T(trial.elastic + viscous), T(0.0)), trial.yield);
+  const T most = trial.friction * pressing;
+  ContactForceOf<T> force{
       .normal = n,
       .elastic = trial.elastic,
       .viscous = pressing - trial.elastic,
@@ -196,9 +224,9 @@ inline ContactForce with_dashpots(const ContactTrial& trial, const RelativeMotio
       .viscous_couple = limited_couple(trial, viscous, rocking_couple(trial, across), pressing),
       .friction = {},
       .springs = within(trial.springs, most, trial.reach)};
-  force.friction = within({.force = force.springs.force - d.slip * (v - dot(v, n) * n),
-                           .couple = force.springs.couple - d.twist * about},
-                          most, trial.reach);
+  const FrictionOf<T> damped{.force = force.springs.force - d.slip * (v - dot(v, n) * n),
+                             .couple = force.springs.couple - d.twist * about};
+  force.friction = within(damped, most, trial.reach);
   return force;
 }
 

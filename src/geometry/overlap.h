@@ -22,34 +22,39 @@ namespace floe {
 /// Integrals over the facets of an overlap on B's surface, for what acts over an area
 /// (model.md, "Contact"). All r are from `middle`, the centroid of |dA|. Only the parts of r across
 /// the direction n of S count; u, v and n are a right-handed basis.
-struct Patch {
-  double area = 0;                ///< integral of |dA| [m^2]
-  Vec3<double> middle{};          ///< centroid of |dA| [m]
-  Vec3<double> u{}, v{};          ///< unit vectors across S
-  double uu = 0, vv = 0, uv = 0;  ///< J2, the integral of r r^T |dA|, in u and v [m^4]
+template <class T>
+struct PatchOf {
+  T area = 0;                ///< integral of |dA| [m^2]
+  Vec3<T> middle{};          ///< centroid of |dA| [m]
+  Vec3<T> u{}, v{};          ///< unit vectors across S
+  T uu = 0, vv = 0, uv = 0;  ///< J2, the integral of r r^T |dA|, in u and v [m^4]
   /// Integral of the distance of r from the axis through `middle` along S, over the area that the
   /// facets show along this axis [m^3]: a spin w about the axis slides at w times that distance.
-  double reach = 0;
+  T reach = 0;
 
   /// Returns T w, T = int (r x n)(r x n)^T |dA|, of a vector w across n [m^4 times w].
-  Vec3<double> rocking(const Vec3<double>& w) const {
-    const double wu = dot(u, w), wv = dot(v, w);
+  Vec3<T> rocking(const Vec3<T>& w) const {
+    const T wu = dot(u, w), wv = dot(v, w);
     return (vv * wu - uv * wv) * u + (uu * wv - uv * wu) * v;
   }
   /// Returns the largest eigenvalue of T, and of J2 across n [m^4].
-  double largest() const {
-    const double half = 0.5 * (uu - vv);
-    return 0.5 * (uu + vv) + std::sqrt(half * half + uv * uv);
+  T largest() const {
+    using std::sqrt;
+    const T half = 0.5 * (uu - vv);
+    return 0.5 * (uu + vv) + sqrt(T(half * half + uv * uv));
   }
 };
+using Patch = PatchOf<double>;
 
-struct Overlap {
-  double volume = 0;        ///< V [m^3]
-  Vec3<double> centroid{};  ///< c [m]
-  Vec3<double> area{};      ///< S, the sum of the area vectors of the facets on B, outwards [m^2]
-  Vec3<double> moment{};    ///< sum of int (r - c) x dA over the facets on B [m^3]
-  Patch patch;              ///< zeros unless it was asked for
+template <class T>
+struct OverlapOf {
+  T volume = 0;        ///< V [m^3]
+  Vec3<T> centroid{};  ///< c [m]
+  Vec3<T> area{};      ///< S, the sum of the area vectors of the facets on B, outwards [m^2]
+  Vec3<T> moment{};    ///< sum of int (r - c) x dA over the facets on B [m^3]
+  PatchOf<T> patch;    ///< zeros unless it was asked for
 };
+using Overlap = OverlapOf<double>;
 
 /// Appends the half-spaces whose intersection is body b of `shapes`, one per face, in the body's
 /// own frame. The normals are Newell's sums; each offset holds all corners of its face.

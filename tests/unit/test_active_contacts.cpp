@@ -2,11 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
+
 #include "active_contacts/active_contacts.h"
 #include "support/lattices.h"
 
 namespace floe {
 namespace {
+
+constexpr std::array<std::int32_t, 1> first_pair{0};
 
 /// A body that lies inside another has no direction and no friction, whatever contact had its place
 /// in memory before.
@@ -14,20 +19,22 @@ TEST(ActiveContacts, AnEnclosedOneKeepsNoSpringsOfAnother) {
   Lattice lattice = test::row(2);
   ActiveContacts active(0);
   active.start(2);
-  ActiveContact& slides = active.add(true);
+  ContactBlock& slides = active.add(first_pair, 1);
   slides.trial.normal = {0, 0, 1};
   slides.springs = {.force = {3, 4, 0}, .couple = 5};
-  EXPECT_EQ(slides.memory().springs.force, (Vec3<double>{3, 4, 0}));
+  slides.mark(1);
+  EXPECT_EQ(active.memory(0).springs.force, (Vec3<double>{3, 4, 0}));
 
   active.start(2);
-  ActiveContact& enclosed = active.add(true);
+  ContactBlock& enclosed = active.add(first_pair, 1);
   enclosed.trial = {};
-  ASSERT_TRUE(enclosed.is_enclosed());
+  enclosed.mark(1);
+  ASSERT_TRUE(active.is_enclosed(0));
   const Solids solids(lattice.shapes, lattice.bodies.mass, {});
   const PairList list(solids, {}, false);
-  active.act(list, Places(0), [](const ActiveContact&, const Pair&) { return ContactForce{}; });
-  EXPECT_EQ(active.contacts().front().memory().springs.force, (Vec3<double>{0, 0, 0}));
-  EXPECT_EQ(active.contacts().front().memory().twist.couple, 0);
+  active.act(list, [](const ContactBlock&, auto) { return ContactForceOf<Lanes>{}; });
+  EXPECT_EQ(active.memory(0).springs.force, (Vec3<double>{0, 0, 0}));
+  EXPECT_EQ(active.memory(0).twist.couple, 0);
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <random>
 #include <variant>
 
 #include "contact_laws/laws.h"
@@ -301,6 +304,85 @@ TEST(ContactLaw, HistoryGoesThroughACheckpoint) {
   const auto numbers = memory.as_numbers();
   EXPECT_EQ(PairHistory::from(numbers).as_numbers(), numbers);
   EXPECT_EQ(numbers, (std::array<double, 7>{1, 2, 3, 4, 5, 6, 7}));
+}
+
+/// All that a contact depends on, of doubles or of lanes.
+template <class T>
+struct SituationOf {
+  PairConstantsOf<T> pair;
+  OverlapOf<T> overlap;
+  T depth;
+  RelativeMotionOf<T> motion, predicted;
+  MobilityOf<T> mobility;
+  Vec3<T> mean_spin;
+  PairHistoryOf<T> memory;
+  T touched, newly_eligible;
+};
+
+/// What comes of it.
+template <class T>
+struct OutcomeOf {
+  ContactTrialOf<T> trial;
+  ContactForceOf<T> bare, damped;
+
+  OutcomeOf() = default;
+  OutcomeOf(const auto& law, const SituationOf<T>& s) {
+    find_trial(law, s.pair, s.overlap, s.depth, s.motion, s.mobility,
+               {.dt = 1e-3, .touched = s.touched != 0.0}, s.mean_spin, s.memory,
+               s.newly_eligible != 0.0, trial);
+    bare = without_dashpots(trial);
+    damped = with_dashpots(trial, s.predicted);
+  }
+};
+
+/// A contact at random: some without area, springs, friction or motion, some that crush or part.
+SituationOf<double> at_random(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> about(-1, 1);
+  std::bernoulli_distribution rarely(0.2);
+  std::array<double, numbers_of<SituationOf>> numbers;
+  for (double& x : numbers) x = rarely(random) ? 0.0 : about(random);
+  auto s = std::bit_cast<SituationOf<double>>(numbers);
+  for (double* positive :
+       {&s.pair.stiffness, &s.pair.area, &s.overlap.volume, &s.mobility.a.mass,
+        &s.mobility.a.turning.xx, &s.mobility.a.turning.yy, &s.mobility.a.turning.zz})
+    *positive = std::abs(*positive) + 0.1;
+  for (double* not_negative :
+       {&s.pair.friction, &s.overlap.patch.area, &s.overlap.patch.uu, &s.overlap.patch.vv,
+        &s.overlap.patch.reach, &s.memory.plastic, &s.memory.springs.stiffness,
+        &s.memory.twist.stiffness, &s.mobility.b.mass})
+    *not_negative = std::abs(*not_negative);
+  s.mobility.a.turning.xy = s.mobility.a.turning.xz = s.mobility.a.turning.yz = 0;
+  s.mobility.b.turning = {};
+  if (rarely(random)) s.overlap.area = {};
+  s.pair.half_space = 0;
+  for (double* yes_or_no : {&s.touched, &s.newly_eligible}) *yes_or_no = rarely(random) ? 1 : 0;
+  return s;
+}
+
+/// Contacts in lanes have the bits of each alone, for both laws and with every term.
+TEST(ContactLaw, LanesAreTheScalarForm) {
+  std::mt19937_64 random(1);
+  for (const ContactLaw word : {ContactLaw::overlap, ContactLaw::potential}) {
+    const ContactLaws law = law_of(
+        {.law = word, .damping_ratio = 0.3, .plastic_limit = {.pressure = 0.3, .exponent = 0.5}});
+    for (int k = 0; k < 2000; ++k) {
+      std::array<SituationOf<double>, lanes> alone;
+      for (auto& s : alone) s = at_random(random);
+      const auto together = gathered<SituationOf>([&](std::size_t lane) { return &alone[lane]; });
+      std::visit(
+          [&](const auto& of) {
+            const OutcomeOf<Lanes> all(of, together);
+            for (std::size_t lane = 0; lane < lanes; ++lane) {
+              using Bits = std::array<std::uint64_t, numbers_of<OutcomeOf>>;
+              const OutcomeOf<double> one(of, alone[lane]);
+              ASSERT_EQ(std::bit_cast<Bits>(one_lane<OutcomeOf>(all, lane)),
+                        std::bit_cast<Bits>(one))
+                  << k << " " << lane;
+            }
+          },
+          law);
+    }
+  }
 }
 
 }  // namespace

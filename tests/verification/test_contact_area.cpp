@@ -231,11 +231,12 @@ TEST(ContactArea, BlockTurnsWithATurntable) {
 
 /// Coulomb's limit on slip and spin together lies on an ellipse.
 TEST(ContactArea, SlipAndSpinShareTheLimit) {
-  const Friction both = within({.force = {30, 40, 0}, .couple = 30}, 10, 2);
+  const Friction over{.force = {30, 40, 0}, .couple = 30}, under{.force = {3, 4, 0}, .couple = 3};
+  const Friction both = within(over, 10.0, 2.0);
   EXPECT_NEAR(std::pow(length(both.force) / 10, 2) + std::pow(both.couple / 20, 2), 1, 1e-12);
   EXPECT_NEAR(both.couple / both.force.x, 1, 1e-12);
-  EXPECT_EQ(within({.force = {3, 4, 0}, .couple = 3}, 10, 2).couple, 3);
-  EXPECT_EQ(within({.force = {3, 4, 0}, .couple = 3}, 0, 2).force.x, 0);
+  EXPECT_EQ(within(under, 10.0, 2.0).couple, 3);
+  EXPECT_EQ(within(under, 0.0, 2.0).force.x, 0);
 }
 
 /// Five blocks on a slope of 0, 1 and 2 degrees that are let go come to rest.
