@@ -276,15 +276,20 @@ class Runs(EnsembleTest):
     def test_limits_and_requests_to_stop(self):
         """A run that takes too long, and all when the ensemble is asked to stop, write checkpoints;
         the same command goes on."""
-        self.spec("options: {time_end: 1e5, limit_frames: 1e12, limit_disk: 1e12}\n"
-                  "limit: {run: 0.4}\nseeds: 1\n")
-        _, said = self.ensemble(code=3)
-        self.assertIn("stopped: s001: by limit: run", said)
-        row, = self.table()
-        self.assertEqual((row["status"], row["message"]), ("stopped", "by limit: run"))
-        self.assertTrue((self.folder / "out/ensemble_e/runs/s001/checkpoint.h5").exists())
-        self.ensemble(code=3)
-        again, = self.table()
+        for k, limit in enumerate((0.4, 2, 10, 50, 250)):  # [s], until steps are reached in time
+            name = f"e{k}"
+            self.spec("options: {time_end: 1e5, limit_frames: 1e12, limit_disk: 1e12}\n"
+                      f"limit: {{run: {limit}}}\nseeds: 1\n", name)
+            _, said = self.ensemble(name=name, code=3)
+            self.assertIn("stopped: s001: by limit: run", said)
+            row, = self.table(f"out/ensemble_{name}")
+            self.assertEqual((row["status"], row["message"]), ("stopped", "by limit: run"))
+            if (self.folder / f"out/ensemble_{name}/runs/s001/checkpoint.h5").exists():
+                break
+        else:
+            self.fail("no checkpoint, whatever the limit")
+        self.ensemble(name=name, code=3)
+        again, = self.table(f"out/ensemble_{name}")
         self.assertGreater(float(again["time"]), float(row["time"]))
         self.spec("options: {time_end: 1e5, limit_frames: 1e12, limit_disk: 1e12}\nseeds: 2\n",
                   "two")
