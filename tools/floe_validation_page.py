@@ -57,6 +57,8 @@ def published(line):
     if line.allowed is None:
         return ""
     low, high = line.allowed
+    if line.published is None:
+        return f"{low:.3g} to {high:.3g}"
     text = number(line.published, line.unit)
     return text if low == high else f"{text} ({low:.3g} to {high:.3g})"
 
@@ -86,17 +88,17 @@ def picture(found, path):
     colours = plt.rcParams["axes.prop_cycle"].by_key()["color"]
     for k, (label, x, y, band, kind) in enumerate(found.series):
         if kind == "line":
-            axis.plot(x, y, linewidth=1, color=colours[k % 10], label=label or None)
+            axis.plot(x, y, ["-", "--", ":"][k % 3] if label else "-", linewidth=1.2,
+                      color=colours[k % 10], label=label or None)
         else:
             axis.errorbar(x, y, band, fmt=markers[k % 8], markersize=4, capsize=2, linewidth=1,
                           color=colours[k % 10], label=label or None)
-    if found.log:
-        axis.set(xscale="log", yscale="log")
-        for ax, values in ((axis.xaxis, [v for s in found.series for v in s[1]]),
-                           (axis.yaxis, [v for s in found.series for v in s[2]])):
-            low, high = min(values), max(values)
+    for which, column, ax in (("x", 1, axis.xaxis), ("y", 2, axis.yaxis)):
+        if which in found.log:
+            axis.set(**{f"{which}scale": "log"})
+            values = [value for one in found.series for value in one[column]]
             ticks = [m * 10.0**e for e in range(-6, 9) for m in (1, 2, 5)]
-            ticks = [t for t in ticks if 0.7 * low <= t <= 1.4 * high]
+            ticks = [t for t in ticks if 0.7 * min(values) <= t <= 1.4 * max(values)]
             ax.set_ticks(ticks, [f"{t:g}" for t in ticks])
             ax.set_minor_locator(matplotlib.ticker.NullLocator())
     axis.set(xlabel=found.x, ylabel=found.y)
