@@ -555,8 +555,8 @@ def scatter(runs, settings):
     found = {}
     for point in settings["points"]:
         drawn = points.get(point, [])
-        if len(drawn) < 3:
-            raise BadInput(f"fewer than 3 runs of {point} are finished")
+        if len(drawn) < 5:
+            raise BadInput(f"fewer than 5 runs of {point} are finished")
         records = [low_passed(run, settings["obstacle"], settings)[0] for run in drawn]
         found[point] = {"mean": np.array([record.mean() for record in records]),
                         "peak": np.array([record.max() for record in records])}
@@ -571,8 +571,10 @@ def scatter(runs, settings):
     for what in ("mean", "peak"):
         drawn = [generator.choice(values, (DRAWS, len(values)))
                  for values in (found[one][what], found[other][what])]
-        ends = np.quantile(np.log(variation(drawn[1]) / variation(drawn[0])),
-                           [0.5 - LEVEL / 2, 0.5 + LEVEL / 2])
+        drawn = np.array([variation(one) for one in drawn])
+        drawn = drawn[:, np.all(drawn > 0, axis=0)]  # without draws of one run only
+        ends = np.quantile(np.log(drawn[1] / drawn[0]), [0.5 - LEVEL / 2,
+                                                         0.5 + LEVEL / 2])
         ratio = variation(found[other][what]) / variation(found[one][what])
         for point in settings["points"]:
             line = Line(f"{what}, {point}: variation over seeds", [variation(found[point][what])])
