@@ -291,9 +291,9 @@ inline constexpr std::size_t numbers_of = sizeof(Struct<double>) / sizeof(double
 /// Returns struct a where the mask is true, else b.
 template <template <class> class Struct, class T>
 Struct<T> chosen_of(const MaskOf<T>& mask, const Struct<T>& a, const Struct<T>& b) {
-  using Numbers = std::array<T, sizeof(Struct<T>) / sizeof(T)>;
-  const auto from = std::bit_cast<Numbers>(a);
-  auto to = std::bit_cast<Numbers>(b);
+  using Members = std::array<T, sizeof(Struct<T>) / sizeof(T)>;
+  const auto from = std::bit_cast<Members>(a);
+  auto to = std::bit_cast<Members>(b);
   for (std::size_t k = 0; k < to.size(); ++k) to[k] = chosen(mask, from[k], to[k]);
   return std::bit_cast<Struct<T>>(to);
 }
