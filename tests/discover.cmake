@@ -1,12 +1,14 @@
 # Run by ctest before it looks at its tests: adds an entry for each case of the GoogleTest programs
-# for several ranks, at 1, 2 and 3 ranks (some at 4), and for each case of the Python tests. What is
-# set here comes from CMakeLists.txt: source, mpi_tests (folder and program, by a blank), mpiexec,
-# environment, floe, hangs [s].
+# for several ranks, at 1 and 2 ranks, in the long form at 3 as well (some at one more), and for each
+# case of the Python tests. What is set here comes from CMakeLists.txt: source, mpi_tests (folder and
+# program, by a blank), mpiexec, environment, floe, hangs [s].
 
 # Long forms take long. (CMake's own function, which comes first, leaves the names of its tests in
 # PROGRAM_TESTS.)
+set(most_ranks 2)
 if("$ENV{FLOE_FULL}")
   set(hangs 36000)
+  set(most_ranks 3)
   foreach(test IN LISTS unit_tests_TESTS verification_tests_TESTS)
     set_tests_properties(${test} PROPERTIES TIMEOUT ${hangs})
   endforeach()
@@ -17,7 +19,7 @@ foreach(test IN LISTS mpi_tests)
   set(folder ${CMAKE_MATCH_1})
   set(program ${CMAKE_MATCH_2})
   if(NOT EXISTS ${program})
-    foreach(ranks 1 2 3)
+    foreach(ranks RANGE 1 ${most_ranks})
       add_test(${folder}.np${ranks}_NOT_BUILT ${program})
     endforeach()
     continue()
@@ -29,11 +31,11 @@ foreach(test IN LISTS mpi_tests)
   foreach(line IN LISTS listed)
     if(line MATCHES "^  (.+)$")
       set(case ${CMAKE_MATCH_1})
-      set(all_ranks 1 2 3)
+      set(most ${most_ranks})
       if(suite MATCHES "^OnOneRank")
-        list(APPEND all_ranks 4)
+        math(EXPR most "${most} + 1")
       endif()
-      foreach(ranks IN LISTS all_ranks)
+      foreach(ranks RANGE 1 ${most})
         set(name ${folder}.np${ranks}.${suite}${case})
         add_test(${name} ${mpiexec} -n ${ranks} ${program} --gtest_filter=${suite}${case})
         set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks} TIMEOUT ${hangs}

@@ -43,8 +43,13 @@ class BadInput(unittest.TestCase):
     maxDiff = None
 
     @classmethod
-    def case(cls, name, words, part, prepare, ranks=(1, 2)):
-        """Adds a test: floe with `words`, in a folder that `prepare(folder)` fills, says `part`."""
+    def case(cls, name, words, part, prepare, ranks=None):
+        """Adds a test: floe with `words`, in a folder that `prepare(folder)` fills, says `part`. It
+        runs on 1 and 2 ranks; in the short form, most run on 1 rank only: a launcher takes longer
+        than floe."""
+        if ranks is None:
+            ranks = (1, 2) if launch.in_short_form(name, 5) else (1,)
+
         def test(self):
             for n in ranks:
                 with self.subTest(ranks=n), tempfile.TemporaryDirectory() as folder:

@@ -10,6 +10,7 @@ import resource
 import subprocess
 import tempfile
 import unittest
+import zlib
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -19,6 +20,13 @@ FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 # end as well: the step divides it.
 ENDLESS = ("-time_end", "1e5", "-limit_frames", "1e12", "-limit_disk", "1e12")
 FULL = os.environ.get("FLOE_FULL", "0") not in ("", "0")  # the long forms
+
+
+def in_short_form(name, part):
+    """Whether one of many cases like each other is in the short form, which has one of `part` of
+    them, always the same ones."""
+    return FULL or zlib.crc32(name.encode()) % part == 0
+
 
 # What tools/env exports. Of a build with sanitizers: MPI and PETSc keep what they have until the
 # process ends, and what is too large is refused as by any allocator.
