@@ -22,7 +22,7 @@ from floe_program import BadInput, reading
 MITRE = 2  # shapely's number of this style of joins
 PLACED_MOST, CELLS_MOST = 80.0, 95.0  # concentrations [%]
 FLOES_MOST = 200000
-STEPS = 4000
+STEPS = 2000
 LEAST_CELLS = 5
 EDGES = 32  # of an outline: along normals of its longest ones it is known to be apart from another
 ASPECT = 1.8  # largest of random polygons
@@ -101,7 +101,7 @@ class Field:
     def __post_init__(self):
         diameter = np.array([calliper(polygon) for polygon in self.polygons])
         order = np.argsort(-diameter, kind="stable")
-        self.diameter, self.polygons = diameter[order], [self.polygons[k] for k in order]
+        self.diameter, self.polygons = diameter[order], [orient(self.polygons[k]) for k in order]
         self.area = np.array([polygon.area for polygon in self.polygons])
         self.centroid = np.array([polygon.centroid.coords[0] for polygon in self.polygons])
         self.gap = least_gap(self.polygons, self.centroid)
@@ -164,8 +164,8 @@ class Random:
 
 
 class Outlines:
-    """Outer rings of the polygons of a GeoJSON file, each as often as another; simplified by at most
-    `tolerance` times the diameter."""
+    """Outer rings of the polygons of a GeoJSON file, each as often as another; simplified by at
+    most `tolerance` times the diameter."""
 
     def __init__(self, path, tolerance):
         self.polygons = []
@@ -292,7 +292,7 @@ def place(water, concentration, law, shapes, gap, random):
     pool, _ = shapes.draw(np.random.default_rng(0), 1000)
     form = np.mean([polygon.area for polygon in pool])
     sizes, factor, pool, kind = enough(law, random, wanted, form, shapes)
-    check_largest(water, sizes[0])
+    check_largest(water, sizes[0] / factor)
     # Of polygons that belong to one floe each, those of floes only.
     used, kind = np.unique(kind, return_inverse=True)
     pool = [pool[k] for k in used]
@@ -303,7 +303,7 @@ def place(water, concentration, law, shapes, gap, random):
     # Discs first: they spread evenly, at less cost.
     radius = np.sqrt(hulls / np.pi * min(1, 0.78 * water.open.area / hulls.sum()))
     discs = packing.Packing(packing.Bodies(radius), x, turn, walls, water.obstacles, gap)
-    discs.relax(STEPS // 4)
+    discs.relax(STEPS // 2)
     normals = [normals_of(polygon) for polygon in pool]
     most = max(map(len, normals))
     bodies = packing.Bodies(
@@ -370,7 +370,7 @@ def tessellate(water, concentration, law, gap, random):
     if len(sizes) < LEAST_CELLS:
         raise BadInput(f"--sizes: the region holds {len(sizes)} floes of these sizes, at least "
                        f"{LEAST_CELLS} are needed")
-    check_largest(water, sizes[0])
+    check_largest(water, sizes[0] / factor)
     diagram = cells(water.region, sizes, random)
     polygons = [Polygon(corners) for corners in diagram.cells()]
     smallest = (diagram.perimeter.min() / np.pi) / 2

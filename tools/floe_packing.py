@@ -98,7 +98,7 @@ def near_pairs(x, reach):
 
 
 class Packing:
-    """Bodies at x n x 2, turned by `turn` n [rad]; at least `gap` [m] apart once `relax` is done."""
+    """Bodies at x n x 2, turned by `turn` n [rad]; at least `gap` [m] apart after `relax`."""
 
     def __init__(self, bodies, x, turn, box, obstacles, gap):
         self.bodies, self.x, self.turn = bodies, x.copy(), turn.copy()
@@ -169,7 +169,8 @@ class Packing:
         near = np.flatnonzero(np.einsum("ab,ab->a", d, d) < (self.reach[i] + self.reach[j])**2)
         if self.discs:
             i, j, d = i[near], j[near], d[near]
-            return i, j, np.arctan2(d[:, 1], d[:, 0]), self.reach[i] + self.reach[j] - np.hypot(*d.T)
+            depth = self.reach[i] + self.reach[j] - np.hypot(*d.T)
+            return i, j, np.arctan2(d[:, 1], d[:, 0]), depth
         # Most are still separated by what separated them before. Of the others the axis that has
         # been best is taken again but in every SEARCH-th step: any axis shows too much overlap, not
         # too little.

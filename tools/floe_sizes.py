@@ -28,10 +28,11 @@ def power_exponent(sizes, least, largest):
     def slope(a):
         return 1 / a - span / np.expm1(a * span) - mean
     low, high = 1e-3, 50.0
-    if slope(low) <= 0 or slope(high) >= 0:
-        return None
-    a = brentq(slope, low, high)
-    information = 1 / a**2 - (span / (2 * np.sinh(a * span / 2)))**2
+    with np.errstate(over="ignore"):  # of wide laws: over infinity is the 0 that it should be
+        if slope(low) <= 0 or slope(high) >= 0:
+            return None
+        a = brentq(slope, low, high)
+        information = 1 / a**2 - (span / (2 * np.sinh(a * span / 2)))**2
     return a, 1 / np.sqrt(len(sizes) * information)
 
 
