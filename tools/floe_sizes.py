@@ -1,9 +1,10 @@
 """Laws of floe sizes and thicknesses: drawn from a generator, and fitted to what was drawn.
 
 A floe's size is its mean calliper diameter d [m], its width averaged over all directions: the
-perimeter of its convex hull over pi (Cauchy's formula). Rothrock & Thorndike (1984), J. Geophys.
-Res. 89(C4), 6477-6486, found that the number of floes with a diameter above d falls as d^-a in
-summer pack ice, a = 1.7 to 2.5.
+perimeter of its convex hull over pi (Cauchy's formula); as of Rothrock & Thorndike (1984), J.
+Geophys. Res. 89(C4), 6477-6486. Denton & Timmermans (2022), The Cryosphere 16, 1563-1578, found
+densities of floe areas that fall with exponents of 1.65 to 2.03: the number of floes with a
+diameter above d falls as d^-a, a = 1.3 to 2.1.
 """
 import argparse
 from dataclasses import dataclass
