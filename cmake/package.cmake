@@ -26,10 +26,10 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS
     "python3:any, python3-h5py, python3-matplotlib, python3-numpy, python3-pil, python3-yaml")
 # Without mpiexec there are runs on one process; on the reference BLAS they are about five times
 # slower.
-# floe loads needs scipy and pandas, floe netcdf the rest.
+# floe loads needs scipy and pandas, floe make_floes scipy and shapely, floe netcdf the rest.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
     "openmpi-bin, libopenblas0-serial | libopenblas0, python3-scipy, python3-pandas, \
-python3-xarray, python3-netcdf4, python3-dask")
+python3-xarray, python3-netcdf4, python3-dask, python3-shapely")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS
     "libfloe-dev, python3-paraview, xvfb, xauth, libgl1-mesa-dri, ffmpeg")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/cmake/debian/postinst

@@ -27,6 +27,7 @@ constexpr std::array table{
     Subcommand{"report", "one HTML file of a run or an ensemble, with its scene to turn and play"},
     Subcommand{"render", "pictures and films of a run in space (needs ParaView)"},
     Subcommand{"make_lattice", "writes lattices of one's own: frames, regular sheets, blocks"},
+    Subcommand{"make_floes", "makes fields of floes: concentration, sizes, shapes, leads"},
     Subcommand{"strength", "the strength of whole sheets over that of their beams"},
     Subcommand{"ensemble", "runs a scene many times: seeds, and parameters that are varied"},
     Subcommand{"campaign", "all sheets and tests of the paper"},

@@ -124,6 +124,13 @@ class ToolsBadInput(unittest.TestCase):
         self.refused("make_lattice", "rubble", "--columns", "0", "1", "1", "x.h5")
         self.assertFalse((self.folder / "x.h5").exists())
 
+    def test_fields_of_floes(self):
+        """More of it in test_make_floes.py."""
+        self.refused("make_floes", part="FILE.geojson")
+        self.refused("make_floes", "x.geojson", "--region", "0", "0", "9", "9", "--sizes", "one:1",
+                     "--concentration", "96", part="96 is not within 20 to 95")
+        self.assertFalse((self.folder / "x.geojson").exists())
+
 
 if __name__ == "__main__":
     unittest.main()
