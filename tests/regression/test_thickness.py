@@ -107,7 +107,7 @@ contact: {young: 1e8, friction: 0.2, restitution: 0.3}
 obstacle: {names: [slope], slope: {shape: halfspace, point: [9, 0, 0], normal: [-1, 0, 1]}}
 boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [1, 0, 0], ramp: 0.1}}
 time: {end: 2.5}
-checkpoint: {every: 500}
+checkpoint: {every: 1000}
 """
 
 
@@ -138,7 +138,7 @@ class Thickness(FolderTest):
         out = self.folder / "out/scene"
         x = lattice(out)["bodies/position"]
         found = -last_frame(out)["bodies_displacement"][:, 2]
-        n = 48
+        n = 45  # elements end where the load does
         axis = np.linspace(-SIDE / 2, SIDE / 2, n + 1)
 
         def expected(height):
@@ -168,7 +168,6 @@ class Thickness(FolderTest):
         """Mean, deviation and correlation are those asked for, whatever the mesh."""
         large = FIELD.replace("length: 40, width: 30, element_size: 2",
                               "length: 240, width: 120, element_size: 2, iterations: 5")
-        self.run_scene(large, "-check")
         sizes = {}
         for size in (2, 3):
             self.run_scene(large, "-sheet_element_size", str(size), name=f"s{size}")
@@ -221,7 +220,6 @@ class Thickness(FolderTest):
     def test_breaks_the_same_on_ranks_and_after_restarts(self):
         self.run_scene(BREAKS, name="one")
         self.run_scene(BREAKS, name="two", ranks=2)
-        self.run_scene(BREAKS, "-time_end", "1.2", "-time_dt", self.step("one"), name="part")
         one = last_frame(self.folder / "out/one")
         for key, values in last_frame(self.folder / "out/two").items():
             np.testing.assert_array_equal(values, one[key], key)
@@ -229,14 +227,12 @@ class Thickness(FolderTest):
         self.assertGreater(rows["beams_broken"][-1], 3)
         work = rows["energy_boundary"][-1]
         self.assertLess(abs(rows["energy_balance_error"][-1]), 1e-3 * abs(work))
-        checkpoint = sorted((self.folder / "out/one").glob("checkpoint*"))[-1]
-        self.run_scene(BREAKS, "-checkpoint_restart", str(checkpoint), name="again")
-        again = last_frame(self.folder / "out/again")
-        for key, values in again.items():
+        steps = json.loads((self.folder / "out/one/summary.json").read_text())["steps"]
+        self.run_scene(BREAKS, "-ts_max_steps", str(steps // 2), name="part")
+        done = launch.run("-checkpoint_restart", "out/part/checkpoint.h5", cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for key, values in last_frame(self.folder / "out/part").items():
             np.testing.assert_array_equal(values, one[key], key)
-
-    def step(self, name):
-        return repr(json.loads((self.folder / f"out/{name}/summary.json").read_text())["dt"])
 
 
 class Refused(BadInput):

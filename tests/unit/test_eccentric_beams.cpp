@@ -10,6 +10,7 @@
 #include "beams/spatial_lanes.h"
 #include "floe/base/item.h"
 #include "lattice/partition.h"
+#include "support/force_checks.h"
 #include "support/frames.h"
 #include "support/lattices.h"
 #include "support/random.h"
@@ -178,8 +179,8 @@ void check_derivatives() {
       EXPECT_NEAR(g[column], (energy(more) - energy(less)) / (2 * step), 1e-8);
       const auto up = gradient<kinematics>(c, more), down = gradient<kinematics>(c, less);
       for (std::size_t row = 0; row < 12; ++row) {
-        EXPECT_NEAR(item(k, 12 * row + column), (up[row] - down[row]) / (2 * step), 1e-7);
-        EXPECT_NEAR(item(h, 12 * row + column), item(h, 12 * column + row), 1e-12);
+        EXPECT_NEAR(k[12 * row + column], (up[row] - down[row]) / (2 * step), 1e-7);
+        EXPECT_NEAR(h[12 * row + column], h[12 * column + row], 1e-12);
       }
     }
     // Dashpots: linear in the velocities.
@@ -195,8 +196,7 @@ void check_derivatives() {
       const std::array<double, 12> all{-f.force.x,   -f.force.y,   -f.force.z,   f.moment_i.x,
                                        f.moment_i.y, f.moment_i.z, f.force.x,    f.force.y,
                                        f.force.z,    f.moment_j.x, f.moment_j.y, f.moment_j.z};
-      for (std::size_t row = 0; row < 12; ++row)
-        EXPECT_NEAR(item(b, 12 * row + column), all[row], 1e-12);
+      for (std::size_t row = 0; row < 12; ++row) EXPECT_NEAR(b[12 * row + column], all[row], 1e-12);
     }
   }
 }
