@@ -105,7 +105,7 @@ class Lattice:
 
     position n x 3 [m]; orientation n x 4; mass n [kg]; inertia n x 3, principal [kg m^2];
     bodies m x 2, first < second, sorted; axis_y m x 3; beam: {name of BEAM_SCALARS: m}; sets {name:
-    indices}.
+    indices}; offsets m x 6 [m]: ends of beams from the centroids of their bodies, or None.
     """
     position: np.ndarray
     orientation: np.ndarray
@@ -116,6 +116,7 @@ class Lattice:
     beam: dict = field(default_factory=lambda: {name: np.zeros(0) for name in BEAM_SCALARS})
     sets: dict = field(default_factory=dict)
     shapes: Shapes | None = None
+    offsets: np.ndarray | None = None
 
     def check(self):
         """Raises ValueError with what is wrong, if anything is."""
@@ -124,6 +125,8 @@ class Lattice:
                   ("mass", self.mass, (n,)), ("inertia", self.inertia, (n, 3)),
                   ("bodies", self.bodies, (m, 2)), ("axis_y", self.axis_y, (m, 3))]
         shapes += [(name, self.beam[name], (m,)) for name in BEAM_SCALARS]
+        if self.offsets is not None:
+            shapes.append(("offsets", self.offsets, (m, 6)))
         for name, array, shape in shapes:
             if np.shape(array) != shape:
                 raise ValueError(f"{name}: shape {np.shape(array)}, expected {shape}")
@@ -157,6 +160,8 @@ class Lattice:
                 out["beams/axis_y"] = np.asarray(self.axis_y, float)
                 for name in BEAM_SCALARS:
                     out[f"beams/{name}"] = np.asarray(self.beam[name], float)
+                if self.offsets is not None:
+                    out["beams/offsets"] = np.asarray(self.offsets, float)
             for name, members in self.sets.items():
                 out[f"sets/{name}"] = np.asarray(sorted(members), np.int32)
             if self.shapes is not None:

@@ -51,6 +51,15 @@ struct Initial {
   Point3 angular_velocity{};  ///< [rad/s]
 };
 
+/// How the thickness of a sheet varies over its plan.
+struct ThicknessField {
+  std::string file;                     ///< a grid; empty: none
+  double deviation = 0;                 ///< standard deviation of a random field [m]; 0: none
+  std::array<double, 2> correlation{};  ///< its correlation lengths in x and y [m]
+  std::uint64_t seed = 1;
+  bool varies() const { return !file.empty() || deviation > 0; }
+};
+
 /// The input of a run.
 struct Scene {
   std::string path;  ///< the scene file
@@ -66,7 +75,8 @@ struct Scene {
   SheetPlan sheet;
   bool fit_cuts = true;   ///< whether the sheet's cells end on the lines of cuts
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
-  double thickness = 1;   ///< of the sheet [m]
+  double thickness = 1;   ///< of the sheet [m]; the mean of a random field
+  ThicknessField thickness_field;
   Ice ice;
   double shear_factor = 5.0 / 6.0;
   Torsion torsion = Torsion::saint_venant;

@@ -19,6 +19,7 @@ std::unique_ptr<BeamForce<Space>> make(const Part& part, const BeamOptions& opti
   if constexpr (std::is_same_v<Space, Planar>) {
     return make<PlanarLanes<kinematics>>(part, options);
   } else {
+    if (any_eccentric(part)) return make<SpatialLanes<kinematics, EccentricFrame>>(part, options);
     if (all_flat(part)) return make<SpatialLanes<kinematics, FlatFrame>>(part, options);
     return make<SpatialLanes<kinematics, AnyFrame>>(part, options);
   }
@@ -29,7 +30,8 @@ std::unique_ptr<BeamForce<Space>> make(const Part& part, const BeamOptions& opti
 Triad<double> beam_triad(const Bodies& bodies, const Beams& beams, std::int32_t m) {
   const auto k = static_cast<std::size_t>(m);
   const auto [i, j] = beams.bodies[k];
-  const Vec3<double> e0 = item(bodies.position, j) - item(bodies.position, i);
+  const Vec3<double> e0 = (item(bodies.position, j) + offset(beams, m, 1)) -
+                          (item(bodies.position, i) + offset(beams, m, 0));
   const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
   const Vec3<double>& axis = beams.axis_y[k];
   Vec3<double> e2 = axis - dot(axis, e1) * e1;

@@ -19,6 +19,10 @@
 ///
 /// With x = |b - a|^2/4 = sin^2(phi/4):  |a + b|^2 = 4 (1 - x), |tau|^2 = x/(1 - x). With
 /// g = (phi/2)/sin(phi/2):  psi = 4 g (1 - x) tau. tau and m have their vector parts in T.
+///
+/// An eccentric beam joins points of the bodies at o_i, o_j from their centroids at rest. These
+/// arms turn with the bodies, a = R o: d is T^T (u_j + a_j - o_j - u_i - a_i + o_i), and a force f
+/// on the end of an arm is the force f and the moment a x f on the body (model.md, "Beam").
 #pragma once
 
 #include <array>
@@ -46,6 +50,22 @@ struct AnyFrame {
             T(T(e1.y * v.x) + T(e2.y * v.y)) + T(e3.y * v.z),
             T(T(e1.z * v.x) + T(e2.z * v.y)) + T(e3.z * v.z)};
   }
+};
+/// The triad of an eccentric beam, and the offsets of its ends.
+template <class C>
+struct EccentricFrame : AnyFrame<C> {
+  Vec3<C> offset_i, offset_j;  ///< from the centroids, at rest, world axes [m]
+};
+/// The frame that holds, with doubles, what lanes of beams of a frame are computed by one by one.
+template <template <class> class Frame>
+struct ScalarFrame {
+  template <class C>
+  using Type = AnyFrame<C>;
+};
+template <>
+struct ScalarFrame<EccentricFrame> {
+  template <class C>
+  using Type = EccentricFrame<C>;
 };
 /// A triad with e3 along z and e1 = (c, s, 0), as every beam of a sheet has. It has fewer numbers
 /// to load and to multiply.
@@ -82,6 +102,7 @@ struct BeamStrains {
   Vec3<T> e;                  ///< the chord in the triad at rest [m]
   Vec3<T> tau;                ///< tan(phi/4) about the axis of the relative rotation
   T g, h;                     ///< g; h = (1 - g)/|tau|^2
+  Vec3<T> arm_i, arm_j;       ///< a of eccentric beams, world axes [m]; of others undefined
 };
 
 /// Derivative of U with respect to u_j (= minus that to u_i) [N] and to the spins of i and j [N m].
@@ -353,27 +374,55 @@ BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stre
           beam.rest.to_world(half + c)};
 }
 
+/// What the end of an arm moves by as its body turns: (R - 1) o, or in linear kinematics the
+/// rotation vector times o.
+/// \param q  rotation of the body from rest, or its linearised quaternion
+template <Kinematics kinematics, class T, class C>
+Vec3<T> move_of_end(const Quat<T>& q, const Vec3<C>& o) {
+  const Vec3<T> offset{T(o.x), T(o.y), T(o.z)}, axis{q.x, q.y, q.z};
+  const Vec3<T> turn = cross(axis, offset) + cross(axis, offset);
+  if constexpr (kinematics == Kinematics::linear) return turn;
+  return q.w * turn + cross(axis, turn);
+}
+
 /// The kernel for one choice of kinematics, which is made outside the loop over beams.
 template <Kinematics kinematics>
 struct BeamKernel {
   static constexpr bool is_linear = kinematics == Kinematics::linear;
+  template <class Constants>
+  static constexpr bool is_eccentric = requires(const Constants& c) {
+    c.rest.offset_i;
+  };
+
   template <class T, class Constants>
   static BeamStrains<T> strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
                                 const Quat<T>& qj) {
-    if constexpr (kinematics == Kinematics::linear) {
-      return linear_strains(beam, d, qi, qj);
+    if constexpr (is_eccentric<Constants>) {
+      const auto &oi = beam.rest.offset_i, &oj = beam.rest.offset_j;
+      const Vec3<T> i = move_of_end<kinematics>(qi, oi), j = move_of_end<kinematics>(qj, oj);
+      BeamStrains<T> s = centric_strains(beam, Vec3<T>(d + (j - i)), qi, qj);
+      s.arm_i = {T(oi.x), T(oi.y), T(oi.z)}, s.arm_j = {T(oj.x), T(oj.y), T(oj.z)};
+      if constexpr (!is_linear) s.arm_i = s.arm_i + i, s.arm_j = s.arm_j + j;
+      return s;
     } else {
-      return corotational_strains(beam, d, qi, qj);
+      return centric_strains(beam, d, qi, qj);
     }
   }
   template <class T, class Constants>
   static BeamGradient<T> gradient(const Constants& beam, const BeamStrains<T>& s,
                                   const BeamStress<T>& stress) {
-    if constexpr (kinematics == Kinematics::linear) {
-      return linear_gradient(beam, stress);
-    } else {
-      return corotational_gradient(beam, s, stress);
+    BeamGradient<T> g = [&] {
+      if constexpr (is_linear) {
+        return linear_gradient(beam, stress);
+      } else {
+        return corotational_gradient(beam, s, stress);
+      }
+    }();
+    if constexpr (is_eccentric<Constants>) {
+      g.moment_i = g.moment_i - cross(s.arm_i, g.force);
+      g.moment_j = g.moment_j + cross(s.arm_j, g.force);
     }
+    return g;
   }
   template <class T, class Constants>
   static BeamGradient<T> gradient(const Constants& beam, const BeamStrains<T>& s) {
@@ -383,7 +432,29 @@ struct BeamKernel {
   static BeamStress<T> rates(const Constants& beam, const BeamStrains<T>& s,
                              const Vec3<T>& velocity, const Vec3<T>& spin_i,
                              const Vec3<T>& spin_j) {
-    if constexpr (kinematics == Kinematics::linear) {
+    if constexpr (is_eccentric<Constants>) {
+      const Vec3<T> between = cross(spin_j, s.arm_j) - cross(spin_i, s.arm_i);
+      return centric_rates(beam, s, Vec3<T>(velocity + between), spin_i, spin_j);
+    } else {
+      return centric_rates(beam, s, velocity, spin_i, spin_j);
+    }
+  }
+
+ private:
+  template <class T, class Constants>
+  static BeamStrains<T> centric_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
+                                        const Quat<T>& qj) {
+    if constexpr (is_linear) {
+      return linear_strains(beam, d, qi, qj);
+    } else {
+      return corotational_strains(beam, d, qi, qj);
+    }
+  }
+  template <class T, class Constants>
+  static BeamStress<T> centric_rates(const Constants& beam, const BeamStrains<T>& s,
+                                     const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                                     const Vec3<T>& spin_j) {
+    if constexpr (is_linear) {
       return linear_rates(beam, velocity, spin_i, spin_j);
     } else {
       return corotational_rates(beam, s, velocity, spin_i, spin_j);

@@ -31,17 +31,23 @@ void copy_lane(Values& to, std::size_t lane, const Values& from, std::size_t oth
 template <template <class> class Frame>
 struct alignas(64) BeamBlock {
   static constexpr std::size_t first = frame_size<Frame>;
+  using Scalar = BeamConstants<double, ScalarFrame<Frame>::template Type>;
   std::array<std::array<double, lanes>, first + 7> values;
   std::array<std::int32_t, lanes> i, j;  ///< local bodies
 
-  void set(std::size_t lane, const BeamConstants<double>& c) {
+  void set(std::size_t lane, const Scalar& c) {
     std::size_t k = 0;
     const auto put = [&](double value) { values[k++][lane] = value; };
-    const auto& [e1, e2, e3] = c.rest;
+    const AnyFrame<double>& rest = c.rest;
+    const auto& [e1, e2, e3] = rest;
     if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
       for (const double value : {e1.x, e1.y}) put(value);
     } else {
       for (const double value : {e1.x, e1.y, e1.z, e2.x, e2.y, e2.z, e3.x, e3.y, e3.z}) put(value);
+    }
+    if constexpr (is_eccentric) {
+      for (const Vec3<double>& o : {c.rest.offset_i, c.rest.offset_j})
+        for (const double value : {o.x, o.y, o.z}) put(value);
     }
     for (const double value : {c.l0, c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz}) put(value);
   }
@@ -51,29 +57,38 @@ struct alignas(64) BeamBlock {
     i[lane] = from.i[other];
     j[lane] = from.j[other];
   }
-  template <class C, template <class> class Any>
-  static BeamConstants<C, Any> with_frame(Any<C> frame, auto at) {
-    return {frame,         at(first),     at(first + 1), at(first + 2),
-            at(first + 3), at(first + 4), at(first + 5), at(first + 6)};
-  }
-  BeamConstants<double> get(std::size_t lane) const {
+  Scalar get(std::size_t lane) const {
     const auto at = [&](std::size_t k) { return values[k][lane]; };
-    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
+    if constexpr (is_flat) {
       return with_frame(AnyFrame<double>{{at(0), at(1), 0}, {-at(1), at(0), 0}, {0, 0, 1}}, at);
     } else {
-      return with_frame(
-          AnyFrame<double>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}},
-          at);
+      return with_frame(frame<double>(at), at);
     }
   }
   BeamConstants<Lanes, Frame> get() const {
     const auto at = [&](std::size_t k) { return load(values[k].data()); };
-    if constexpr (std::is_same_v<Frame<double>, FlatFrame<double>>) {
-      return with_frame(FlatFrame<Lanes>{at(0), at(1)}, at);
+    return with_frame(frame<Lanes>(at), at);
+  }
+
+ private:
+  static constexpr bool is_flat = std::is_same_v<Frame<double>, FlatFrame<double>>;
+  static constexpr bool is_eccentric = std::is_same_v<Frame<double>, EccentricFrame<double>>;
+
+  template <class C>
+  static Frame<C> frame(auto at) {
+    const auto three = [&](std::size_t k) { return Vec3<C>{at(k), at(k + 1), at(k + 2)}; };
+    if constexpr (is_flat) {
+      return {at(0), at(1)};
+    } else if constexpr (is_eccentric) {
+      return {{three(0), three(3), three(6)}, three(9), three(12)};
     } else {
-      return with_frame(
-          AnyFrame<Lanes>{{at(0), at(1), at(2)}, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}}, at);
+      return {three(0), three(3), three(6)};
     }
+  }
+  template <class C, template <class> class Any>
+  static BeamConstants<C, Any> with_frame(Any<C> frame, auto at) {
+    return {frame,         at(first),     at(first + 1), at(first + 2),
+            at(first + 3), at(first + 4), at(first + 5), at(first + 6)};
   }
 };
 

@@ -17,10 +17,11 @@ namespace floe {
 
 /// The kernel on spatial body records. Parameters i and j of its functions are the records of the
 /// two bodies.
-template <Kinematics kinematics>
+/// \tparam Frame  AnyFrame or EccentricFrame
+template <Kinematics kinematics, template <class> class Frame = AnyFrame>
 struct SpatialBeam {
   using Space = Spatial;
-  using Constants = BeamConstants<double>;
+  using Constants = BeamConstants<double, Frame>;
   using Dashpots = BeamDashpots;
   using Kernel = BeamKernel<kinematics>;
   static constexpr int n = Space::unknowns;
@@ -29,7 +30,11 @@ struct SpatialBeam {
   static Constants make(const Part& part, std::int32_t m, Shear shear) {
     Constants c{};
     const auto [e1, e2, e3] = beam_triad(part.bodies, part.beams, m);
-    c.rest = {e1, e2, e3};
+    c.rest.e1 = e1, c.rest.e2 = e2, c.rest.e3 = e3;
+    if constexpr (Kernel::template is_eccentric<Constants>) {
+      c.rest.offset_i = offset(part.beams, m, 0);
+      c.rest.offset_j = offset(part.beams, m, 1);
+    }
     c.l0 = item(part.beams.length, m);
     const BeamStiffness s = beam_stiffness(part.beams, m, shear);
     c.kn = s.kn, c.ksz = s.ksz, c.ksy = s.ksy, c.kt = s.kt, c.kby = s.kby, c.kbz = s.kbz;
@@ -38,7 +43,7 @@ struct SpatialBeam {
   /// Constants of a beam of unit length without stiffness, to fill up a block.
   static Constants none() {
     Constants c{};
-    c.rest = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    c.rest.e1 = {1, 0, 0}, c.rest.e2 = {0, 1, 0}, c.rest.e3 = {0, 0, 1};
     c.l0 = 1;
     return c;
   }

@@ -11,7 +11,7 @@ namespace floe {
 
 /// A spatial beam on body records, and in lanes.
 template <Kinematics kinematics, template <class> class Frame>
-struct SpatialLanes : SpatialBeam<kinematics> {
+struct SpatialLanes : SpatialBeam<kinematics, ScalarFrame<Frame>::template Type> {
   using Block = BeamBlock<Frame>;
   using DashpotBlock = floe::DashpotBlock;
   template <bool damped>
@@ -23,6 +23,11 @@ struct SpatialLanes : SpatialBeam<kinematics> {
 
 template <Kinematics kinematics, bool damped, template <class> class Frame>
 using SpatialBeams = LatticeBeams<SpatialLanes<kinematics, Frame>, damped>;
+
+/// Whether beams of any rank have offsets. Collective.
+inline bool any_eccentric(const Part& part) {
+  return !on_all_ranks(part.beams.offsets.empty(), part.comm);
+}
 
 /// Whether axis 3 of all beams of the lattice is z. Collective, since forces must not depend on
 /// how the bodies are distributed over ranks.

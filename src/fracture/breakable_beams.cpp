@@ -69,6 +69,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   using Base = SpatialBeams<kinematics, damped, Frame>;
   using Base::blocks_, Base::dashpots_, Base::part_, Base::constants, Base::for_each, Base::record;
   using typename Base::Pointwise;
+  using Constants = typename Base::Constants;
 
  public:
   BreakableBeams(const Part& part, const BeamOptions& beams, const FractureOptions& options,
@@ -502,8 +503,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     return {s.delta, s.gamma_y, s.gamma_z, s.psi};
   }
   /// Constants of beam m, softened by its damage at the present strains.
-  BeamConstants<double> present(std::int32_t m, const State<Spatial>& state) const {
-    BeamConstants<double> c = constants(m);
+  Constants present(std::int32_t m, const State<Spatial>& state) const {
+    Constants c = constants(m);
     if (const Crack* k = crack(m)) {
       const Softening left = softening(*k, strains(m, state));
       c.kn *= left.axial;
@@ -534,7 +535,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   [[gnu::noinline, gnu::cold]] Growth growth(std::int32_t m, double s, const State<Spatial>& state,
                                              bool at_tip = false) const {
     const auto [i, j] = item(part_.beams.bodies, m);
-    const BeamConstants<double> c = constants(m);
+    const Constants c = constants(m);
     const BeamStrains<double> e = strains(m, state);
     const BeamStress<double> strain = as_stress(e), force = elastic_stress(c, e);
     DamageEnergy energy = damage_energy(force, strain);
@@ -583,8 +584,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     return g;
   }
 
-  static BeamStress<double> rates(const BeamConstants<double>& c, const BeamStrains<double>& e,
-                                  const double* i, const double* j) {
+  static BeamStress<double> rates(const Constants& c, const BeamStrains<double>& e, const double* i,
+                                  const double* j) {
     const auto three = [](const double* r) { return Vec3<double>{r[0], r[1], r[2]}; };
     return BeamKernel<kinematics>::rates(
         c, e, three(j + Spatial::velocity) - three(i + Spatial::velocity),
@@ -663,7 +664,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if (c.broken()) {
       const std::size_t b = this->slot(c.beam) / lanes, lane = this->slot(c.beam) % lanes;
       BeamBlock<Frame>& block = blocks_[b];
-      BeamConstants<double> nothing = block.get(lane);
+      Constants nothing = block.get(lane);
       for (double* k :
            {&nothing.kn, &nothing.ksz, &nothing.ksy, &nothing.kt, &nothing.kby, &nothing.kbz})
         *k = 0;
@@ -835,15 +836,14 @@ BreakableForce make_with(const Part& part, const BeamOptions& beams,
 template <Kinematics kinematics>
 BreakableForce make_kinematic(const Part& part, const BeamOptions& beams,
                               const FractureOptions& fracture, Junctions junctions) {
-  const bool damped = beams.damping_ratio > 0;
-  if (all_flat(part))
-    return damped
-               ? make_with<kinematics, true, FlatFrame>(part, beams, fracture, std::move(junctions))
-               : make_with<kinematics, false, FlatFrame>(part, beams, fracture,
-                                                         std::move(junctions));
-  return damped
-             ? make_with<kinematics, true, AnyFrame>(part, beams, fracture, std::move(junctions))
-             : make_with<kinematics, false, AnyFrame>(part, beams, fracture, std::move(junctions));
+  const auto make = [&]<template <class> class Frame>() {
+    return beams.damping_ratio > 0
+               ? make_with<kinematics, true, Frame>(part, beams, fracture, std::move(junctions))
+               : make_with<kinematics, false, Frame>(part, beams, fracture, std::move(junctions));
+  };
+  if (any_eccentric(part)) return make.template operator()<EccentricFrame>();
+  if (all_flat(part)) return make.template operator()<FlatFrame>();
+  return make.template operator()<AnyFrame>();
 }
 
 }  // namespace

@@ -102,8 +102,9 @@ struct alignas(64) LimitBlock {
 /// sigma and their stiffnesses k_k; so tau^2, with the other forces. The criterion of pressed beams
 /// is at most (1 + <-sin phi>)^2 (p^2/4 + tau^2).
 /// \param further  null for Criterion::plain
-inline double overload_per_energy(const BeamConstants<double>& beam, const Strength<double>& s,
-                                  const FurtherStrength<double>* further, bool crushes) {
+template <class Constants>
+double overload_per_energy(const Constants& beam, const Strength<double>& s,
+                           const FurtherStrength<double>* further, bool crushes) {
   const double weight = further != nullptr ? further->transverse : 1;
   double sigma2 = s.axial * s.axial * beam.kn + s.bending_y * s.bending_y * beam.kby +
                   s.bending_z * s.bending_z * beam.kbz;

@@ -123,17 +123,31 @@ Bodies read_bodies(const Reader& in) {
   return b;
 }
 
+/// Ends at the centroids are no offsets: such beams are computed faster.
+void read_offsets(const Reader& in, Beams& beams) {
+  const auto rows = in.rows<std::array<double, 6>>("/beams/offsets", beams.bodies.size());
+  const auto nothing = [](const std::array<double, 6>& row) {
+    return std::all_of(row.begin(), row.end(), [](double x) { return x == 0; });
+  };
+  if (std::all_of(rows.begin(), rows.end(), nothing)) return;
+  for (const auto& [ix, iy, iz, jx, jy, jz] : rows)
+    beams.offsets.push_back({Point3{ix, iy, iz}, Point3{jx, jy, jz}});
+}
+
 void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
   const std::size_t m = beams.bodies.size();
   beams.length = in.scalars("/beams/length", m);
   beams.axis_y = in.rows<Point3>("/beams/axis_y", m);
   for (std::size_t k = 0; k < m; ++k) {
     const auto [a, b] = beams.bodies[k];
-    const Vec3<double> e = item(bodies.position, b) - item(bodies.position, a);
+    const auto beam = static_cast<std::int32_t>(k);
+    const Vec3<double> e = (item(bodies.position, b) + offset(beams, beam, 1)) -
+                           (item(bodies.position, a) + offset(beams, beam, 0));
     const double distance = std::sqrt(dot(e, e));
     if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
       in.refuse("/beams/length", "row " + std::to_string(k) + " is " + text_of(beams.length[k]) +
-                                     ", but its bodies are " + text_of(distance) + " m apart");
+                                     ", but its " + (beams.offsets.empty() ? "bodies" : "ends") +
+                                     " are " + text_of(distance) + " m apart");
     const Vec3<double>& y = beams.axis_y[k];
     const Vec3<double> normal = cross(e, y);
     if (std::abs(std::sqrt(dot(y, y)) - 1) > 1e-6 ||
@@ -187,6 +201,7 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
     beams.shear_factor_y = in.scalars("/beams/shear_factor_y", m);
   if (in.file().has("/beams/width")) beams.width = in.scalars("/beams/width", m);
   if (in.file().has("/beams/height")) beams.height = in.scalars("/beams/height", m);
+  if (in.file().has("/beams/offsets")) read_offsets(in, beams);
   read_axes(in, bodies, beams);
   return beams;
 }
@@ -345,6 +360,12 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
     file.write("/beams/axis_y", m.axis_y);
     if (!m.width.empty()) file.write("/beams/width", m.width);
     if (!m.height.empty()) file.write("/beams/height", m.height);
+    if (!m.offsets.empty()) {
+      std::vector<double> rows;
+      for (const auto& ends : m.offsets)
+        for (const Point3& o : ends) rows.insert(rows.end(), {o[0], o[1], o[2]});
+      file.write("/beams/offsets", std::span<const double>(rows), 6);
+    }
   }
   for (const auto& [name, set] : lattice.sets) {
     if (name != "all") file.write("/sets/" + name, set);

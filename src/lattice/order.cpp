@@ -68,6 +68,8 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
     if (i > j) {
       std::swap(i, j);
       lattice.beams.axis_y[m] = -lattice.beams.axis_y[m];
+      if (!lattice.beams.offsets.empty())
+        std::swap(lattice.beams.offsets[m][0], lattice.beams.offsets[m][1]);
     }
   }
   std::vector<std::int32_t> beams(lattice.beams.bodies.size());

@@ -55,10 +55,22 @@ void reserve(Lattice& lattice, std::size_t n, std::size_t corners, std::size_t m
   }
 }
 
-void append_beam(Beams& beams, const Bodies& bodies, const Facet& facet,
+/// Height and middle of the part that two side faces have in common.
+struct CommonFace {
+  double height, middle;
+};
+CommonFace common_face(double hi, double zi, double hj, double zj) {
+  if (hi == hj && zi == zj) return {hi, zi};
+  const double bottom = std::max(zi - hi / 2, zj - hj / 2),
+               top = std::min(zi + hi / 2, zj + hj / 2);
+  return {top - bottom, (top + bottom) / 2};
+}
+
+/// \param h  height of the facet
+void append_beam(Beams& beams, const Bodies& bodies, const Facet& facet, double h,
                  const SheetSection& section) {
   const auto [i, j] = facet.cells;
-  const double w = facet.width, h = section.thickness;
+  const double w = facet.width;
   const double x = bodies.position[j][0] - bodies.position[i][0];
   const double y = bodies.position[j][1] - bodies.position[i][1];
   const double length = std::hypot(x, y);
@@ -80,10 +92,13 @@ void append_beam(Beams& beams, const Bodies& bodies, const Facet& facet,
 
 }  // namespace
 
-Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
+Lattice make_sheet(const Tessellation& cells, const SheetSection& section,
+                   std::span<const double> thickness) {
   Lattice lattice;
   const auto n = static_cast<std::int32_t>(cells.generators.size());
-  const double h = section.thickness;
+  const auto thickness_of = [&](std::int32_t k) {
+    return thickness.empty() ? section.thickness : thickness[static_cast<std::size_t>(k)];
+  };
   reserve(lattice, cells.generators.size(), cells.vertices.size(), cells.facets.size());
   std::vector<Point2> local;
   for (std::int32_t k = 0; k < n; ++k) {
@@ -91,13 +106,16 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
                             cells.vertices.data() + cells.offset[k + 1]);
     const PlanProperties plan = plan_properties(polygon);
     const Point2 axis = long_axis(plan);
+    const double h = thickness_of(k);
+    const double z =
+        thickness.empty() ? section.mid_plane : h * (section.mid_plane / section.thickness);
     const double surface_density = section.ice.density * h, mass = surface_density * plan.area;
     // Second moments on the principal axes: `most` along axis 1, so the moment of inertia about
     // axis 1 is the least.
     const double mean = (plan.xx + plan.yy) / 2;
     const double half = std::hypot((plan.xx - plan.yy) / 2, plan.xy);
     const double most = mean + half, least = mean - half, slab = mass * h * h / 12;
-    lattice.bodies.position.push_back({plan.centroid[0], plan.centroid[1], section.mid_plane});
+    lattice.bodies.position.push_back({plan.centroid[0], plan.centroid[1], z});
     lattice.bodies.orientation.push_back(about_z(axis));
     lattice.bodies.mass.push_back(mass);
     lattice.bodies.inertia.push_back({surface_density * least + slab, surface_density * most + slab,
@@ -105,8 +123,17 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section) {
     to_frame(polygon, plan.centroid, axis, local);
     append_prism(lattice.shapes, local, -h / 2, h / 2);
   }
-  for (const Facet& facet : cells.facets)
-    append_beam(lattice.beams, lattice.bodies, facet, section);
+  bool eccentric = false;
+  for (const Facet& facet : cells.facets) {
+    const auto [i, j] = facet.cells;
+    const double zi = lattice.bodies.position[i][2], zj = lattice.bodies.position[j][2];
+    const CommonFace face = common_face(thickness_of(i), zi, thickness_of(j), zj);
+    append_beam(lattice.beams, lattice.bodies, facet, face.height, section);
+    if (thickness.empty()) continue;
+    lattice.beams.offsets.push_back({Point3{0, 0, face.middle - zi}, {0, 0, face.middle - zj}});
+    eccentric = eccentric || face.middle != zi || face.middle != zj;
+  }
+  if (!eccentric) lattice.beams.offsets.clear();
 
   constexpr std::pair<const char*, SheetSide> sides[] = {
       {"left", side_left}, {"right", side_right}, {"bottom", side_bottom}, {"top", side_top}};
@@ -145,10 +172,11 @@ void cut(Lattice& lattice, const Point2& a, const Point2& b,
     for (std::size_t k = 0; k < kept.size(); ++k) column[k] = column[kept[k]];
     column.resize(kept.size());
   };
-  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width,
-         height] = lattice.beams;
+  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height,
+         offsets] = lattice.beams;
   keep(bodies), keep(area), keep(iy), keep(iz), keep(torsion), keep(length), keep(young);
   keep(shear), keep(factor), keep(factor_y), keep(axis), keep(width), keep(height);
+  keep(offsets);
 }
 
 void add_region(Lattice& lattice, const std::string& name, const std::array<double, 6>& box,

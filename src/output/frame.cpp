@@ -170,8 +170,8 @@ void FrameWriter::write_beams(Hdf5File& file, const std::string& group, const Fr
   write("/shear_stress", 1, [&](std::size_t b, std::size_t) { return shear(b); });
 }
 
-/// Writes the two faces of each broken section. The section lay halfway between its bodies'
-/// centroids; each body has carried its face along.
+/// Writes the two faces of each broken section. The section lay halfway between its beam's ends;
+/// each body has carried its face along.
 std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
                                       const Frame& frame) const {
   const Beams& beams = lattice_.beams;
@@ -181,7 +181,9 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
     if (frame.damage[m] < 1) continue;
     const auto [i, j] = beams.bodies[m];
     const auto at = [&](std::int32_t b) { return item(lattice_.bodies.position, b); };
-    const Vec3<double> chord = at(j) - at(i);
+    const auto index = static_cast<std::int32_t>(m);
+    const Vec3<double> first = at(i) + offset(beams, index, 0),
+                       second = at(j) + offset(beams, index, 1), chord = second - first;
     const Vec3<double> e1 = (1 / std::sqrt(dot(chord, chord))) * chord;
     Vec3<double> e2 = beams.axis_y[m];
     e2 = e2 - dot(e2, e1) * e1;
@@ -189,7 +191,7 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
     const Vec3<double> y = (0.5 * beams.width[m]) * e2, z = (0.5 * beams.height[m]) * cross(e1, e2);
     for (const std::int32_t b : {i, j}) {
       const auto& q = item(frame.rotation, b);
-      const Vec3<double> middle = 0.5 * (at(i) + at(j)) - at(b);
+      const Vec3<double> middle = 0.5 * (first + second) - at(b);
       for (const Vec3<double>& corner :
            {middle - y - z, middle + y - z, middle + y + z, middle - y + z}) {
         const Vec3<double> p = at(b) + item(frame.displacement, b) +
@@ -197,7 +199,7 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
         corners.push_back(static_cast<std::int32_t>(points.size() / 3));
         points.insert(points.end(), {p.x, p.y, p.z});
       }
-      beam.push_back(static_cast<std::int32_t>(m));
+      beam.push_back(index);
     }
   }
   file.write(group + "/damage", frame.damage);

@@ -132,6 +132,7 @@ void Output<Space>::Impl::keep_what_frames_need() {
   b.torsion = b.length = b.young = b.shear_modulus = b.shear_factor = b.shear_factor_y = {};
   if (cracks) return;  // cracks need places and pieces
   b.axis_y = {};
+  b.offsets = {};
   lattice.bodies.mass = {};
   lattice.bodies.inertia = lattice.bodies.velocity = lattice.bodies.angular_velocity = {};
 }

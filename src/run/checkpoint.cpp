@@ -82,6 +82,7 @@ std::string fingerprint(const Lattice& lattice) {
                              &m.shear_modulus, &m.shear_factor})
     hash.add(*values);
   if (!m.shear_factor_y.empty()) hash.add(m.shear_factor_y);
+  if (!m.offsets.empty()) hash.add(m.offsets);
   hash.add(lattice.shapes.vertices);
   return std::to_string(lattice.bodies.size()) + " bodies, " +
          std::to_string(lattice.beams.size()) + " beams, " + hash.text();

@@ -10,6 +10,29 @@ namespace {
 
 constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top", "all"};
 
+void read_thickness(Options& options, Scene& scene) {
+  ThicknessField& field = scene.thickness_field;
+  const bool random = options.given("sheet: thickness_deviation");
+  if (options.given("sheet: thickness_file")) {
+    field.file = options.text("sheet: thickness_file");
+    scene.inputs.emplace_back("sheet: thickness_file", field.file);
+    for (const auto* key : {"sheet: thickness", "sheet: thickness_deviation"})
+      options.refuse(key, "would have no effect: 'sheet: thickness_file' says it");
+  } else {
+    scene.thickness = options.number("sheet: thickness");
+    if (random) field.deviation = options.number("sheet: thickness_deviation");
+  }
+  if (field.deviation > 0) {
+    field.correlation = options.numbers<2>("sheet: thickness_correlation");
+    field.seed = static_cast<std::uint64_t>(options.integer("sheet: thickness_seed"));
+  } else {
+    for (const auto* key : {"sheet: thickness_correlation", "sheet: thickness_seed"})
+      options.refuse(key,
+                     "would have no effect: there is no random field "
+                     "('sheet: thickness_deviation')");
+  }
+}
+
 void read_sheet(Options& options, Scene& scene) {
   SheetPlan& plan = scene.sheet;
   plan.length = options.number("sheet: length");
@@ -23,7 +46,7 @@ void read_sheet(Options& options, Scene& scene) {
     scene.mesh_file = options.text("sheet: mesh_file");
     scene.inputs.emplace_back("sheet: mesh_file", scene.mesh_file);
   }
-  scene.thickness = options.number("sheet: thickness");
+  read_thickness(options, scene);
   scene.limit.memory = options.number("limit: memory", {}, 0.0);
 
   const double shorter = std::min(plan.length, plan.width);

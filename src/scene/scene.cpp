@@ -143,6 +143,21 @@ void check_floats(const Scene& scene) {
                      density_question(scene));
 }
 
+/// Checks that nothing asks for the one thickness of a sheet whose thickness varies.
+void check_thickness(const Scene& scene) {
+  if (!scene.thickness_field.varies()) return;
+  const char* asks = scene.report.tension || scene.report.bending        ? "report"
+                     : scene.forces.fracture && scene.fracture.calibrate ? "fracture: calibrate"
+                     : scene.forces.fracture && scene.fracture.flexural_strength > 0
+                         ? "fracture: flexural_strength"
+                         : nullptr;
+  if (asks != nullptr)
+    throw InputError(std::string(asks) + ": is for sheets of one thickness, and '" +
+                     (scene.thickness_field.file.empty() ? "sheet: thickness_deviation"
+                                                         : "sheet: thickness_file") +
+                     "' makes it vary");
+}
+
 /// Drops solver options that this run cannot use.
 void leave_out_solvers(Options& options, const Scene& scene) {
   const bool chosen = options.on_command_line("integrator");
@@ -180,6 +195,7 @@ Scene read_all(Options& options, const std::string& path) {
   read_dynamics(options, scene);
   read_report(options, scene);
   read_output(options, scene);
+  check_thickness(scene);
   scene.check_only = options.flag("check");
   // Options that concern only this part of the run are read after this, so that options.yaml
   // repeats the whole run and no more.

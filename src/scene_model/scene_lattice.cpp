@@ -16,6 +16,7 @@
 #include "scene_model/mesh_file.h"
 #include "scene_model/scene_model.h"
 #include "scene_model/size_check.h"
+#include "scene_model/thickness.h"
 #include "session/signals.h"
 
 namespace floe {
@@ -86,7 +87,9 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
   report.energy_ratio = cells.energy_ratio;
   report.degenerate = cells.degenerate;
   const Timed timed(Event::lattice);
-  return make_sheet(cells, section);
+  const std::vector<double> thickness = thickness_of_cells(scene, cells);
+  if (!thickness.empty()) report.thickness = thickness_report(cells, thickness);
+  return make_sheet(cells, section, thickness);
 }
 
 }  // namespace

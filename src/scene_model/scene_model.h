@@ -12,6 +12,7 @@
 #include "forces/dead_load.h"
 #include "model/model.h"
 #include "scene_model/sheet_strength.h"
+#include "scene_model/thickness.h"
 #include "statics/quasistatic.h"
 
 namespace floe {
@@ -24,6 +25,7 @@ struct MeshReport {
   std::int64_t degenerate = 0;
   std::optional<Calibration> calibration;
   std::optional<StrengthCalibration> strength;
+  std::optional<ThicknessReport> thickness;  ///< of a sheet whose thickness varies
   std::string cuts;  ///< a remark on cuts on which cells do not end; empty: there are none
   std::function<void()> keep = [] {
     /// Writes the mesh's file, if one is to be written. Collective.

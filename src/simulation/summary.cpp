@@ -313,6 +313,13 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     json["cvt_iterations"] = mesh.iterations;
     json["degenerate_facets"] = mesh.degenerate;
   }
+  if (mesh.thickness) {
+    const auto& [least, mean, most, deviation] = *mesh.thickness;
+    json["thickness"] = {
+        {"least", least}, {"mean", mean}, {"most", most}, {"deviation", deviation}};
+    text += line("thickness: %.4g m in the mean, %.4g to %.4g, standard deviation %.4g", mean,
+                 least, most, deviation);
+  }
   text +=
       line("%d bodies, %lld beams, %lld %s, %lld Newton iterations", model.part().global_bodies,
            static_cast<long long>(model.part().global_beams), static_cast<long long>(result.steps),

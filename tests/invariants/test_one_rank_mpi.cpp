@@ -229,6 +229,7 @@ TEST(OnOneRank, AllBeams) {
     keep(all.bodies), keep(all.area), keep(all.inertia_y), keep(all.inertia_z), keep(all.torsion);
     keep(all.length), keep(all.young), keep(all.shear_modulus), keep(all.shear_factor);
     keep(all.shear_factor_y), keep(all.axis_y), keep(all.width), keep(all.height);
+    keep(all.offsets);
     Scene scene = scene_of(planar);
     scene.beam.damping_ratio = by == By::statics ? 0 : 0.1;
     // On the body with most beams; in statics the rank's other bodies hold it.

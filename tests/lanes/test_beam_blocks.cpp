@@ -20,7 +20,8 @@ using Real = long double;
 template <template <class> class Frame>
 struct Case {
   static constexpr std::size_t bodies = 5;
-  std::vector<BeamConstants<double>> beams;
+  using Scalar = typename BeamBlock<Frame>::Scalar;
+  std::vector<Scalar> beams;
   BeamBlock<Frame> block{};
   DashpotBlock dashpots{};
   State<Spatial> state{bodies};
@@ -41,7 +42,15 @@ struct Case {
       put(lane, lane, c);
     }
   }
-  static AnyFrame<double> frame(Random& random) {
+  static auto frame(Random& random) {
+    if constexpr (std::is_same_v<Frame<double>, EccentricFrame<double>>) {
+      const AnyFrame<double> rest = Case<AnyFrame>::frame(random);
+      return EccentricFrame<double>{rest, random.vector(0.3), random.vector(0.3)};
+    } else {
+      return triad_of(random);
+    }
+  }
+  static AnyFrame<double> triad_of(Random& random) {
     const double angle = random.uniform(-3, 3);
     const Vec3<double> e1{std::cos(angle), std::sin(angle), 0}, up{0, 0, 1};
     const AnyFrame<double> flat{e1, cross(up, e1), up};
@@ -83,16 +92,15 @@ std::vector<Real> expected(const Case<Frame>& c, Real& lost) {
     const auto i = static_cast<std::size_t>(c.block.i[lane]),
                j = static_cast<std::size_t>(c.block.j[lane]);
     const double *ri = c.state.record(i), *rj = c.state.record(j);
-    const BeamConstants<double>& b = c.beams[lane];
+    const auto& b = c.beams[lane];
     const auto real = [](const Vec3<double>& v) { return Vec3<Real>{v.x, v.y, v.z}; };
-    const BeamConstants<Real> beam{{real(b.rest.e1), real(b.rest.e2), real(b.rest.e3)},
-                                   b.l0,
-                                   b.kn,
-                                   b.ksz,
-                                   b.ksy,
-                                   b.kt,
-                                   b.kby,
-                                   b.kbz};
+    BeamConstants<Real, ScalarFrame<Frame>::template Type> beam{{},    b.l0, b.kn,  b.ksz,
+                                                                b.ksy, b.kt, b.kby, b.kbz};
+    beam.rest.e1 = real(b.rest.e1), beam.rest.e2 = real(b.rest.e2), beam.rest.e3 = real(b.rest.e3);
+    if constexpr (Kernel::template is_eccentric<decltype(beam)>) {
+      beam.rest.offset_i = real(b.rest.offset_i);
+      beam.rest.offset_j = real(b.rest.offset_j);
+    }
     const BeamStrains<Real> s =
         Kernel::strains(beam, three(rj) - three(ri), Quat<Real>{ri[3], ri[4], ri[5], ri[6]},
                         Quat<Real>{rj[3], rj[4], rj[5], rj[6]});
@@ -142,9 +150,11 @@ TEST(BeamBlocks, AreTheKernelInLanes) {
     compare<Kinematics::corotational, false, FlatFrame>(turn);
     compare<Kinematics::corotational, true, AnyFrame>(turn);
     compare<Kinematics::corotational, true, FlatFrame>(turn);
+    compare<Kinematics::corotational, true, EccentricFrame>(turn);
   }
   compare<Kinematics::linear, false, AnyFrame>(0.05);
   compare<Kinematics::linear, true, FlatFrame>(0.05);
+  compare<Kinematics::linear, true, EccentricFrame>(0.05);
 }
 
 /// A beam alone in its block, at this lane: nothing stands in the others.
@@ -157,7 +167,7 @@ Case<Frame> alone(const Case<Frame>& from, std::size_t beam, std::size_t at) {
     return all;
   }();
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    BeamConstants<double> none = c.beams[lane];
+    auto none = c.beams[lane];
     none.kn = none.ksz = none.ksy = none.kt = none.kby = none.kbz = 0;
     c.block.set(lane, none);
     c.dashpots.set(lane, {}, false);
@@ -187,6 +197,7 @@ void place_does_not_matter() {
 TEST(BeamBlocks, GiveTheSameBitsWhateverTheLane) {
   place_does_not_matter<AnyFrame>();
   place_does_not_matter<FlatFrame>();
+  place_does_not_matter<EccentricFrame>();
 }
 
 }  // namespace

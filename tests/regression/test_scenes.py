@@ -33,6 +33,7 @@ EXPECTED = {
     "rubble_pile.yaml": contact.check_rubble_pile,
     "verify/stopping.yaml": contact.check_stopping,
     "verify/local_pressure.yaml": contact.check_local_pressure,
+    "uneven_sheet.yaml": static.check_uneven_sheet,
     "break_strip.yaml": fracture.check_break_strip,
     "in_situ_cantilever.yaml": fracture.check_in_situ_cantilever,
     "edge_uplift.yaml": fracture.check_edge_uplift,

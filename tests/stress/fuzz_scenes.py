@@ -95,6 +95,7 @@ def bound(scene, chance):
     """Makes a scene so small that an accepted run is short; words for the command line that end
     it."""
     scene.pop(("sheet", "mesh_file"), None)
+    scene.pop(("sheet", "thickness_file"), None)
     length = number(scene, "sheet", "length", default="40")
     width = number(scene, "sheet", "width", default=scene.get(("sheet", "length"), "40"))
     size = number(scene, "sheet", "element_size", default="2")
@@ -311,6 +312,14 @@ class Scenes:
             if ("load", name, "moment") not in scene:
                 scene.setdefault(("load", name, "force"),
                                  f"[0, {10**chance.uniform(-3, 7):.3g}, 0]")
+        if ("sheet", "thickness_deviation") not in scene:
+            for word in ("thickness_correlation", "thickness_seed"):
+                scene.pop(("sheet", word), None)
+        elif chance.random() < 0.9:
+            scene.setdefault(("sheet", "thickness_correlation"), "[3, 7]")
+            for path in (("fracture", "calibrate"), ("fracture", "flexural_strength"),
+                         ("report",)):
+                scene.pop(path, None)
         if ("fracture", "weibull_modulus") not in scene:
             for word in ("weibull_area", "seed"):
                 scene.pop(("fracture", word), None)

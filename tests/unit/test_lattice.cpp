@@ -14,6 +14,7 @@
 #include "model/model.h"
 #include "support/force_checks.h"
 #include "support/lattices.h"
+#include "support/random.h"
 #include "water/buoyancy.h"
 
 namespace floe {
@@ -80,6 +81,10 @@ TEST(Reorder, EverythingFollowsItsBody) {
 TEST(Reorder, KeepsTheForces) {
   Lattice before = test::sheet(9, 6, 1);
   before.beams.shear_factor_y = before.beams.length;
+  for (std::int32_t m = 0; m < before.beams.size(); ++m) {
+    const double up = 0.01 * m;
+    before.beams.offsets.push_back({Point3{0, 0, up}, {0, 0, up}});
+  }
   Lattice after = before;
   const std::vector<std::int32_t> order = reorder(after);
   const Part old_part = partition(before, PETSC_COMM_SELF),
@@ -285,6 +290,7 @@ void expect_same(const Lattice& a, const Lattice& b) {
   EXPECT_EQ(a.beams.axis_y, b.beams.axis_y);
   EXPECT_EQ(a.beams.width, b.beams.width);
   EXPECT_EQ(a.beams.height, b.beams.height);
+  EXPECT_EQ(a.beams.offsets, b.beams.offsets);
   EXPECT_EQ(a.sets, b.sets);
   EXPECT_EQ(a.shapes.vertices, b.shapes.vertices);
   EXPECT_EQ(a.shapes.corners, b.shapes.corners);
@@ -301,6 +307,13 @@ TEST(LatticeFile, ComesBackBitForBit) {
   expect_same(read_lattice(LatticeFile(s).path()), s);
   expect_same(read_lattice(LatticeFile(row(3)).path()), row(3));  // no shapes, no widths
   s.beams.shear_factor_y = s.beams.length;
+  expect_same(read_lattice(LatticeFile(s).path()), s);
+  // Ends that move along with each other keep the length.
+  test::Random random(1);
+  for (std::int32_t m = 0; m < s.beams.size(); ++m) {
+    const Point3 off = random.vector(0.3);
+    s.beams.offsets.push_back({off, off});
+  }
   expect_same(read_lattice(LatticeFile(s).path()), s);
   const Lattice loose = row(1);  // no beams
   expect_same(read_lattice(LatticeFile(loose).path()), loose);

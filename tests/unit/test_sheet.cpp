@@ -16,6 +16,11 @@ Tessellation cells(double length, double width, double l, int iterations = 20) {
   return tessellate(plan, MPI_COMM_SELF);
 }
 
+std::span<const Point2> polygon(const Tessellation& cells, std::int32_t k) {
+  return {cells.vertices.data() + cells.offset[static_cast<std::size_t>(k)],
+          cells.vertices.data() + cells.offset[static_cast<std::size_t>(k) + 1]};
+}
+
 TEST(Torsion, PublishedValues) {
   // Timoshenko & Goodier, Theory of Elasticity, art. 109, table; more digits: the series summed.
   EXPECT_NEAR(saint_venant_torsion(1, 1), 0.140577, 5e-7);
@@ -169,6 +174,55 @@ TEST(Sheet, EdgeSetsLieOnTheirSides) {
   EXPECT_LT(left, -17.5);
   EXPECT_LT(top, -17.5);
   EXPECT_NEAR(static_cast<double>(s.sets.at("right").size()), 20, 4);
+}
+
+TEST(Sheet, CellsOfTheirOwnThickness) {
+  const Tessellation plan = cells(20, 16, 2);
+  SheetSection section;
+  section.thickness = 2, section.mid_plane = 2 * (0.5 - 0.9);  // floats at 0.9 of its thickness
+  std::vector<double> thickness;
+  for (const auto& [x, y] : plan.generators) thickness.push_back(1 + 0.03 * x - 0.02 * y);
+  const Lattice s = make_sheet(plan, section, thickness);
+  for (std::int32_t k = 0; k < s.bodies.size(); ++k) {
+    const double h = thickness[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(s.bodies.position[k][2], h * (0.5 - 0.9), 1e-15);
+    EXPECT_NEAR(s.bodies.mass[k] / (section.ice.density * h),
+                plan_properties(polygon(plan, k)).area, 1e-12);
+    const VolumeProperties of = volume_properties(s.shapes, k);
+    EXPECT_NEAR(of.volume, plan_properties(polygon(plan, k)).area * h, 1e-12);
+  }
+  ASSERT_EQ(s.beams.offsets.size(), s.beams.bodies.size());
+  for (std::size_t m = 0; m < s.beams.bodies.size(); ++m) {
+    const auto [i, j] = s.beams.bodies[m];
+    // All floats at the same part of its thickness, so the thinner face is the common part.
+    const double h = std::min(thickness[i], thickness[j]), w = s.beams.width[m];
+    EXPECT_NEAR(s.beams.height[m], h, 1e-15);
+    EXPECT_NEAR(s.beams.area[m], w * h, 1e-14);
+    EXPECT_NEAR(s.beams.inertia_y[m], w * h * h * h / 12, 1e-14);
+    EXPECT_NEAR(s.bodies.position[i][2] + s.beams.offsets[m][0].z, -0.4 * h, 1e-14);
+    EXPECT_NEAR(s.bodies.position[j][2] + s.beams.offsets[m][1].z, -0.4 * h, 1e-14);
+  }
+  // Where mid-planes are level, nothing is eccentric.
+  section.mid_plane = 0;
+  EXPECT_TRUE(make_sheet(plan, section, thickness).beams.offsets.empty());
+}
+
+TEST(Sheet, CellsOfOneThicknessAreTheUniformSheetBitForBit) {
+  const Tessellation plan = cells(20, 16, 2);
+  SheetSection section;
+  section.thickness = 1.3, section.mid_plane = 1.3 * (0.5 - 0.91);
+  const Lattice a = make_sheet(plan, section),
+                b = make_sheet(plan, section, std::vector<double>(plan.generators.size(), 1.3));
+  EXPECT_EQ(a.bodies.mass, b.bodies.mass);
+  EXPECT_EQ(a.bodies.inertia, b.bodies.inertia);
+  EXPECT_EQ(a.beams.area, b.beams.area);
+  EXPECT_EQ(a.beams.inertia_y, b.beams.inertia_y);
+  EXPECT_EQ(a.beams.torsion, b.beams.torsion);
+  EXPECT_EQ(a.beams.length, b.beams.length);
+  EXPECT_EQ(a.shapes.vertices, b.shapes.vertices);
+  EXPECT_TRUE(b.beams.offsets.empty());
+  for (std::size_t k = 0; k < a.bodies.position.size(); ++k)
+    EXPECT_NEAR(a.bodies.position[k].z, b.bodies.position[k].z, 1e-15);
 }
 
 TEST(Cut, RemovesTheBeamsThatCross) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,17 +31,18 @@ struct Bodies {
 /// Returns the moment of inertia at rest of a body about a unit vector in the world [kg m^2].
 double inertia_about(const Bodies& bodies, std::int32_t body, const Point3& axis);
 
-/// Beams as a structure of arrays; beam m joins the centroids of bodies[m][0] < bodies[m][1]. A
-/// sheet's beams are sorted by their bodies; those of a lattice file keep its order. Local axes: 1
-/// along the beam, 2 = axis_y (made orthogonal to 1), 3 = 1 x 2. In a sheet axis 2 lies in the
-/// plane and axis 3 is up: inertia_y resists out-of-plane bending, inertia_z in-plane bending.
+/// Beams as a structure of arrays; beam m joins bodies[m][0] < bodies[m][1], at their centroids or,
+/// with offsets, at points that turn with them. A sheet's beams are sorted by their bodies; those
+/// of a lattice file keep its order. Local axes: 1 along the beam, 2 = axis_y (made orthogonal to
+/// 1), 3 = 1 x 2. In a sheet axis 2 lies in the plane and axis 3 is up: inertia_y resists
+/// out-of-plane bending, inertia_z in-plane bending.
 struct Beams {
   std::vector<std::array<std::int32_t, 2>> bodies;
   std::vector<double> area;            ///< [m^2]
   std::vector<double> inertia_y;       ///< second moment about axis 2 [m^4]
   std::vector<double> inertia_z;       ///< second moment about axis 3 [m^4]
   std::vector<double> torsion;         ///< torsion constant J [m^4]
-  std::vector<double> length;          ///< |X_j - X_i| [m]
+  std::vector<double> length;          ///< of the beam at rest: |X_j - X_i| without offsets [m]
   std::vector<double> young;           ///< [Pa]
   std::vector<double> shear_modulus;   ///< [Pa]
   std::vector<double> shear_factor;    ///< kappa
@@ -48,8 +50,17 @@ struct Beams {
   std::vector<Point3> axis_y;          ///< unit vector, world
   std::vector<double> width;   ///< section's extent along axis 2 [m]; empty if the file has none
   std::vector<double> height;  ///< section's extent along axis 3 [m]; empty if the file has none
+  /// Ends of the beam from the centroids of its two bodies, at rest, in world axes [m]; empty:
+  /// beams end at the centroids.
+  std::vector<std::array<Point3, 2>> offsets;
   std::int32_t size() const { return static_cast<std::int32_t>(bodies.size()); }
 };
+
+/// Returns where an end of beam m is, from the centroid of its body, at rest [m].
+/// \param end  0 or 1
+inline Point3 offset(const Beams& beams, std::int32_t m, std::size_t end) {
+  return beams.offsets.empty() ? Point3{} : beams.offsets[static_cast<std::size_t>(m)][end];
+}
 
 /// A whole lattice. During set-up every rank holds a copy; partition() distributes it.
 struct Lattice {
@@ -66,15 +77,18 @@ struct Lattice {
 /// The parameters by which the cells of a sheet become bodies and beams.
 struct SheetSection {
   double thickness = 1;  ///< h [m]
-  double mid_plane = 0;  ///< z of the sheet's mid-plane [m]
+  double mid_plane = 0;  ///< z of the mid-plane of ice of that thickness [m]; goes with thickness
   Ice ice;
   double shear_factor = 5.0 / 6.0;
   Torsion torsion = Torsion::saint_venant;
 };
 
 /// Makes the lattice of a sheet: prisms over the cells (exact mass, centroid and inertia on
-/// principal axes), one beam per facet, and the edge sets.
-Lattice make_sheet(const Tessellation& cells, const SheetSection& section);
+/// principal axes), one beam per facet, and the edge sets. The facet between cells of two
+/// thicknesses is the common part of their side faces; its beam lies level at that part's height.
+/// \param thickness  of each cell [m]; empty: all have the section's
+Lattice make_sheet(const Tessellation& cells, const SheetSection& section,
+                   std::span<const double> thickness = {});
 
 /// Renumbers bodies in reverse Cuthill-McKee order and sorts beams by (smaller, larger) body. The
 /// order depends on the lattice only, so it is the same for any number of ranks.

@@ -99,6 +99,20 @@ def check_edge_load(test, run):
     test.assertAlmostEqual(plain / softer, 1, delta=0.03)
 
 
+def check_uneven_sheet(test, run):
+    output = run()
+    ice = output.summary["thickness"]
+    test.assertAlmostEqual(ice["least"], 0.389, delta=0.02)
+    test.assertAlmostEqual(ice["most"], 1.47, delta=0.05)
+    test.assertAlmostEqual(ice["deviation"], 0.24, delta=0.01)
+    deflection = output.history("vehicle_load_displacement_z")
+    test.assertLess(abs(deflection[0]), 1e-9)
+    test.assertAlmostEqual(deflection[-1] / -0.0267, 1, delta=0.03)
+    even = run("-sheet_thickness_deviation", "0")
+    test.assertNotIn("thickness", even.summary)
+    test.assertAlmostEqual(even.history("vehicle_load_displacement_z")[-1] / -0.0186, 1, delta=0.02)
+
+
 def expect_modulus(test, output, name, modulus, expected, delta):
     test.assertEqual(output.summary["bodies"], 462)
     row = campaign_cases.TESTS[name].evaluate(output, campaign_cases.Sheet(40, 1, 2))["row"]
