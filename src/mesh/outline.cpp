@@ -129,13 +129,15 @@ double Outline::distance(const Point2& p) const {
 std::uint64_t Outline::identity() const {
   std::uint64_t hash = 14695981039346656037U;
   const auto add = [&hash](std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (word >> (8 * byte) & 0xffU)) * 1099511628211U;
+    for (int byte = 0; byte < 8; ++byte)
+      hash = (hash ^ (word >> (8 * byte) & 0xffU)) * 1099511628211U;
   };
   for (const RingedPolygon& polygon : polygons_) {
     add(polygon.size());
     for (const Ring& ring : polygon) {
       add(ring.size());
-      for (const auto& [x, y] : ring) add(std::bit_cast<std::uint64_t>(x)), add(std::bit_cast<std::uint64_t>(y));
+      for (const auto& [x, y] : ring)
+        add(std::bit_cast<std::uint64_t>(x)), add(std::bit_cast<std::uint64_t>(y));
     }
   }
   return hash;
@@ -173,8 +175,8 @@ std::vector<CutLine> clipped(const RingedPolygon& polygon, const CutLine& line) 
 }
 
 std::string name_of_ring(const Outline& outline, std::size_t polygon, std::size_t ring) {
-  std::string name = outline.polygons().size() == 1 ? "the polygon"
-                                                    : "polygon " + std::to_string(polygon + 1);
+  std::string name =
+      outline.polygons().size() == 1 ? "the polygon" : "polygon " + std::to_string(polygon + 1);
   if (ring > 0) name += ", hole " + std::to_string(ring);
   return name;
 }

@@ -3,8 +3,8 @@
 #include <CGAL/Constrained_triangulation_plus_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_2_algorithms.h>
-#include <CGAL/Polyline_simplification_2/Squared_distance_cost.h>
 #include <CGAL/Polyline_simplification_2/simplify.h>
+#include <CGAL/Polyline_simplification_2/Squared_distance_cost.h>
 
 #include <algorithm>
 #include <array>
@@ -189,11 +189,12 @@ std::string Outline::flaw() const {
 
 namespace {
 
-using Triangulation = CGAL::Constrained_triangulation_plus_2<CGAL::Constrained_Delaunay_triangulation_2<
-    Kernel,
-    CGAL::Triangulation_data_structure_2<simplification::Vertex_base_2<Kernel>,
-                                         CGAL::Constrained_triangulation_face_base_2<Kernel>>,
-    CGAL::Exact_predicates_tag>>;
+using Triangulation =
+    CGAL::Constrained_triangulation_plus_2<CGAL::Constrained_Delaunay_triangulation_2<
+        Kernel,
+        CGAL::Triangulation_data_structure_2<simplification::Vertex_base_2<Kernel>,
+                                             CGAL::Constrained_triangulation_face_base_2<Kernel>>,
+        CGAL::Exact_predicates_tag>>;
 
 /// The corner that is farthest from the middle, which stays: a ring's first corner is not taken
 /// out.
@@ -203,9 +204,9 @@ std::size_t farthest(const Ring& ring) {
     middle[0] += p[0] / static_cast<double>(ring.size()),
         middle[1] += p[1] / static_cast<double>(ring.size());
   const auto away = [&](const Point2& p) { return std::hypot(p[0] - middle[0], p[1] - middle[1]); };
-  const auto most = std::max_element(ring.begin(), ring.end(), [&](const Point2& p, const Point2& q) {
-    return away(p) < away(q);
-  });
+  const auto most =
+      std::max_element(ring.begin(), ring.end(),
+                       [&](const Point2& p, const Point2& q) { return away(p) < away(q); });
   return static_cast<std::size_t>(most - ring.begin());
 }
 

@@ -52,7 +52,8 @@ void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, const 
     if (i >= 0 && j >= 0) {
       all.facets.push_back({{i, j}, facet.width});
     } else if (i >= 0 || j >= 0) {  // on the outline: halfway between images of each other
-      const Point2 &in = item(t.generators, i >= 0 ? a : b), &out = item(t.generators, i >= 0 ? b : a);
+      const Point2 &in = item(t.generators, i >= 0 ? a : b),
+                   &out = item(t.generators, i >= 0 ? b : a);
       item(all.sides, std::max(i, j)) |= side_of({out[0] - in[0], out[1] - in[1]});
     }
   }

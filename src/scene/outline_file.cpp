@@ -204,8 +204,7 @@ OutlineFeatures Reader::table(const std::string& text) {
     Position p{};
     const bool is_heading = std::exchange(is_first, false) && !to_coordinate(x, p[0]);
     if (is_heading) continue;
-    if (!to_coordinate(x, p[0]) || !to_coordinate(y, p[1]))
-      refuse(where + ": is not x, y");
+    if (!to_coordinate(x, p[0]) || !to_coordinate(y, p[1])) refuse(where + ": is not x, y");
     if (!std::isfinite(p[0]) || !std::isfinite(p[1])) refuse(where + ": is not finite");
     if (!rings.back().empty() && third != mark) rings.emplace_back();
     mark = third;

@@ -18,7 +18,8 @@ using OutlineFeatures = std::vector<std::vector<RingedPolygon>>;
 /// rings inside others are holes, and each outer ring is a feature.
 /// \param file  name of the file, for messages; by .json and .geojson it is GeoJSON, whatever it
 /// holds
-/// \throws InputError with one line that says what is wrong, beginning with "sheet: outline: 'FILE'"
+/// \throws InputError with one line that says what is wrong, beginning with "sheet: outline:
+/// 'FILE'"
 OutlineFeatures parse_outline(const std::string& text, const std::string& file);
 
 }  // namespace floe

@@ -67,8 +67,8 @@ Outline placed(const Outline& given, double scale, double degrees,
 Outline chosen(const OutlineFeatures& features, std::int64_t number, const std::string& file) {
   std::vector<RingedPolygon> polygons;
   if (number > static_cast<std::int64_t>(features.size()))
-    throw InputError("sheet: outline_feature: " + std::to_string(number) + ": '" + file +
-                     "' has " + std::to_string(features.size()) + " feature" +
+    throw InputError("sheet: outline_feature: " + std::to_string(number) + ": '" + file + "' has " +
+                     std::to_string(features.size()) + " feature" +
                      (features.size() == 1 ? "" : "s"));
   for (std::size_t k = 0; k < features.size(); ++k) {
     if (number == 0 || static_cast<std::size_t>(number) == k + 1)

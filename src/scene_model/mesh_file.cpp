@@ -19,8 +19,8 @@ namespace {
 
 using Entry = std::pair<const char*, double>;
 
-/// Values on which a mesh depends. Numbers of 64 bits are stored in two halves, since a double holds
-/// 53 bits.
+/// Values on which a mesh depends. Numbers of 64 bits are stored in two halves, since a double
+/// holds 53 bits.
 std::vector<Entry> identity(const SheetPlan& plan) {
   const auto low = [](std::uint64_t x) { return static_cast<double>(x & 0xffffffffU); };
   const auto high = [](std::uint64_t x) { return static_cast<double>(x >> 32U); };
@@ -105,9 +105,10 @@ void write(const SheetPlan& plan, const std::string& path, const Relaxed& relaxe
 
 }  // namespace
 
-std::vector<Tessellation> tessellate_with_file(
-    const SheetPlan& plan, const std::string& file, MPI_Comm comm,
-    const std::function<void(int, double)>& on_iteration, std::function<void()>& keep) {
+std::vector<Tessellation> tessellate_with_file(const SheetPlan& plan, const std::string& file,
+                                               MPI_Comm comm,
+                                               const std::function<void(int, double)>& on_iteration,
+                                               std::function<void()>& keep) {
   bool there = false;
   // Any existing entry counts, so that an unreadable file is an error and is not replaced.
   std::error_code ignored;

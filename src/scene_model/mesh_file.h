@@ -17,8 +17,9 @@ namespace floe {
 /// \param keep  set to a function that writes the file, if it did not exist; to be called when
 ///   everything else is known to be good
 /// \throws InputError if the file is that of another plan, or no mesh file
-std::vector<Tessellation> tessellate_with_file(
-    const SheetPlan& plan, const std::string& file, MPI_Comm comm,
-    const std::function<void(int, double)>& on_iteration, std::function<void()>& keep);
+std::vector<Tessellation> tessellate_with_file(const SheetPlan& plan, const std::string& file,
+                                               MPI_Comm comm,
+                                               const std::function<void(int, double)>& on_iteration,
+                                               std::function<void()>& keep);
 
 }  // namespace floe

@@ -58,10 +58,11 @@ std::string remark_on(const std::vector<FittedCut>& cuts, const Scene& scene) {
   const Outline& outline = scene.sheet.outline;
   throw InputError(
       "sheet: outline: '" + scene.outline.file +
-      "': " + name_of_ring(outline, edge.polygon, edge.ring) + ": no cells of sheet: "
-      "element_size: " + text_of(scene.sheet.element_size) + " can end on edge " +
-      std::to_string(edge.edge + 1) + " of " +
-      std::to_string(outline.polygons()[edge.polygon][edge.ring].size()) + ", from (" +
+      "': " + name_of_ring(outline, edge.polygon, edge.ring) +
+      ": no cells of sheet: "
+      "element_size: " +
+      text_of(scene.sheet.element_size) + " can end on edge " + std::to_string(edge.edge + 1) +
+      " of " + std::to_string(outline.polygons()[edge.polygon][edge.ring].size()) + ", from (" +
       text_of(from[0]) + ", " + text_of(from[1]) + ") to (" + text_of(to[0]) + ", " +
       text_of(to[1]) + ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
       ": raise sheet: outline_simplify (now " + text_of(scene.outline.simplify) +
@@ -243,7 +244,8 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   all.resize(static_cast<std::size_t>(lattice.bodies.size()));
   std::iota(all.begin(), all.end(), 0);
   for (const Region& region : scene.regions)
-    if (!region.edge) add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
+    if (!region.edge)
+      add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
   if (scene.inertia_factor != 1) {
     for (Point3& moments : lattice.bodies.inertia) moments = scene.inertia_factor * moments;
   }

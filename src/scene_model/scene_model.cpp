@@ -80,7 +80,8 @@ bool is_beside(const Point2& p, const SheetPlan& sheet) {
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) {
   std::vector<PlacedLoad> placed;
   for (const Load& load : scene.loads) {
-    if (scene.has_sheet && load.point && is_beside(*load.point, scene.sheet)) throw InputError("load: " + load.name + ": point: lies outside the sheet");
+    if (scene.has_sheet && load.point && is_beside(*load.point, scene.sheet))
+      throw InputError("load: " + load.name + ": point: lies outside the sheet");
     placed.push_back(place(load, lattice));
     if (load.point && !scene.has_sheet) check_point(placed.back(), lattice, scene.inertia_factor);
   }

@@ -25,7 +25,7 @@ struct MeshReport {
   std::optional<Calibration> calibration;
   std::optional<StrengthCalibration> strength;
   std::string outline;  ///< a line on the sheet's outline; empty: the sheet is a rectangle
-  std::string cuts;  ///< a remark on cuts on which cells do not end; empty: there are none
+  std::string cuts;     ///< a remark on cuts on which cells do not end; empty: there are none
   std::function<void()> keep = [] {
     /// Writes the mesh's file, if one is to be written. Collective.
   };

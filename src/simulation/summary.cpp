@@ -65,8 +65,8 @@ void add_tension(const Scene& scene, const Model<Space>& model, const MeshReport
   const BoundarySample& left = last.boundaries.at(boundary_on(scene, "left")->name);
   const BoundarySample& right = last.boundaries.at(boundary_on(scene, "right")->name);
   const double strain = (right.displacement[0] - left.displacement[0]) / scene.sheet.length;
-  const double width = scene.sheet.outline.empty() ? scene.sheet.width
-                                                   : scene.sheet.area() / scene.sheet.length;
+  const double width =
+      scene.sheet.outline.empty() ? scene.sheet.width : scene.sheet.area() / scene.sheet.length;
   const double young = -left.force[0] / (width * scene.thickness * strain);
   const double gauge =
       mean_x(model, *boundary_on(scene, "right")) - mean_x(model, *boundary_on(scene, "left"));

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Sheets of any outline: what a run says of them, their sets, ranks, restarts, mesh files, and files
-that are refused."""
+"""Sheets of any outline: what a run says of them, their sets, ranks, restarts, mesh files, and
+files that are refused."""
 import csv
 import json
 import math
@@ -301,8 +301,8 @@ class Refused(OutlineTest):
 
     def test_edges_that_cells_cannot_follow(self):
         notch = "0,0\n10,0\n10,6\n8,6\n8,5.7\n7.7,5.7\n7.7,6\n0,6\n"
-        self.table(notch, "sheet: outline: 'o.csv': the polygon: no cells of sheet: element_size: 1 "
-                         "can end on edge", "-sheet_outline_simplify", "0")
+        self.table(notch, "sheet: outline: 'o.csv': the polygon: no cells of sheet: element_size: "
+                   "1 can end on edge", "-sheet_outline_simplify", "0")
         self.write(STATIC)
         self.said()  # simplified to half of the element size
         outline = self.summary()["outline"]

@@ -51,7 +51,8 @@ SheetPlan plan_of(Outline outline, double l, std::uint64_t seed = 1) {
 
 OutlinedCells meshed(const SheetPlan& plan, const std::vector<CutLine>& cuts = {}) {
   std::vector<Tessellation> relaxed;
-  for (const MeshedBox& b : meshed_boxes(plan)) relaxed.push_back(tessellate(b.plan, MPI_COMM_SELF));
+  for (const MeshedBox& b : meshed_boxes(plan))
+    relaxed.push_back(tessellate(b.plan, MPI_COMM_SELF));
   return fit_to_outline(plan, std::move(relaxed), cuts, MPI_COMM_SELF);
 }
 
@@ -120,8 +121,8 @@ void expect_tiles(const SheetPlan& plan, const Tessellation& t) {
 void expect_meshed(const SheetPlan& plan) {
   ASSERT_EQ(plan.outline.flaw(), "");
   const OutlinedCells made = meshed(plan);
-  ASSERT_TRUE(made.unfollowed.empty()) << made.unfollowed.front().line.from[0] << " "
-                                       << made.unfollowed.front().line.from[1];
+  ASSERT_TRUE(made.unfollowed.empty())
+      << made.unfollowed.front().line.from[0] << " " << made.unfollowed.front().line.from[1];
   expect_tiles(plan, made.cells);
 }
 
@@ -161,8 +162,14 @@ TEST(Outline, CirclesOfManyElementSizes) {
 
 TEST(Outline, ANeckNarrowerThanTheElementSize) {
   const auto hourglass = [](double neck) {
-    return Outline({{Ring{{-8, -4}, {-1, -neck / 2}, {1, -neck / 2}, {8, -4}, {8, 4}, {1, neck / 2},
-                          {-1, neck / 2}, {-8, 4}}}});
+    return Outline({{Ring{{-8, -4},
+                          {-1, -neck / 2},
+                          {1, -neck / 2},
+                          {8, -4},
+                          {8, 4},
+                          {1, neck / 2},
+                          {-1, neck / 2},
+                          {-8, 4}}}});
   };
   expect_meshed(plan_of(hourglass(0.8), 1));
   const OutlinedCells made = meshed(plan_of(hourglass(0.1), 1));
@@ -275,8 +282,8 @@ TEST(Outline, Flaws) {
   const Ring whole = box(0, 10, 0, 10);
   EXPECT_EQ(flaw({{whole}}), "");
   EXPECT_EQ(flaw({{whole, box(1, 2, 1, 2), box(3, 4, 3, 4)}}), "");
-  EXPECT_EQ(flaw({{whole}, {box(10, 12, 0, 10)}}), "");                     // they touch
-  EXPECT_EQ(flaw({{whole, box(2, 8, 2, 8)}, {box(3, 4, 3, 4)}}), "");      // in the lake of another
+  EXPECT_EQ(flaw({{whole}, {box(10, 12, 0, 10)}}), "");                // they touch
+  EXPECT_EQ(flaw({{whole, box(2, 8, 2, 8)}, {box(3, 4, 3, 4)}}), "");  // in the lake of another
   EXPECT_NE(flaw({{{{0, 0}, {1, 0}}}}).find("has 2 different corners"), std::string::npos);
   EXPECT_NE(flaw({{{{0, 0}, {4, 4}, {4, 0}, {0, 4}}}}).find("crosses itself near (2, 2)"),
             std::string::npos);

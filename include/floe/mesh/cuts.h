@@ -42,8 +42,8 @@ struct MeshedBox {
   SheetPlan plan;  ///< rectangular
   std::array<double, 2> centre{};
 };
-/// Returns the rectangles of a sheet, one per polygon of its outline; that of a plan without outline
-/// is the plan.
+/// Returns the rectangles of a sheet, one per polygon of its outline; that of a plan without
+/// outline is the plan.
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan);
 
 /// An edge of an outline on which no row of cells could end.

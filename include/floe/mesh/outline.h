@@ -36,7 +36,7 @@ class Outline {
   bool empty() const { return polygons_.empty(); }
   const std::vector<RingedPolygon>& polygons() const { return polygons_; }
   std::size_t corners() const;
-  double area() const;                    ///< [m^2]
+  double area() const;                     ///< [m^2]
   std::array<double, 2> centroid() const;  ///< [m]
   PlanBox box() const;
   /// Whether a point lies in one of the polygons.

@@ -66,10 +66,10 @@ struct Tessellation {
   std::int64_t degenerate = 0;
 };
 
-/// Meshes a rectangular plan. Collective; the result is whole and bitwise the same on every rank and for any
-/// number of ranks. Cells are numbered along a Hilbert curve over the plan. PETSc's options of the
-/// quasi-Newton solver have the prefix mesh_ (-mesh_tao_monitor).
-/// \param on_iteration  called after each sweep with its number and the largest move over l; by
+/// Meshes a rectangular plan. Collective; the result is whole and bitwise the same on every rank
+/// and for any number of ranks. Cells are numbered along a Hilbert curve over the plan. PETSc's
+/// options of the quasi-Newton solver have the prefix mesh_ (-mesh_tao_monitor). \param
+/// on_iteration  called after each sweep with its number and the largest move over l; by
 /// quasi_newton after each accepted step, with the number of evaluations so far (may be empty)
 /// \throws InputError if there would be more than 1e8 cells
 Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,

@@ -68,7 +68,7 @@ def check_real_floe(test, run):
     u = [output.field("bodies_displacement", t)[:, 0] for t in times]
     speed = mass @ (u[-1] - u[-2]) / mass.sum() / (times[-1] - times[-2])
     lost = mass.sum() * (0.5 - speed)
-    test.assertAlmostEqual(impulse / lost, 1, delta=0.03)
+    test.assertAlmostEqual(impulse / lost, 1, delta=0.01)
     test.assertEqual(row["fragments"], 1)
 
 
