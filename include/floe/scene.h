@@ -36,6 +36,7 @@ enum class Planarity { automatic, always, never };
 struct Region {
   std::string name;
   std::array<double, 6> box{};  ///< x0, x1, y0, y1, z0, z1 [m]
+  bool edge = false;            ///< of bodies with an edge of the sheet in the box, not a centroid
 };
 
 struct Cut {
@@ -73,6 +74,14 @@ struct Scene {
   } forces;
   bool has_sheet = false;  ///< whether a sheet is meshed; otherwise lattice_file is read
   SheetPlan sheet;
+  /// Where the sheet's outline comes from, as placed but before it was simplified.
+  struct {
+    std::string file;         ///< empty: the sheet is a rectangle
+    double simplify = 0;      ///< tolerance [m]
+    std::size_t corners = 0;  ///< of all rings
+    double area = 0;          ///< [m^2]
+    double moved = 0;         ///< area between it and the simplified one [m^2]
+  } outline;
   bool fit_cuts = true;   ///< whether the sheet's cells end on the lines of cuts
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;   ///< of the sheet [m]; the mean of a random field

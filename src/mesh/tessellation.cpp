@@ -35,8 +35,7 @@ std::vector<Point2> permuted(const std::vector<Point2>& points,
 
 std::int64_t number_of_cells(const SheetPlan& plan) {
   const double l = plan.element_size;
-  return static_cast<std::int64_t>(
-      std::ceil(2 * plan.length * plan.width / (std::numbers::sqrt3 * l * l)));
+  return static_cast<std::int64_t>(std::ceil(2 * plan.area() / (std::numbers::sqrt3 * l * l)));
 }
 
 Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,

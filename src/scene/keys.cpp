@@ -36,6 +36,21 @@ constexpr std::array table{
     OptionSpec{"sheet: length", number, "40", "m", ">= 1e-9, <= 1e9",
                "extent in x; the plan is centred on the origin"},
     OptionSpec{"sheet: width", number, "(sheet: length)", "m", ">= 1e-9, <= 1e9", "extent in y"},
+    OptionSpec{"sheet: outline", text, "(none: the rectangle)", "", "",
+               "GeoJSON or table of x, y: polygons with holes that the sheet fills, instead of "
+               "length and width"},
+    OptionSpec{"sheet: outline_feature", integer, "0", "", ">= 0, <= 2000000",
+               "number of the one feature of the file that is taken, from 1; 0: all"},
+    OptionSpec{"sheet: outline_scale", number, "1", "m", ">= 1e-12, <= 1e12",
+               "length of one unit of the file's coordinates"},
+    OptionSpec{"sheet: outline_place", numbers, "(as in the file)", "m", ">= -1e9, <= 1e9",
+               "x, y to which the centroid comes", 2},
+    OptionSpec{"sheet: outline_turn", number, "0", "degrees", ">= -360, <= 360",
+               "turn about the centroid, counter-clockwise"},
+    OptionSpec{"sheet: outline_simplify", number, "(half of sheet: element_size)", "m",
+               ">= 0, <= 1e9",
+               "corners that lie within this of the edge that takes their place are left out; 0: "
+               "none"},
     OptionSpec{"sheet: thickness", number, "1", "m", ">= 1e-9, <= 1e9",
                "extent in z; with thickness_deviation the mean"},
     OptionSpec{"sheet: thickness_file", text, "(none)", "", "",
@@ -68,6 +83,9 @@ constexpr std::array table{
                "further sets of bodies: one section each"},
     OptionSpec{"region: NAME: box", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x0, x1, y0, y1, z0, z1: the set is the bodies with their centroid inside", 6},
+    OptionSpec{"region: NAME: edge", flag, "false", "", "",
+               "of a sheet: the set is the bodies with an edge on the outline whose middle is "
+               "inside"},
     OptionSpec{"cut: names", names, "(none)", "", "", "cuts through the sheet: one section each"},
     OptionSpec{
         "cut: NAME: from", numbers, "(required)", "m", ">= -1e9, <= 1e9",

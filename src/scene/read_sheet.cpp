@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "floe/mesh/cuts.h"
 #include "reading.h"
 
 namespace floe {
@@ -35,9 +36,12 @@ void read_thickness(Options& options, Scene& scene) {
 
 void read_sheet(Options& options, Scene& scene) {
   SheetPlan& plan = scene.sheet;
-  plan.length = options.number("sheet: length");
-  plan.width = options.number("sheet: width", {}, plan.length);
   plan.element_size = options.number("sheet: element_size");
+  const bool has_outline = read_outline(options, scene);
+  if (!has_outline) {
+    plan.length = options.number("sheet: length");
+    plan.width = options.number("sheet: width", {}, plan.length);
+  }
   plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
   plan.relaxation = options.choice<Relaxation>("sheet: relaxation");
   plan.iterations = static_cast<int>(options.integer("sheet: iterations"));
@@ -50,12 +54,14 @@ void read_sheet(Options& options, Scene& scene) {
   scene.limit.memory = options.number("limit: memory", {}, 0.0);
 
   const double shorter = std::min(plan.length, plan.width);
-  if (plan.element_size > shorter)
+  if (plan.element_size > shorter && !has_outline)
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
                      (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
                      text_of(shorter) + " [m]");
   constexpr double most_bodies = 1e8;  // indices of beams and facets have 32 bits
-  const double bodies = (plan.length / plan.element_size) * (plan.width / plan.element_size);
+  double bodies = 0;
+  for (const MeshedBox& box : meshed_boxes(plan))
+    bodies += (box.plan.length / plan.element_size) * (box.plan.width / plan.element_size);
   if (bodies > most_bodies)
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +
                      text_of(bodies) + " bodies, at most " + text_of(most_bodies) +
@@ -112,7 +118,11 @@ void read_lattice_source(Options& options, Scene& scene) {
 
 void read_regions_and_cuts(Options& options, Scene& scene) {
   for (const std::string& name : options.names("region")) {
-    const Region region{name, options.numbers<6>("region: NAME: box", name)};
+    Region region{name, options.numbers<6>("region: NAME: box", name)};
+    if (scene.has_sheet)
+      region.edge = options.flag("region: NAME: edge", name);
+    else
+      options.refuse_one("region: NAME: edge", name, "needs 'sheet': a lattice file has no edges");
     const auto& box = region.box;
     if (box[0] > box[1] || box[2] > box[3] || box[4] > box[5])
       throw InputError("region: " + name +

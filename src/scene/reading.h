@@ -17,6 +17,9 @@ std::string text_of(double value);
 void read_forces(Options& options, Scene& scene);
 /// Reads the sheet and its ice, or the lattice file.
 void read_lattice_source(Options& options, Scene& scene);
+/// Reads the outline of a sheet whose element size is known, and refuses keys that have no effect
+/// with it or without it. \return whether there is one. Collective.
+bool read_outline(Options& options, Scene& scene);
 void read_regions_and_cuts(Options& options, Scene& scene);
 void read_fracture(Options& options, Scene& scene);
 void read_water(Options& options, Scene& scene);

@@ -1,6 +1,8 @@
 #include "units.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "reading.h"
 
@@ -16,6 +18,21 @@ constexpr std::array units{Unit{"Pa", "GPa", 1e9},       Unit{"Pa", "MPa", 1e6},
                            Unit{"Pa", "kPa", 1e3},       Unit{"m", "mm", 1e-3},
                            Unit{"m", "km", 1e3},         Unit{"kg/m^3", "g/cm^3", 1e3},
                            Unit{"J/m^2", "kJ/m^2", 1e3}, Unit{"J/m^2", "mJ/m^2", 1e-3}};
+
+/// Asks about an outline that is small, or so far away that coordinates lose digits.
+void look_at_outline(const Scene& scene, std::vector<std::string>& lines) {
+  const auto [least, most] = scene.sheet.outline.box();
+  const double size = std::max(most[0] - least[0], most[1] - least[1]);
+  const double away = std::max(std::abs(least[0] + most[0]), std::abs(least[1] + most[1])) / 2;
+  constexpr double smallest = 0.1, largest = 1e6, farthest = 1e4;
+  if (size < smallest || size > largest)
+    lines.push_back("sheet: outline: is " + text_of(size) +
+                    " m long: is sheet: outline_scale what it should be?");
+  if (away > farthest && away > 10 * size)
+    lines.push_back("sheet: outline: lies " + text_of(away) +
+                    " m from the origin, where coordinates lose digits: sheet: outline_place: "
+                    "[0, 0] brings it there");
+}
 
 }  // namespace
 
@@ -39,8 +56,12 @@ std::vector<std::string> unusual_numbers(const Scene& scene) {
                     std::string(unit) + "):" + (question.empty() ? " units are SI" : question));
   };
   if (scene.has_sheet) {
-    look("sheet: length", scene.sheet.length, "m", 0.1, 1e6);
-    look("sheet: width", scene.sheet.width, "m", 0.1, 1e6);
+    if (scene.sheet.outline.empty()) {
+      look("sheet: length", scene.sheet.length, "m", 0.1, 1e6);
+      look("sheet: width", scene.sheet.width, "m", 0.1, 1e6);
+    } else {
+      look_at_outline(scene, lines);
+    }
     look("sheet: thickness", scene.thickness, "m", 1e-3, 100);
     look("ice: density", scene.ice.density, "kg/m^3", 100, 2000);
     if (scene.forces.beam) look("ice: young", scene.ice.young, "Pa", 1e6, 1e11);

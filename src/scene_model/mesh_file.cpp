@@ -1,7 +1,6 @@
 #include "scene_model/mesh_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -13,32 +12,56 @@
 #include "files/hdf5.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"
+#include "floe/mesh/cuts.h"
 
 namespace floe {
 namespace {
 
 using Entry = std::pair<const char*, double>;
 
-/// Values on which a mesh depends. The seed is stored in two halves, since a double holds 53 bits.
-std::array<Entry, 9> identity(const SheetPlan& plan) {
-  return {Entry{"format", 1},
-          {"length", plan.length},
-          {"width", plan.width},
-          {"element_size", plan.element_size},
-          {"seed", static_cast<double>(plan.seed & 0xffffffffU)},
-          {"seed_high", static_cast<double>(plan.seed >> 32U)},
-          {"quasi_newton", plan.relaxation == Relaxation::quasi_newton ? 1.0 : 0.0},
-          {"iterations", static_cast<double>(plan.iterations)},
-          {"tolerance", plan.tolerance}};
+/// Values on which a mesh depends. Numbers of 64 bits are stored in two halves, since a double
+/// holds 53 bits.
+std::vector<Entry> identity(const SheetPlan& plan) {
+  const auto low = [](std::uint64_t x) { return static_cast<double>(x & 0xffffffffU); };
+  const auto high = [](std::uint64_t x) { return static_cast<double>(x >> 32U); };
+  const bool is_rectangle = plan.outline.empty();
+  std::vector<Entry> entries{
+      Entry{"format", is_rectangle ? 1 : 2},
+      {"length", plan.length},
+      {"width", plan.width},
+      {"element_size", plan.element_size},
+      {"seed", low(plan.seed)},
+      {"seed_high", high(plan.seed)},
+      {"quasi_newton", plan.relaxation == Relaxation::quasi_newton ? 1.0 : 0.0},
+      {"iterations", static_cast<double>(plan.iterations)},
+      {"tolerance", plan.tolerance}};
+  if (!is_rectangle) {
+    const std::uint64_t outline = plan.outline.identity();
+    entries.push_back({"outline", low(outline)});
+    entries.push_back({"outline_high", high(outline)});
+  }
+  return entries;
 }
 
-/// The part of a relaxation that a file keeps.
+/// The part of a relaxation that a file keeps: the generators of each rectangle, about its centre.
 struct Relaxed {
-  std::vector<Point2> generators;
+  std::vector<std::vector<Point2>> generators;
   int iterations = 0;
 };
 
-Relaxed read(const SheetPlan& plan, const std::string& path) {
+/// \throws InputError if these are no generators of a rectangle
+void check(const std::vector<Point2>& generators, const SheetPlan& plan, const std::string& path) {
+  for (const auto& [x, y] : generators) {
+    if (!(std::abs(x) <= plan.length / 2 && std::abs(y) <= plan.width / 2))
+      throw InputError("sheet: mesh_file: '" + path + "' has a generator outside the sheet");
+  }
+  std::vector<Point2> sorted = generators;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    throw InputError("sheet: mesh_file: '" + path + "' has a generator twice");
+}
+
+Relaxed read(const SheetPlan& plan, const std::vector<MeshedBox>& boxes, const std::string& path) {
   const Hdf5File file = Hdf5File::open(path, "sheet: mesh_file");
   if (!file.has("generators"))
     throw InputError("sheet: mesh_file: '" + path + "' is not a mesh file (no /generators)");
@@ -48,33 +71,33 @@ Relaxed read(const SheetPlan& plan, const std::string& path) {
                        name + " differs); remove it or name another file");
   }
   const std::vector<double> values = file.read("generators", 2);
+  std::int64_t cells = 0;
+  for (const MeshedBox& box : boxes) cells += number_of_cells(box.plan);
+  if (static_cast<std::int64_t>(values.size() / 2) != cells)
+    throw InputError("sheet: mesh_file: '" + path + "' has " + std::to_string(values.size() / 2) +
+                     " generators, the sheet " + std::to_string(cells) + " cells");
   Relaxed relaxed;
-  for (std::size_t k = 0; k + 1 < values.size(); k += 2)
-    relaxed.generators.push_back({values[k], values[k + 1]});
-  for (const auto& [x, y] : relaxed.generators) {
-    if (!(std::abs(x) <= plan.length / 2 && std::abs(y) <= plan.width / 2))
-      throw InputError("sheet: mesh_file: '" + path + "' has a generator outside the sheet");
+  std::size_t next = 0;
+  for (const MeshedBox& box : boxes) {
+    std::vector<Point2>& generators = relaxed.generators.emplace_back();
+    for (std::int64_t n = number_of_cells(box.plan); n > 0; --n, next += 2)
+      generators.push_back({values[next], values[next + 1]});
+    check(generators, box.plan, path);
   }
-  if (static_cast<std::int64_t>(relaxed.generators.size()) != number_of_cells(plan))
-    throw InputError("sheet: mesh_file: '" + path + "' has " +
-                     std::to_string(relaxed.generators.size()) + " generators, the sheet " +
-                     std::to_string(number_of_cells(plan)) + " cells");
   const double done = file.read_attribute("generators", "iterations_done");
   if (!(done >= 0 && done <= 1e9))
     throw InputError("sheet: mesh_file: '" + path + "' has a bad number of iterations");
   relaxed.iterations = static_cast<int>(done);
-  std::vector<Point2> sorted = relaxed.generators;
-  std::sort(sorted.begin(), sorted.end());
-  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
-    throw InputError("sheet: mesh_file: '" + path + "' has a generator twice");
   return relaxed;
 }
 
 void write(const SheetPlan& plan, const std::string& path, const Relaxed& relaxed) {
   remove_left_over(path);
+  std::vector<double> values;
+  for (const auto& generators : relaxed.generators)
+    for (const auto& [x, y] : generators) values.push_back(x), values.push_back(y);
   Hdf5File file = Hdf5File::create(path);
-  file.write("generators",
-             std::span(relaxed.generators.front().data(), 2 * relaxed.generators.size()), 2);
+  file.write("generators", std::span<const double>(values), 2);
   for (const auto& [name, value] : identity(plan)) file.attribute("generators", name, value);
   file.attribute("generators", "iterations_done", relaxed.iterations);
   file.close();
@@ -82,9 +105,10 @@ void write(const SheetPlan& plan, const std::string& path, const Relaxed& relaxe
 
 }  // namespace
 
-Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file, MPI_Comm comm,
-                                  const std::function<void(int, double)>& on_iteration,
-                                  std::function<void()>& keep) {
+std::vector<Tessellation> tessellate_with_file(const SheetPlan& plan, const std::string& file,
+                                               MPI_Comm comm,
+                                               const std::function<void(int, double)>& on_iteration,
+                                               std::function<void()>& keep) {
   bool there = false;
   // Any existing entry counts, so that an unreadable file is an error and is not replaced.
   std::error_code ignored;
@@ -92,16 +116,23 @@ Tessellation tessellate_with_file(const SheetPlan& plan, const std::string& file
     there = std::filesystem::symlink_status(file, ignored).type() !=
             std::filesystem::file_type::not_found;
   broadcast(there, comm);
+  const std::vector<MeshedBox> boxes = meshed_boxes(plan);
   Relaxed relaxed;
   if (there) {
-    relaxed = read(plan, file);
+    relaxed = read(plan, boxes, file);
   } else {
-    Tessellation made = tessellate(plan, comm, on_iteration);
-    relaxed = {std::move(made.generators), made.iterations};
+    for (const MeshedBox& box : boxes) {
+      Tessellation made = tessellate(box.plan, comm, on_iteration);
+      relaxed.generators.push_back(std::move(made.generators));
+      relaxed.iterations = std::max(relaxed.iterations, made.iterations);
+    }
     keep = [plan, file, comm, relaxed] { on_root(comm, [&] { write(plan, file, relaxed); }); };
   }
-  Tessellation cells = tessellate(plan, std::move(relaxed.generators));
-  cells.iterations = relaxed.iterations;
+  std::vector<Tessellation> cells;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    cells.push_back(tessellate(boxes[k].plan, std::move(relaxed.generators[k])));
+    cells.back().iterations = relaxed.iterations;
+  }
   return cells;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,63 +34,188 @@ double mid_plane(const Scene& scene) {
   return scene.thickness * (0.5 - relative_density);
 }
 
-/// Makes cells end on the scene's cuts. \return what became of each cut
-std::vector<FittedCut> fit_cuts(const Scene& scene, MPI_Comm comm, Tessellation& cells,
-                                MeshReport& report) {
-  std::vector<CutLine> lines;
-  for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
-  FittedCells fitted = fit_to_cuts(scene.sheet, std::move(cells), lines, comm);
-  cells = std::move(fitted.cells);
+/// Returns a remark on cuts on which cells do not end; empty if there are none.
+std::string remark_on(const std::vector<FittedCut>& cuts, const Scene& scene) {
   double length = 0, followed = 0;
   std::vector<std::string> apart;
-  for (std::size_t k = 0; k < fitted.cuts.size(); ++k) {
-    const FittedCut& cut = fitted.cuts[k];
+  for (std::size_t k = 0; k < cuts.size(); ++k) {
+    const FittedCut& cut = cuts[k];
     length += cut.length, followed += cut.followed;
     if (std::abs(cut.followed - cut.length) > 1e-6 * cut.length)
       apart.push_back(scene.cuts[k].name);
   }
-  if (!apart.empty())
-    report.cuts = "cut: " + apart.front() +
-                  (apart.size() > 1 ? " and " + std::to_string(apart.size() - 1) + " more" : "") +
-                  ": the cells do not end on " + (apart.size() > 1 ? "them" : "it") +
-                  " everywhere (" + text_of(followed) + " of " + text_of(length) +
-                  " m of all cuts), but the cuts follow the cells: they are short, or near each "
-                  "other or the outline, for sheet: element_size: " +
-                  text_of(scene.sheet.element_size);
+  if (apart.empty()) return {};
+  return "cut: " + apart.front() +
+         (apart.size() > 1 ? " and " + std::to_string(apart.size() - 1) + " more" : "") +
+         ": the cells do not end on " + (apart.size() > 1 ? "them" : "it") + " everywhere (" +
+         text_of(followed) + " of " + text_of(length) +
+         " m of all cuts), but the cuts follow the cells: they are short, or near each other or "
+         "the outline, for sheet: element_size: " +
+         text_of(scene.sheet.element_size);
+}
+
+[[noreturn]] void refuse(const UnfollowedEdge& edge, std::size_t others, const Scene& scene) {
+  const auto& [from, to] = edge.line;
+  const Outline& outline = scene.sheet.outline;
+  throw InputError(
+      "sheet: outline: '" + scene.outline.file +
+      "': " + name_of_ring(outline, edge.polygon, edge.ring) +
+      ": no cells of sheet: "
+      "element_size: " +
+      text_of(scene.sheet.element_size) + " can end on edge " + std::to_string(edge.edge + 1) +
+      " of " + std::to_string(outline.polygons()[edge.polygon][edge.ring].size()) + ", from (" +
+      text_of(from[0]) + ", " + text_of(from[1]) + ") to (" + text_of(to[0]) + ", " +
+      text_of(to[1]) + ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
+      ": raise sheet: outline_simplify (now " + text_of(scene.outline.simplify) +
+      ") or lower sheet: element_size");
+}
+
+/// Makes cells end on the outline, if there is one, and on the scene's cuts. \return what became of
+/// each cut
+std::vector<FittedCut> fit(const Scene& scene, MPI_Comm comm, std::vector<Tessellation> relaxed,
+                           Tessellation& cells) {
+  std::vector<CutLine> lines;
+  if (scene.fit_cuts)
+    for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
+  if (!scene.sheet.outline.empty()) {
+    OutlinedCells fitted = fit_to_outline(scene.sheet, std::move(relaxed), lines, comm);
+    const auto& edges = fitted.unfollowed;
+    if (!edges.empty()) refuse(edges.front(), edges.size() - 1, scene);
+    cells = std::move(fitted.cells);
+    return std::move(fitted.cuts);
+  }
+  if (lines.empty()) {
+    cells = std::move(relaxed.front());
+    return {};
+  }
+  FittedCells fitted = fit_to_cuts(scene.sheet, std::move(relaxed.front()), lines, comm);
+  cells = std::move(fitted.cells);
   return std::move(fitted.cuts);
 }
 
+/// Makes the tessellations of the sheet, or of the rectangles around its polygons.
+std::vector<Tessellation> relax(const Scene& scene, MPI_Comm comm, MeshReport& report) {
+  Progress progress("mesh", scene.sheet.iterations);
+  const auto show = [&](int iteration, double move) {
+    stop_if_asked(comm);
+    char note[48];
+    std::snprintf(note, sizeof note, "largest move %.2g l", move);
+    progress.update(iteration, note);
+  };
+  if (!scene.mesh_file.empty())
+    return tessellate_with_file(scene.sheet, scene.mesh_file, comm, show, report.keep);
+  std::vector<Tessellation> relaxed;
+  for (const MeshedBox& box : meshed_boxes(scene.sheet))
+    relaxed.push_back(tessellate(box.plan, comm, show));
+  return relaxed;
+}
+
+/// Adds the sets of bodies with an edge of the sheet in a region.
+void add_edge_regions(const Scene& scene, const Tessellation& cells, Lattice& lattice) {
+  const bool any = std::any_of(scene.regions.begin(), scene.regions.end(),
+                               [](const Region& region) { return region.edge; });
+  if (!any) return;
+  const std::vector<BoundaryEdge> edges = boundary_edges(cells);
+  for (const Region& region : scene.regions) {
+    if (!region.edge) continue;
+    const auto& [x0, x1, y0, y1, z0, z1] = region.box;
+    std::vector<std::int32_t> inside;
+    for (const auto& [cell, from, to] : edges) {
+      const double x = (from[0] + to[0]) / 2, y = (from[1] + to[1]) / 2;
+      const double z = item(lattice.bodies.position, cell).z;
+      if (x >= x0 && x <= x1 && y >= y0 && y <= y1 && z >= z0 && z <= z1 &&
+          (inside.empty() || inside.back() != cell))
+        inside.push_back(cell);
+    }
+    if (inside.empty())
+      throw InputError("region: " + region.name +
+                       ": box: no edge of the sheet has its middle inside this box");
+    lattice.sets[region.name] = std::move(inside);
+  }
+}
+
+/// A rectangular sheet.
+struct Rectangle {
+  SheetPlan plan;
+  Tessellation cells;
+};
+
+/// Returns the rectangle around the largest polygon of the outline, in which the strength of the
+/// sheet is found.
+Rectangle largest(const SheetPlan& sheet, const std::vector<Tessellation>& relaxed) {
+  std::vector<MeshedBox> boxes = meshed_boxes(sheet);
+  const auto box = std::max_element(boxes.begin(), boxes.end(), [](const auto& a, const auto& b) {
+    return a.plan.area() < b.plan.area();
+  });
+  return {std::move(box->plan), relaxed[static_cast<std::size_t>(box - boxes.begin())]};
+}
+
+bool finds_strength(const Scene& scene) {
+  return scene.forces.fracture &&
+         (scene.fracture.calibrate || scene.fracture.flexural_strength > 0);
+}
+
+SheetSection section_of(const Scene& scene) {
+  return {scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor, scene.torsion};
+}
+
+/// Describes the sheet's outline; empty if it is a rectangle.
+std::string outline_text(const Scene& scene) {
+  const Outline& outline = scene.sheet.outline;
+  if (outline.empty()) return {};
+  const std::size_t polygons = outline.polygons().size();
+  std::string text = "outline: " + std::to_string(polygons) + " polygon" +
+                     (polygons == 1 ? "" : "s") + ", " + std::to_string(outline.corners()) +
+                     " corners, " + text_of(outline.area()) + " m^2";
+  if (scene.outline.simplify > 0)
+    text += " (simplified to " + text_of(scene.outline.simplify) + " m from " +
+            std::to_string(scene.outline.corners) + " corners, " + text_of(scene.outline.area) +
+            " m^2; " + text_of(100 * scene.outline.moved / scene.outline.area) +
+            " % of the area moved)";
+  return text;
+}
+
+/// \param around  set for a sheet with an outline whose strength is to be found
 Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
-                   std::vector<FittedCut>& cuts) {
-  const SheetSection section{scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor,
-                             scene.torsion};
+                   std::vector<FittedCut>& cuts, std::optional<Rectangle>& around) {
+  const SheetSection section = section_of(scene);
   check_size(scene, free_memory(comm), size(comm));
   Tessellation cells;
   {
     const Timed timed(Event::mesh);
-    Progress progress("mesh", scene.sheet.iterations);
-    const auto show = [&](int iteration, double move) {
-      stop_if_asked(comm);
-      char note[48];
-      std::snprintf(note, sizeof note, "largest move %.2g l", move);
-      progress.update(iteration, note);
-    };
-    cells = scene.mesh_file.empty()
-                ? tessellate(scene.sheet, comm, show)
-                : tessellate_with_file(scene.sheet, scene.mesh_file, comm, show, report.keep);
-  }
-  report.largest_move = cells.largest_move;  // of the relaxation, as are the iterations
-  report.iterations = cells.iterations;
-  if (!scene.cuts.empty() && scene.fit_cuts) {
-    const Timed timed(Event::mesh);
-    cuts = fit_cuts(scene, comm, cells, report);
+    std::vector<Tessellation> relaxed = relax(scene, comm, report);
+    for (const Tessellation& t : relaxed) {
+      report.largest_move = std::max(report.largest_move, t.largest_move);
+      report.iterations = std::max(report.iterations, t.iterations);
+    }
+    if (!scene.sheet.outline.empty() && finds_strength(scene))
+      around = largest(scene.sheet, relaxed);
+    std::vector<FittedCut> fitted = fit(scene, comm, std::move(relaxed), cells);
+    report.outline = outline_text(scene);
+    report.cuts = remark_on(fitted, scene);
+    if (!fitted.empty()) cuts = std::move(fitted);
   }
   report.energy_ratio = cells.energy_ratio;
   report.degenerate = cells.degenerate;
   const Timed timed(Event::lattice);
   const std::vector<double> thickness = thickness_of_cells(scene, cells);
   if (!thickness.empty()) report.thickness = thickness_report(cells, thickness);
-  return make_sheet(cells, section, thickness);
+  Lattice lattice = make_sheet(cells, section, thickness);
+  add_edge_regions(scene, cells, lattice);
+  return lattice;
+}
+
+/// Finds the strength of the sheet, on its own lattice or on that of the rectangle around it, where
+/// a uniform load makes a uniform stress. Collective.
+StrengthCalibration strength_of(const Scene& scene, const Lattice& lattice,
+                                const std::optional<Rectangle>& around, MPI_Comm comm) {
+  if (!around) return calibrate_strength(scene, lattice, comm);
+  Scene rectangle = scene;
+  rectangle.sheet = around->plan;
+  Lattice cells = make_sheet(around->cells, section_of(scene));
+  if (scene.calibrate != Calibrate::none)
+    (void)calibrate(cells, scene.ice, scene.calibrate, scene.beam.shear);
+  return calibrate_strength(rectangle, cells, comm);
 }
 
 }  // namespace
@@ -97,8 +223,9 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.has_sheet) require_lattice_file(scene, comm);
   std::vector<FittedCut> fitted(scene.cuts.size());
-  Lattice lattice =
-      scene.has_sheet ? mesh_sheet(scene, comm, report, fitted) : read_lattice(scene.lattice_file);
+  std::optional<Rectangle> around;
+  Lattice lattice = scene.has_sheet ? mesh_sheet(scene, comm, report, fitted, around)
+                                    : read_lattice(scene.lattice_file);
   const Timed timed(Event::lattice);
   if (scene.forces.beam && lattice.beams.size() == 0)
     throw InputError(scene.has_sheet
@@ -107,8 +234,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
   if (scene.calibrate != Calibrate::none)
     report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
-  if (scene.forces.fracture && (scene.fracture.calibrate || scene.fracture.flexural_strength > 0))
-    report.strength = calibrate_strength(scene, lattice, comm);
+  if (finds_strength(scene)) report.strength = strength_of(scene, lattice, around, comm);
   for (std::size_t k = 0; k < scene.cuts.size(); ++k) {
     const Cut& c = scene.cuts[k];
     const std::int32_t before = lattice.beams.size();
@@ -121,7 +247,8 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   all.resize(static_cast<std::size_t>(lattice.bodies.size()));
   std::iota(all.begin(), all.end(), 0);
   for (const Region& region : scene.regions)
-    add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
+    if (!region.edge)
+      add_region(lattice, region.name, region.box, "region: " + region.name + ": box");
   if (scene.inertia_factor != 1) {
     for (Point3& moments : lattice.bodies.inertia) moments = scene.inertia_factor * moments;
   }

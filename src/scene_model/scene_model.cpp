@@ -67,15 +67,21 @@ void check_point(const PlacedLoad& placed, const Lattice& lattice, double factor
                      "), which reaches no farther than " + text_of(reach) + " m");
 }
 
+/// Whether a point lies beside the sheet.
+bool is_beside(const Point2& p, const SheetPlan& sheet) {
+  if (sheet.outline.empty())
+    return 2 * std::abs(p[0]) > sheet.length || 2 * std::abs(p[1]) > sheet.width;
+  constexpr double rounding = 1e-9;  // a point on the outline is not beside it
+  return !sheet.outline.contains(p) && sheet.outline.distance(p) > rounding * sheet.element_size;
+}
+
 }  // namespace
 
 std::vector<PlacedLoad> place_loads(const Scene& scene, const Lattice& lattice) {
   std::vector<PlacedLoad> placed;
   for (const Load& load : scene.loads) {
-    const bool beside = scene.has_sheet && load.point &&
-                        (2 * std::abs((*load.point)[0]) > scene.sheet.length ||
-                         2 * std::abs((*load.point)[1]) > scene.sheet.width);
-    if (beside) throw InputError("load: " + load.name + ": point: lies outside the sheet");
+    if (scene.has_sheet && load.point && is_beside(*load.point, scene.sheet))
+      throw InputError("load: " + load.name + ": point: lies outside the sheet");
     placed.push_back(place(load, lattice));
     if (load.point && !scene.has_sheet) check_point(placed.back(), lattice, scene.inertia_factor);
   }

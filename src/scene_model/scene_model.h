@@ -26,7 +26,8 @@ struct MeshReport {
   std::optional<Calibration> calibration;
   std::optional<StrengthCalibration> strength;
   std::optional<ThicknessReport> thickness;  ///< of a sheet whose thickness varies
-  std::string cuts;  ///< a remark on cuts on which cells do not end; empty: there are none
+  std::string outline;  ///< a line on the sheet's outline; empty: the sheet is a rectangle
+  std::string cuts;     ///< a remark on cuts on which cells do not end; empty: there are none
   std::function<void()> keep = [] {
     /// Writes the mesh's file, if one is to be written. Collective.
   };

@@ -55,7 +55,8 @@ double mean_x(const Model<Space>& model, const Boundary& boundary) {
 }
 
 /// Adds the tension test (model.md, "Tension test"): E = F/(A0 eps) with F the internal forces of
-/// the beams on the left bodies, eps = u/L, A0 = width h (paper). With the gauge length between the
+/// the beams on the left bodies, eps = u/L, A0 = width h (paper); L of an outline is its extent in
+/// x, and its mean width is the area over L. With the gauge length between the
 /// centroids of the edge cells, on which u acts, in place of L, E tends to the modulus of a large
 /// sheet.
 template <class Space>
@@ -64,7 +65,9 @@ void add_tension(const Scene& scene, const Model<Space>& model, const MeshReport
   const BoundarySample& left = last.boundaries.at(boundary_on(scene, "left")->name);
   const BoundarySample& right = last.boundaries.at(boundary_on(scene, "right")->name);
   const double strain = (right.displacement[0] - left.displacement[0]) / scene.sheet.length;
-  const double young = -left.force[0] / (scene.sheet.width * scene.thickness * strain);
+  const double width =
+      scene.sheet.outline.empty() ? scene.sheet.width : scene.sheet.area() / scene.sheet.length;
+  const double young = -left.force[0] / (width * scene.thickness * strain);
   const double gauge =
       mean_x(model, *boundary_on(scene, "right")) - mean_x(model, *boundary_on(scene, "left"));
   const double gauged = young * gauge / scene.sheet.length;
@@ -183,6 +186,24 @@ Json as_json(const StrengthCalibration& c) {
   json["bending_along_x"] = c.bending.along_x;
   json["bending_along_y"] = c.bending.along_y;
   return json;
+}
+
+/// Describes the sheet's outline, and what simplification did to that of its file.
+Json as_json(const Outline& outline, const Scene& scene) {
+  std::size_t holes = 0;
+  for (const RingedPolygon& polygon : outline.polygons()) holes += polygon.size() - 1;
+  const auto [least, most] = outline.box();
+  return {{"file", scene.outline.file},
+          {"polygons", outline.polygons().size()},
+          {"holes", holes},
+          {"corners", outline.corners()},
+          {"area", outline.area()},
+          {"centroid", outline.centroid()},
+          {"box", {least[0], most[0], least[1], most[1]}},
+          {"corners_of_file", scene.outline.corners},
+          {"area_of_file", scene.outline.area},
+          {"simplified_to", scene.outline.simplify},
+          {"area_moved", scene.outline.moved}};
 }
 
 /// Adds where a path ended, and its limit points.
@@ -312,6 +333,7 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     json["cvt_largest_move"] = mesh.largest_move;
     json["cvt_iterations"] = mesh.iterations;
     json["degenerate_facets"] = mesh.degenerate;
+    if (!scene.sheet.outline.empty()) json["outline"] = as_json(scene.sheet.outline, scene);
   }
   if (mesh.thickness) {
     const auto& [least, mean, most, deviation] = *mesh.thickness;

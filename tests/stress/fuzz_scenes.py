@@ -94,8 +94,9 @@ def number(scene, *path, default):
 def bound(scene, chance):
     """Makes a scene so small that an accepted run is short; words for the command line that end
     it."""
-    scene.pop(("sheet", "mesh_file"), None)
-    scene.pop(("sheet", "thickness_file"), None)
+    for key in [path for path in scene if path[0] == "sheet" and path[1:] and
+                path[1].startswith(("mesh_file", "outline", "thickness_file"))]:
+        scene.pop(key)
     length = number(scene, "sheet", "length", default="40")
     width = number(scene, "sheet", "width", default=scene.get(("sheet", "length"), "40"))
     size = number(scene, "sheet", "element_size", default="2")

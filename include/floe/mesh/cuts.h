@@ -13,11 +13,6 @@
 
 namespace floe {
 
-/// A straight cut in plan [m].
-struct CutLine {
-  std::array<double, 2> from{}, to{};
-};
-
 /// What became of one cut.
 struct FittedCut {
   /// The two cells, the smaller first, at each facet on the line.
@@ -37,8 +32,37 @@ struct FittedCells {
 /// meet, cross and end on the outline or inside. A line (or its part between two others) is left
 /// as it is where it would need cells much smaller than the element size: shorter than 0.4 l, or
 /// too close to another line or to the outline. Collective; the same bits for any number of ranks.
+/// \param plan  rectangular
 /// \param cells  of the relaxed plan; returned as they are if no line can be followed
 FittedCells fit_to_cuts(const SheetPlan& plan, Tessellation cells, std::span<const CutLine> lines,
                         MPI_Comm comm);
+
+/// A rectangle that is meshed first: that of a polygon of the outline with a margin.
+struct MeshedBox {
+  SheetPlan plan;  ///< rectangular
+  std::array<double, 2> centre{};
+};
+/// Returns the rectangles of a sheet, one per polygon of its outline; that of a plan without
+/// outline is the plan.
+std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan);
+
+/// An edge of an outline on which no row of cells could end.
+struct UnfollowedEdge {
+  std::size_t polygon = 0, ring = 0, edge = 0;
+  CutLine line;
+};
+
+struct OutlinedCells {
+  Tessellation cells;
+  std::vector<FittedCut> cuts;             ///< one per line
+  std::vector<UnfollowedEdge> unfollowed;  ///< where there are any, there are no cells
+};
+
+/// Changes the cells of the rectangles so that they end on the edges of the outline, polygon by
+/// polygon, and keeps those inside. Lines of cuts are followed inside the polygons, as by
+/// fit_to_cuts. Collective; the same bits for any number of ranks.
+/// \param relaxed  cells of the meshed_boxes()
+OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> relaxed,
+                             std::span<const CutLine> lines, MPI_Comm comm);
 
 }  // namespace floe

@@ -1,6 +1,6 @@
 /// \file
-/// Centroidal Voronoi tessellation of a rectangular sheet (model.md, "Sheet, mesh, bodies"; paper,
-/// "Mesh Creation").
+/// Centroidal Voronoi tessellation of a sheet (model.md, "Sheet, mesh, bodies"; paper, "Mesh
+/// Creation").
 #pragma once
 
 #include <mpi.h>
@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <functional>
 #include <vector>
+
+#include "floe/mesh/outline.h"
 
 namespace floe {
 
@@ -19,9 +21,9 @@ enum class Relaxation {
   quasi_newton,  ///< L-BFGS on the CVT energy (Liu et al. 2009): far fewer evaluations
 };
 
-/// The plan of a sheet, centred on the origin, and the parameters of its mesh. Lengths in m.
+/// The plan of a sheet and the parameters of its mesh. Lengths in m.
 struct SheetPlan {
-  double length = 40;       ///< extent in x
+  double length = 40;       ///< extent in x, of a rectangle centred on the origin or of `outline`
   double width = 40;        ///< extent in y
   double element_size = 2;  ///< l, flat-to-flat size of the regular hexagon of the mean cell area
   /// seed of the random generators; the same seed gives the same mesh on any number of ranks
@@ -29,9 +31,13 @@ struct SheetPlan {
   Relaxation relaxation = Relaxation::lloyd;
   int iterations = 150;  ///< limit of sweeps, or of evaluations (a line search is finished)
   double tolerance = 0;  ///< stop when no generator moves by more than this times l (0: never)
+  Outline outline{};     ///< the sheet; empty: the rectangle
+
+  double area() const { return outline.empty() ? length * width : outline.area(); }  ///< [m^2]
 };
 
-/// Returns the number of cells N = ceil(2 Lx Ly / (sqrt(3) l^2)) (model.md, "Sheet, mesh, bodies").
+/// Returns the number of cells N = ceil(2 A / (sqrt(3) l^2)) (model.md, "Sheet, mesh, bodies"), for
+/// an outline about.
 std::int64_t number_of_cells(const SheetPlan& plan);
 
 enum SheetSide : std::uint8_t { side_left = 1, side_right = 2, side_bottom = 4, side_top = 8 };
@@ -42,14 +48,15 @@ struct Facet {
   double width;  ///< [m]
 };
 
-/// A tessellation clipped to the plan. Cell k has the convex polygon vertices[offset[k]] ...
+/// A tessellation of the plan. Cell k has the convex polygon vertices[offset[k]] ...
 /// vertices[offset[k+1]-1], counter-clockwise. The cell areas sum to that of the plan, to rounding.
 struct Tessellation {
   std::vector<std::array<double, 2>> generators;  ///< n, final positions
   std::vector<std::int32_t> offset;               ///< n+1
   std::vector<std::array<double, 2>> vertices;    ///< of all polygons [m]
   std::vector<Facet> facets;                      ///< sorted by cells; none shorter than 1e-9 l
-  /// n, SheetSide bits of the sides on which the cell has an edge
+  /// n, SheetSide bits of the sides on which the cell has an edge: of an outline, each edge is on
+  /// the side whose direction is nearest to its outward normal
   std::vector<std::uint8_t> sides;
   double energy_ratio = 0;  ///< CVT energy over that of N regular hexagons of the same total area
   double largest_move = 0;  ///< largest |centroid - generator| over l, of these cells
@@ -59,10 +66,10 @@ struct Tessellation {
   std::int64_t degenerate = 0;
 };
 
-/// Meshes a plan. Collective; the result is whole and bitwise the same on every rank and for any
-/// number of ranks. Cells are numbered along a Hilbert curve over the plan. PETSc's options of the
-/// quasi-Newton solver have the prefix mesh_ (-mesh_tao_monitor).
-/// \param on_iteration  called after each sweep with its number and the largest move over l; by
+/// Meshes a rectangular plan. Collective; the result is whole and bitwise the same on every rank
+/// and for any number of ranks. Cells are numbered along a Hilbert curve over the plan. PETSc's
+/// options of the quasi-Newton solver have the prefix mesh_ (-mesh_tao_monitor). \param
+/// on_iteration  called after each sweep with its number and the largest move over l; by
 /// quasi_newton after each accepted step, with the number of evaluations so far (may be empty)
 /// \throws InputError if there would be more than 1e8 cells
 Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
@@ -73,5 +80,13 @@ Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
 /// \param plan  length, width and element_size are used
 /// \throws InputError if two generators coincide or one lies outside the plan
 Tessellation tessellate(const SheetPlan& plan, std::vector<std::array<double, 2>> generators);
+
+/// An edge of a cell that no other cell shares, with the cell to its left.
+struct BoundaryEdge {
+  std::int32_t cell;
+  std::array<double, 2> from, to;  ///< [m]
+};
+/// Returns the edges on the outline, cell by cell.
+std::vector<BoundaryEdge> boundary_edges(const Tessellation& cells);
 
 }  // namespace floe

@@ -47,6 +47,31 @@ def check_floes_collide(test, run):
     test.assertLess(speed[1], 0.5)
 
 
+def check_real_floe(test, run):
+    output = run()
+    outline = output.summary["outline"]
+    test.assertEqual((outline["corners_of_file"], outline["corners"]), (98, 12))
+    test.assertAlmostEqual(outline["area_moved"] / outline["area_of_file"], 0.025, delta=1e-3)
+    with h5py.File(output.folder / "lattice.h5") as file:
+        mass = file["bodies/mass"][:]
+    test.assertAlmostEqual(mass.sum() / (460 * outline["area"]), 1, delta=1e-12)
+    row = last_row(output)
+    kinetic = output.history("energy_kinetic")[0]
+    test.assertAlmostEqual(kinetic / (0.125 * mass.sum()), 1, delta=1e-9)
+    test.assertLess(abs(row["energy_balance_error"]), 1e-6 * kinetic)
+    x, y = (output.summary["peak_force"]["leg"][k] for k in (0, 1))
+    test.assertTrue(4.5e5 < np.hypot(x, y) < 6.5e5)
+    # The momentum that the floe loses goes to the leg, but for what the water takes by its drag.
+    time, force = output.history("time"), output.history("leg_force_x")
+    impulse = ((force[1:] + force[:-1]) / 2 * np.diff(time)).sum()
+    times = output.times
+    u = [output.field("bodies_displacement", t)[:, 0] for t in times]
+    speed = mass @ (u[-1] - u[-2]) / mass.sum() / (times[-1] - times[-2])
+    lost = mass.sum() * (0.5 - speed)
+    test.assertAlmostEqual(impulse / lost, 1, delta=0.01)
+    test.assertEqual(row["fragments"], 1)
+
+
 def check_rubble_pile(test, run):
     output = run("-time_end", "3")
     test.assertEqual(output.summary["bodies"], 1000)

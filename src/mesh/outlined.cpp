@@ -1,0 +1,179 @@
+// Cells of a sheet of any outline: those of rectangles, fitted to the outline's edges, as far as
+// they lie inside.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+#include <utility>
+
+#include "floe/base/item.h"
+#include "floe/geometry/polyhedron.h"
+#include "floe/mesh/cuts.h"
+
+namespace floe {
+namespace {
+
+constexpr double margin = 3;  ///< over l, of the meshed rectangle around a polygon
+
+std::uint8_t side_of(const Point2& normal) {
+  constexpr double rounding = 1e-9;  // edges at 45 degrees belong to left or right
+  if (std::abs(normal[0]) >= (1 - rounding) * std::abs(normal[1]))
+    return normal[0] < 0 ? side_left : side_right;
+  return normal[1] < 0 ? side_bottom : side_top;
+}
+
+CutLine moved(const CutLine& line, const Point2& by) {
+  return {{line.from[0] + by[0], line.from[1] + by[1]}, {line.to[0] + by[0], line.to[1] + by[1]}};
+}
+
+/// Appends the cells inside a polygon.
+/// \param fitted  cells that end on the polygon, in the frame of a box about `centre`
+/// \param cuts  of the fitted lines, to which those of `fitted` are added: per line, its cut
+void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, const Point2& centre,
+                 const std::vector<std::size_t>& cut_of_line, OutlinedCells& kept) {
+  const Tessellation& t = fitted.cells;
+  Tessellation& all = kept.cells;
+  std::vector<std::int32_t> number(t.generators.size(), -1);
+  for (std::size_t k = 0; k < t.generators.size(); ++k) {
+    const Point2 z{t.generators[k][0] + centre[0], t.generators[k][1] + centre[1]};
+    if (!contains(polygon, z)) continue;
+    number[k] = static_cast<std::int32_t>(all.generators.size());
+    all.generators.push_back(z);
+    for (std::int32_t v = t.offset[k]; v < t.offset[k + 1]; ++v) {
+      const Point2& p = item(t.vertices, v);
+      all.vertices.push_back({p[0] + centre[0], p[1] + centre[1]});
+    }
+    all.offset.push_back(static_cast<std::int32_t>(all.vertices.size()));
+    all.sides.push_back(0);
+  }
+  for (const Facet& facet : t.facets) {
+    const auto [a, b] = facet.cells;
+    const std::int32_t i = item(number, a), j = item(number, b);
+    if (i >= 0 && j >= 0) {
+      all.facets.push_back({{i, j}, facet.width});
+    } else if (i >= 0 || j >= 0) {  // on the outline: halfway between images of each other
+      const Point2 &in = item(t.generators, i >= 0 ? a : b),
+                   &out = item(t.generators, i >= 0 ? b : a);
+      item(all.sides, std::max(i, j)) |= side_of({out[0] - in[0], out[1] - in[1]});
+    }
+  }
+  all.degenerate += t.degenerate;
+  for (std::size_t k = 0; k < cut_of_line.size(); ++k) {
+    const FittedCut& part = fitted.cuts[fitted.cuts.size() - cut_of_line.size() + k];
+    FittedCut& cut = kept.cuts[cut_of_line[k]];
+    cut.length += part.length, cut.followed += part.followed;
+    for (const auto& [a, b] : part.pairs)
+      if (item(number, a) >= 0 && item(number, b) >= 0)
+        cut.pairs.push_back({item(number, a), item(number, b)});
+  }
+}
+
+/// Sets the measures of quality of the cells (see Tessellation).
+void measure(Tessellation& t, double l) {
+  double area = 0, energy = 0, move = 0;
+  for (std::size_t k = 0; k < t.generators.size(); ++k) {
+    const std::span cell(t.vertices.data() + t.offset[k], t.vertices.data() + t.offset[k + 1]);
+    const PlanProperties p = plan_properties(cell);
+    const double x = p.centroid[0] - t.generators[k][0], y = p.centroid[1] - t.generators[k][1];
+    area += p.area;
+    energy += p.xx + p.yy + p.area * (x * x + y * y);
+    move = std::max(move, std::hypot(x, y));
+  }
+  const auto n = static_cast<double>(t.generators.size());
+  t.energy_ratio = energy / (5 / (18 * std::numbers::sqrt3) * area * area / n);
+  t.largest_move = move / l;
+}
+
+/// The edges of a polygon, ring after ring, in the frame of its box.
+std::vector<CutLine> edges_of(const RingedPolygon& polygon, const Point2& centre) {
+  std::vector<CutLine> lines;
+  for (const Ring& ring : polygon) {
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      lines.push_back(moved({ring[k], ring[(k + 1) % ring.size()]}, {-centre[0], -centre[1]}));
+  }
+  return lines;
+}
+
+}  // namespace
+
+std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan) {
+  if (plan.outline.empty()) return {{plan, {}}};
+  std::vector<MeshedBox> boxes;
+  for (const RingedPolygon& polygon : plan.outline.polygons()) {
+    const auto [least, most] = box_of(polygon);
+    MeshedBox box{plan, {(least[0] + most[0]) / 2, (least[1] + most[1]) / 2}};
+    box.plan.outline = {};
+    box.plan.length = most[0] - least[0] + 2 * margin * plan.element_size;
+    box.plan.width = most[1] - least[1] + 2 * margin * plan.element_size;
+    boxes.push_back(std::move(box));
+  }
+  return boxes;
+}
+
+OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> relaxed,
+                             std::span<const CutLine> cuts, MPI_Comm comm) {
+  const std::vector<MeshedBox> boxes = meshed_boxes(plan);
+  OutlinedCells result;
+  result.cells.offset.assign(1, 0);
+  result.cuts.resize(cuts.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const RingedPolygon& polygon = plan.outline.polygons()[k];
+    const Point2& centre = boxes[k].centre;
+    std::vector<CutLine> lines = edges_of(polygon, centre);
+    const std::size_t edges = lines.size();
+    std::vector<std::size_t> cut_of_line;
+    for (std::size_t c = 0; c < cuts.size(); ++c) {
+      for (const CutLine& part : clipped(polygon, cuts[c])) {
+        lines.push_back(moved(part, {-centre[0], -centre[1]}));
+        cut_of_line.push_back(c);
+      }
+    }
+    result.cells.iterations = std::max(result.cells.iterations, relaxed[k].iterations);
+    const FittedCells fitted = fit_to_cuts(boxes[k].plan, std::move(relaxed[k]), lines, comm);
+    std::size_t ring = 0, first = 0;
+    for (std::size_t e = 0; e < edges; ++e) {
+      if (e == first + polygon[ring].size()) first = e, ++ring;
+      const Point2 &a = lines[e].from, &b = lines[e].to;
+      const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+      if (std::abs(fitted.cuts[e].followed - length) <= 1e-6 * length) continue;
+      result.unfollowed.push_back({k, ring, e - first, moved(lines[e], centre)});
+    }
+    if (result.unfollowed.empty()) keep_inside(fitted, polygon, centre, cut_of_line, result);
+  }
+  if (result.unfollowed.empty())
+    measure(result.cells, plan.element_size);
+  else
+    result.cells = {};
+  return result;
+}
+
+std::vector<BoundaryEdge> boundary_edges(const Tessellation& cells) {
+  struct Hash {
+    std::size_t operator()(const std::array<double, 4>& edge) const {
+      std::size_t hash = 0;
+      for (const double x : edge)
+        hash = (hash ^ std::hash<double>()(x)) * 0x9E3779B97F4A7C15U + (hash >> 29U);
+      return hash;
+    }
+  };
+  const auto key = [](const Point2& p, const Point2& q) {
+    return std::array{p[0], p[1], q[0], q[1]};
+  };
+  const auto each = [&](auto&& visit) {
+    for (std::int32_t k = 0; k + 1 < static_cast<std::int32_t>(cells.offset.size()); ++k) {
+      const std::int32_t begin = item(cells.offset, k), end = item(cells.offset, k + 1);
+      for (std::int32_t v = begin; v < end; ++v)
+        visit(k, item(cells.vertices, v), item(cells.vertices, v + 1 < end ? v + 1 : begin));
+    }
+  };
+  std::unordered_map<std::array<double, 4>, int, Hash> directed;
+  directed.reserve(cells.vertices.size());
+  each([&](std::int32_t, const Point2& p, const Point2& q) { ++directed[key(p, q)]; });
+  std::vector<BoundaryEdge> edges;
+  each([&](std::int32_t k, const Point2& p, const Point2& q) {
+    if (!directed.contains(key(q, p))) edges.push_back({k, p, q});
+  });
+  return edges;
+}
+
+}  // namespace floe

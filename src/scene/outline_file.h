@@ -1,0 +1,25 @@
+/// \file
+/// Files of outlines: GeoJSON (RFC 7946) and tables of x, y.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "floe/mesh/outline.h"
+
+namespace floe {
+
+/// The polygons of each feature of a file, as they are in the file.
+using OutlineFeatures = std::vector<std::vector<RingedPolygon>>;
+
+/// Reads the polygons of a GeoJSON text: a Polygon, MultiPolygon, GeometryCollection, Feature or
+/// FeatureCollection; or those of a table with x and y in its first two columns (separated by
+/// commas, semicolons or blanks), a ring ending at an empty line or where the third column changes;
+/// rings inside others are holes, and each outer ring is a feature.
+/// \param file  name of the file, for messages; by .json and .geojson it is GeoJSON, whatever it
+/// holds
+/// \throws InputError with one line that says what is wrong, beginning with "sheet: outline:
+/// 'FILE'"
+OutlineFeatures parse_outline(const std::string& text, const std::string& file);
+
+}  // namespace floe

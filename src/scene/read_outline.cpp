@@ -1,0 +1,137 @@
+// Reading of a sheet's outline: the file, its place, its simplification.
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+
+#include "base/collectives.h"
+#include "base/on_root.h"
+#include "reading.h"
+#include "scene/outline_file.h"
+
+namespace floe {
+namespace {
+
+std::string contents(const std::string& path) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("sheet: outline: '" + path + "': " + why);
+  };
+  constexpr long long largest = 1'000'000'000;  // [B]
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) refuse(std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
+  if (status.st_size > largest) refuse("has more than 1e9 bytes");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse(std::strerror(errno));
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (file.bad() || text.bad()) refuse("cannot be read");
+  return text.str();
+}
+
+std::string read_on_root(const std::string& path) {
+  std::string text;
+  on_root(PETSC_COMM_WORLD, [&] { text = contents(path); });
+  broadcast(text, PETSC_COMM_WORLD);
+  return text;
+}
+
+/// Scales an outline, turns it about its centroid, and moves its centroid.
+Outline placed(const Outline& given, double scale, double degrees,
+               const std::optional<Point2>& place) {
+  const Point2 centroid = given.centroid();
+  const Point2 to = place ? *place : Point2{scale * centroid[0], scale * centroid[1]};
+  // Quarters of a turn are exact.
+  const double quarters = std::round(degrees / 90), rest = degrees - 90 * quarters;
+  const auto turn = static_cast<std::size_t>(std::fmod(std::fmod(quarters, 4) + 4, 4));
+  constexpr std::array<Point2, 4> axes{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  const double c0 = std::cos(rest * std::numbers::pi / 180),
+               s0 = std::sin(rest * std::numbers::pi / 180);
+  const auto [cx, sx] = axes[turn];
+  const double c = scale * (cx * c0 - sx * s0), s = scale * (sx * c0 + cx * s0);
+  std::vector<RingedPolygon> polygons = given.polygons();
+  for (RingedPolygon& polygon : polygons)
+    for (Ring& ring : polygon)
+      for (Point2& p : ring) {
+        const double x = p[0] - centroid[0], y = p[1] - centroid[1];
+        p = {to[0] + c * x - s * y, to[1] + s * x + c * y};
+      }
+  return Outline(std::move(polygons));
+}
+
+/// The polygons of the chosen feature, or of all.
+Outline chosen(const OutlineFeatures& features, std::int64_t number, const std::string& file) {
+  std::vector<RingedPolygon> polygons;
+  if (number > static_cast<std::int64_t>(features.size()))
+    throw InputError("sheet: outline_feature: " + std::to_string(number) + ": '" + file + "' has " +
+                     std::to_string(features.size()) + " feature" +
+                     (features.size() == 1 ? "" : "s"));
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    if (number == 0 || static_cast<std::size_t>(number) == k + 1)
+      polygons.insert(polygons.end(), features[k].begin(), features[k].end());
+  }
+  if (polygons.empty())
+    throw InputError("sheet: outline_feature: " + std::to_string(number) + ": feature " +
+                     std::to_string(number) + " of '" + file + "' has no polygon");
+  return Outline(std::move(polygons));
+}
+
+void refuse_keys_of_outline(Options& options) {
+  for (const auto* key : {"sheet: outline_feature", "sheet: outline_scale", "sheet: outline_place",
+                          "sheet: outline_turn", "sheet: outline_simplify"})
+    options.refuse(key, "would have no effect: the scene has no 'sheet: outline'");
+}
+
+}  // namespace
+
+bool read_outline(Options& options, Scene& scene) {
+  if (!options.given("sheet: outline")) {
+    refuse_keys_of_outline(options);
+    return false;
+  }
+  for (const auto* key : {"sheet: length", "sheet: width"})
+    options.refuse(key, "would have no effect: 'sheet: outline' says it");
+  SheetPlan& plan = scene.sheet;
+  auto& source = scene.outline;
+  source.file = options.text("sheet: outline");
+  scene.inputs.emplace_back("sheet: outline", source.file);
+  const std::int64_t feature = options.integer("sheet: outline_feature");
+  const double scale = options.number("sheet: outline_scale"),
+               turn = options.number("sheet: outline_turn");
+  std::optional<Point2> place;
+  if (options.given("sheet: outline_place")) place = options.numbers<2>("sheet: outline_place");
+  source.simplify = options.number("sheet: outline_simplify", {}, plan.element_size / 2);
+
+  const Outline given =
+      chosen(parse_outline(read_on_root(source.file), source.file), feature, source.file);
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("sheet: outline: '" + source.file + "': " + why);
+  };
+  if (const std::string why = given.flaw(); !why.empty()) refuse(why);
+  const Outline at_place = placed(given, scale, turn, place);
+  source.corners = at_place.corners();
+  source.area = at_place.area();
+  const auto [least, most] = at_place.box();
+  const double length = most[0] - least[0], width = most[1] - least[1];
+  if (!(std::min(length, width) >= plan.element_size))
+    refuse("is " + text_of(length) + " m x " + text_of(width) +
+           " m, smaller than sheet: element_size: " + text_of(plan.element_size) +
+           " [m]; coordinates are metres times sheet: outline_scale: " + text_of(scale));
+  constexpr double farthest = 1e9;
+  for (const double x : {least[0], least[1], most[0], most[1]})
+    if (!(std::abs(x) <= farthest)) refuse("reaches farther than 1e+09 m from the origin");
+  // Turned and rounded, corners that nearly touched may have come to lie across an edge.
+  if (const std::string why = at_place.flaw(); !why.empty()) refuse(why);
+  SimplifiedOutline simple = simplified(at_place, source.simplify);
+  source.moved = simple.moved;
+  plan.outline = std::move(simple.outline);
+  const auto [low, high] = plan.outline.box();
+  plan.length = high[0] - low[0], plan.width = high[1] - low[1];
+  return true;
+}
+
+}  // namespace floe
