@@ -28,6 +28,21 @@ struct Grid {
   [[noreturn]] void refuse(const std::string& why) const {
     throw InputError(std::string(key) + ": '" + file + "': " + why);
   }
+  /// Puts falling values of x or y, as maps from north to south have them, into rising order.
+  void turn() {
+    const std::size_t n = x.size();
+    if (n > 1 && x.front() > x.back()) {
+      std::reverse(x.begin(), x.end());
+      for (std::size_t k = 0; k < thickness.size(); k += n)
+        std::reverse(&thickness[k], &thickness[k] + n);
+    }
+    if (y.size() > 1 && y.front() > y.back()) {
+      std::reverse(y.begin(), y.end());
+      for (std::size_t k = 0; k < y.size() / 2; ++k)
+        std::swap_ranges(&thickness[k * n], &thickness[k * n] + n,
+                         &thickness[(y.size() - 1 - k) * n]);
+    }
+  }
   void check() const {
     const auto rises = [](const std::vector<double>& values) {
       return std::adjacent_find(values.begin(), values.end(),
@@ -35,7 +50,7 @@ struct Grid {
     };
     for (const auto& [name, values] : {std::pair("x", &x), std::pair("y", &y)}) {
       if (values->size() < 2) refuse(std::string("needs two values of ") + name + " at least");
-      if (!rises(*values)) refuse(std::string("values of ") + name + " must rise");
+      if (!rises(*values)) refuse(std::string("values of ") + name + " must rise or fall");
     }
     for (std::size_t k = 0; k < thickness.size(); ++k) {
       if (!(thickness[k] >= least_thickness && thickness[k] <= most_thickness))
@@ -122,6 +137,7 @@ Grid read_hdf5(const std::string& path) {
 Grid read_grid(const std::string& path) {
   const bool table = path.size() > 4 && path.compare(path.size() - 4, 4, ".csv") == 0;
   Grid grid = table ? read_csv(path) : read_hdf5(path);
+  grid.turn();
   grid.check();
   return grid;
 }

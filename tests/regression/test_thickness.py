@@ -205,6 +205,12 @@ class Thickness(FolderTest):
             self.run_scene(text.replace("grid.csv", name), name=name.replace(".", "_"))
             masses[name] = lattice(self.folder / "out" / name.replace(".", "_"))["bodies/mass"]
             np.testing.assert_allclose(masses[name], masses["grid.csv"], rtol=1e-8)
+        rows = (self.folder / "grid.csv").read_text().splitlines()
+        turned = [",".join([row.split(",")[0], *row.split(",")[:0:-1]]) for row in rows]
+        (self.folder / "grid.csv").write_text("\n".join([turned[0], *turned[:0:-1]]) + "\n")
+        self.run_scene(text, name="turned")  # from north to south and from east to west
+        np.testing.assert_array_equal(lattice(self.folder / "out/turned")["bodies/mass"],
+                                      masses["grid.csv"])
         import netCDF4
         axis = np.array([-30.0, 30.0])
         with netCDF4.Dataset(self.folder / "even.nc", "w") as file:
@@ -258,7 +264,7 @@ refused("a grid that is not there", FILE, "grid.csv")
 refused("a word in a grid", FILE, "line 2: 'ice' is not a number", "a,-9,9\n-9,ice,1\n9,1,1\n")
 refused("a short row", FILE, "line 3 has 2 numbers", "a,-9,9\n-9,1,1\n9,1\n")
 refused("a grid of one row", FILE, "two values of y", "a,-9,9\n-9,1,1\n")
-refused("x that falls", FILE, "values of x must rise", "a,9,-9\n-9,1,1\n9,1,1\n")
+refused("x that stays", FILE, "values of x must rise or fall", "a,-9,-9\n-9,1,1\n9,1,1\n")
 refused("no ice", FILE, "thickness 0 at x = 9, y = -9", "a,-9,9\n-9,1,0\n9,1,1\n")
 refused("a grid that is too small", FILE, "reaches from x = -2 to 2 m", "a,-2,2\n-9,1,1\n9,1,1\n")
 
