@@ -43,8 +43,8 @@ inline void permute(Bodies& b, std::span<const std::int32_t> order) {
 }
 inline void permute(Beams& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
-  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width,
-         height, offsets] = b;
+  auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height,
+         offsets] = b;
   each(bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height,
        offsets);
 }
