@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Sheets of any thickness: a plate by finite elements, random fields, grids, files, ranks."""
 import json
-import subprocess
 import unittest
 
 import h5py
@@ -246,7 +245,8 @@ class Refused(BadInput):
 
 
 def refused(title, sheet, part, grid=None):
-    text = "forces: [beam, gravity, buoyancy]\nsheet: {length: 10, element_size: 2, " + sheet + "}\n"
+    text = ("forces: [beam, gravity, buoyancy]\n"
+            "sheet: {length: 10, element_size: 2, " + sheet + "}\n")
 
     def prepare(folder):
         (folder / "scene.yaml").write_text(text)
@@ -256,9 +256,11 @@ def refused(title, sheet, part, grid=None):
 
 
 FILE = "thickness_file: grid.csv"
-refused("thickness beside a grid", "thickness: 1, " + FILE, "sheet: thickness: would have no effect",
+refused("thickness beside a grid", "thickness: 1, " + FILE,
+        "sheet: thickness: would have no effect",
         "a,-9,9\n-9,1,1\n9,1,1\n")
-refused("a seed without a field", "thickness_seed: 3", "sheet: thickness_seed: would have no effect")
+refused("a seed without a field", "thickness_seed: 3",
+        "sheet: thickness_seed: would have no effect")
 refused("a field without a length", "thickness_deviation: 0.1", "sheet: thickness_correlation")
 refused("a grid that is not there", FILE, "grid.csv")
 refused("a word in a grid", FILE, "line 2: 'ice' is not a number", "a,-9,9\n-9,ice,1\n9,1,1\n")
