@@ -58,7 +58,8 @@ struct ThicknessField {
   double deviation = 0;                 ///< standard deviation of a random field [m]; 0: none
   std::array<double, 2> correlation{};  ///< its correlation lengths in x and y [m]
   std::uint64_t seed = 1;
-  bool varies() const { return !file.empty() || deviation > 0; }
+  std::vector<double> of_polygon{};  ///< of each polygon of the outline [m]; empty: not by polygon
+  bool varies() const { return !file.empty() || deviation > 0 || !of_polygon.empty(); }
 };
 
 /// The input of a run.
@@ -76,11 +77,15 @@ struct Scene {
   SheetPlan sheet;
   /// Where the sheet's outline comes from, as placed but before it was simplified.
   struct {
-    std::string file;         ///< empty: the sheet is a rectangle
-    double simplify = 0;      ///< tolerance [m]
-    std::size_t corners = 0;  ///< of all rings
-    double area = 0;          ///< [m^2]
-    double moved = 0;         ///< area between it and the simplified one [m^2]
+    std::string file;           ///< empty: the sheet is a rectangle
+    double simplify = 0;        ///< tolerance [m]; where polygons have their own: the largest
+    double least_simplify = 0;  ///< the least [m]
+    std::vector<std::int32_t> feature;  ///< of each polygon, from 1
+    std::vector<double> thickness;      ///< of each polygon in the file [m]; NaN: none
+    bool has_thickness = false;         ///< whether these are taken
+    std::size_t corners = 0;            ///< of all rings
+    double area = 0;                    ///< [m^2]
+    double moved = 0;                   ///< area between it and the simplified one [m^2]
   } outline;
   bool fit_cuts = true;   ///< whether the sheet's cells end on the lines of cuts
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none

@@ -2,6 +2,7 @@
 // they lie inside.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <unordered_map>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "floe/base/item.h"
 #include "floe/geometry/polyhedron.h"
 #include "floe/mesh/cuts.h"
+#include "mesh/cut_generators.h"
 
 namespace floe {
 namespace {
@@ -28,9 +30,11 @@ CutLine moved(const CutLine& line, const Point2& by) {
 
 /// Appends the cells inside a polygon.
 /// \param fitted  cells that end on the polygon, in the frame of a box about `centre`
-/// \param cuts  of the fitted lines, to which those of `fitted` are added: per line, its cut
-void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, const Point2& centre,
-                 const std::vector<std::size_t>& cut_of_line, OutlinedCells& kept) {
+/// \param index  of the polygon in its outline
+/// \param cut_of_line  of the fitted lines, to which those of `fitted` are added: per line, its cut
+void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, std::int32_t index,
+                 const Point2& centre, const std::vector<std::size_t>& cut_of_line,
+                 OutlinedCells& kept) {
   const Tessellation& t = fitted.cells;
   Tessellation& all = kept.cells;
   std::vector<std::int32_t> number(t.generators.size(), -1);
@@ -45,6 +49,7 @@ void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, const 
     }
     all.offset.push_back(static_cast<std::int32_t>(all.vertices.size()));
     all.sides.push_back(0);
+    kept.polygon.push_back(index);
   }
   for (const Facet& facet : t.facets) {
     const auto [a, b] = facet.cells;
@@ -66,6 +71,22 @@ void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, const 
       if (item(number, a) >= 0 && item(number, b) >= 0)
         cut.pairs.push_back({item(number, a), item(number, b)});
   }
+}
+
+/// Appends a polygon as a cell.
+void add_cell(const RingedPolygon& polygon, std::int32_t index, OutlinedCells& kept) {
+  Tessellation& all = kept.cells;
+  const Ring& ring = polygon.front();
+  std::uint8_t sides = 0;
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+    sides |= side_of({b[1] - a[1], a[0] - b[0]});
+  }
+  all.generators.push_back(plan_properties(ring).centroid);
+  all.vertices.insert(all.vertices.end(), ring.begin(), ring.end());
+  all.offset.push_back(static_cast<std::int32_t>(all.vertices.size()));
+  all.sides.push_back(sides);
+  kept.polygon.push_back(index);
 }
 
 /// Sets the measures of quality of the cells (see Tessellation).
@@ -94,20 +115,74 @@ std::vector<CutLine> edges_of(const RingedPolygon& polygon, const Point2& centre
   return lines;
 }
 
+/// The plan without its outline.
+SheetPlan rules_of(const SheetPlan& plan) {
+  return {.element_size = plan.element_size,
+          .seed = plan.seed,
+          .relaxation = plan.relaxation,
+          .iterations = plan.iterations,
+          .tolerance = plan.tolerance};
+}
+
+MeshedBox box_around(const RingedPolygon& polygon, const SheetPlan& rules) {
+  const auto [least, most] = box_of(polygon);
+  MeshedBox box{rules, {(least[0] + most[0]) / 2, (least[1] + most[1]) / 2}};
+  const double l = rules.element_size;
+  if (is_one_cell(polygon, l)) {  // its box is not used
+    box.plan.length = box.plan.width = l;
+    return box;
+  }
+  // Multiples of l, so that floes of about one size share a relaxed mesh.
+  box.plan.length = (std::ceil((most[0] - least[0]) / l) + 2 * margin) * l;
+  box.plan.width = (std::ceil((most[1] - least[1]) / l) + 2 * margin) * l;
+  return box;
+}
+
 }  // namespace
+
+bool is_one_cell(const RingedPolygon& polygon, double l) {
+  constexpr double largest = 1.5;  // over the mean area of cells
+  constexpr double longest = 3;    // over l
+  const auto [least, most] = box_of(polygon);
+  if (polygon.size() != 1 || std::hypot(most[0] - least[0], most[1] - least[1]) > longest * l)
+    return false;
+  const Ring& ring = polygon.front();
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()], &c = ring[(k + 2) % ring.size()];
+    if ((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0])) return false;
+  }
+  return plan_properties(ring).area <= largest * std::numbers::sqrt3 / 2 * l * l;
+}
+
+bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan) {
+  if (is_one_cell(polygon, plan.element_size)) return true;
+  const MeshedBox box = box_around(polygon, rules_of(plan));
+  const mesh::CutGraph graph = mesh::make_cut_graph(box.plan, edges_of(polygon, box.centre));
+  const mesh::CutGenerators placed = mesh::place_generators(graph, box.plan);
+  return std::none_of(placed.pairs.begin(), placed.pairs.end(),
+                      [](const auto& pairs) { return pairs.empty(); });
+}
 
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan) {
   if (plan.outline.empty()) return {{plan, {}}};
+  const SheetPlan rules = rules_of(plan);
   std::vector<MeshedBox> boxes;
-  for (const RingedPolygon& polygon : plan.outline.polygons()) {
-    const auto [least, most] = box_of(polygon);
-    MeshedBox box{plan, {(least[0] + most[0]) / 2, (least[1] + most[1]) / 2}};
-    box.plan.outline = {};
-    box.plan.length = most[0] - least[0] + 2 * margin * plan.element_size;
-    box.plan.width = most[1] - least[1] + 2 * margin * plan.element_size;
-    boxes.push_back(std::move(box));
-  }
+  for (const RingedPolygon& polygon : plan.outline.polygons())
+    boxes.push_back(box_around(polygon, rules));
   return boxes;
+}
+
+std::vector<Tessellation> tessellate(const std::vector<MeshedBox>& boxes, MPI_Comm comm,
+                                     const std::function<void(int, double)>& on_iteration) {
+  std::map<std::array<double, 2>, std::size_t> of_size;
+  std::vector<Tessellation> cells;
+  for (const MeshedBox& box : boxes) {
+    const auto [same, is_new] =
+        of_size.try_emplace({box.plan.length, box.plan.width}, cells.size());
+    Tessellation made = is_new ? tessellate(box.plan, comm, on_iteration) : cells[same->second];
+    cells.push_back(std::move(made));
+  }
+  return cells;
 }
 
 OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> relaxed,
@@ -122,13 +197,21 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
     std::vector<CutLine> lines = edges_of(polygon, centre);
     const std::size_t edges = lines.size();
     std::vector<std::size_t> cut_of_line;
+    result.cells.iterations = std::max(result.cells.iterations, relaxed[k].iterations);
+    const auto index = static_cast<std::int32_t>(k);
+    if (is_one_cell(polygon, plan.element_size)) {
+      for (std::size_t c = 0; c < cuts.size(); ++c)
+        for (const auto& [from, to] : clipped(polygon, cuts[c]))
+          result.cuts[c].length += std::hypot(to[0] - from[0], to[1] - from[1]);
+      add_cell(polygon, index, result);
+      continue;
+    }
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       for (const CutLine& part : clipped(polygon, cuts[c])) {
         lines.push_back(moved(part, {-centre[0], -centre[1]}));
         cut_of_line.push_back(c);
       }
     }
-    result.cells.iterations = std::max(result.cells.iterations, relaxed[k].iterations);
     const FittedCells fitted = fit_to_cuts(boxes[k].plan, std::move(relaxed[k]), lines, comm);
     std::size_t ring = 0, first = 0;
     for (std::size_t e = 0; e < edges; ++e) {
@@ -138,7 +221,7 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
       if (std::abs(fitted.cuts[e].followed - length) <= 1e-6 * length) continue;
       result.unfollowed.push_back({k, ring, e - first, moved(lines[e], centre)});
     }
-    if (result.unfollowed.empty()) keep_inside(fitted, polygon, centre, cut_of_line, result);
+    if (result.unfollowed.empty()) keep_inside(fitted, polygon, index, centre, cut_of_line, result);
   }
   if (result.unfollowed.empty())
     measure(result.cells, plan.element_size);

@@ -101,6 +101,15 @@ void Reader::add_geometry(const Json& geometry, const std::string& where, int de
   for (const Json& one : coordinates) polygons.push_back(polygon(one, where));
 }
 
+/// The thickness among the properties of a feature.
+std::optional<double> thickness_of(const Json& feature) {
+  const auto properties = feature.find("properties");
+  if (properties == feature.end() || !properties->is_object()) return {};
+  const auto thickness = properties->find("thickness");
+  if (thickness == properties->end() || !thickness->is_number()) return {};
+  return thickness->get<double>();
+}
+
 OutlineFeatures Reader::json(const std::string& text) {
   Json top;
   try {
@@ -118,13 +127,15 @@ OutlineFeatures Reader::json(const std::string& text) {
     for (const Json& feature : all) {
       features.emplace_back();
       const std::string where = "feature " + std::to_string(features.size());
-      add_geometry(member(feature, "geometry", where), where, 0, features.back());
+      add_geometry(member(feature, "geometry", where), where, 0, features.back().polygons);
+      features.back().thickness = thickness_of(feature);
     }
   } else {
     features.emplace_back();
     const bool is_feature = type == "Feature";
     add_geometry(is_feature ? member(top, "geometry", "the feature") : top,
-                 is_feature ? "the feature" : "the file", 0, features.back());
+                 is_feature ? "the feature" : "the file", 0, features.back().polygons);
+    if (is_feature) features.back().thickness = thickness_of(top);
   }
   return features;
 }
@@ -169,7 +180,7 @@ OutlineFeatures nested(const std::vector<Ring>& rings) {
   for (std::size_t i = 0; i < n; ++i) {
     if (around[i].size() % 2 != 0) continue;
     feature[i] = features.size();
-    features.push_back({{rings[i]}});
+    features.push_back({.polygons = {{rings[i]}}});
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (around[i].size() % 2 == 0) continue;
@@ -178,9 +189,9 @@ OutlineFeatures nested(const std::vector<Ring>& rings) {
         [&](std::size_t a, std::size_t b) { return around[a].size() < around[b].size(); });
     // Rings that cross may seem to lie inside a hole only; such a table is refused later.
     if (around[*inner].size() % 2 == 0)
-      features[feature[*inner]].front().push_back(rings[i]);
+      features[feature[*inner]].polygons.front().push_back(rings[i]);
     else
-      features.push_back({{rings[i]}});
+      features.push_back({.polygons = {{rings[i]}}});
   }
   return features;
 }
@@ -226,7 +237,7 @@ OutlineFeatures parse_outline(const std::string& text, const std::string& file) 
   Reader reader(file);
   OutlineFeatures features = is_json ? reader.json(text) : reader.table(text);
   const bool any = std::any_of(features.begin(), features.end(),
-                               [](const auto& polygons) { return !polygons.empty(); });
+                               [](const auto& feature) { return !feature.polygons.empty(); });
   if (!any) throw InputError("sheet: outline: '" + file + "': has no polygon");
   return features;
 }

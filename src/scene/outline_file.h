@@ -2,6 +2,7 @@
 /// Files of outlines: GeoJSON (RFC 7946) and tables of x, y.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,14 @@
 
 namespace floe {
 
-/// The polygons of each feature of a file, as they are in the file.
-using OutlineFeatures = std::vector<std::vector<RingedPolygon>>;
+/// A feature of a file: its polygons as they are in the file.
+struct OutlineFeature {
+  std::vector<RingedPolygon> polygons{};
+  std::optional<double> thickness{};  ///< its property "thickness", if that is a number [m]
+};
+using OutlineFeatures = std::vector<OutlineFeature>;
 
-/// Reads the polygons of a GeoJSON text: a Polygon, MultiPolygon, GeometryCollection, Feature or
+/// Reads the features of a GeoJSON text: a Polygon, MultiPolygon, GeometryCollection, Feature or
 /// FeatureCollection; or those of a table with x and y in its first two columns (separated by
 /// commas, semicolons or blanks), a ring ending at an empty line or where the third column changes;
 /// rings inside others are holes, and each outer ring is a feature.

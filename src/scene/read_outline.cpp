@@ -10,6 +10,7 @@
 
 #include "base/collectives.h"
 #include "base/on_root.h"
+#include "floe/mesh/cuts.h"
 #include "reading.h"
 #include "scene/outline_file.h"
 
@@ -63,21 +64,54 @@ Outline placed(const Outline& given, double scale, double degrees,
   return Outline(std::move(polygons));
 }
 
-/// The polygons of the chosen feature, or of all.
-Outline chosen(const OutlineFeatures& features, std::int64_t number, const std::string& file) {
+/// The polygons of the chosen feature, or of all. Stores which features they are of, and the
+/// thickness that the file gives them.
+Outline chosen(const OutlineFeatures& features, std::int64_t number, const std::string& file,
+               Scene& scene) {
   std::vector<RingedPolygon> polygons;
   if (number > static_cast<std::int64_t>(features.size()))
     throw InputError("sheet: outline_feature: " + std::to_string(number) + ": '" + file + "' has " +
                      std::to_string(features.size()) + " feature" +
                      (features.size() == 1 ? "" : "s"));
   for (std::size_t k = 0; k < features.size(); ++k) {
-    if (number == 0 || static_cast<std::size_t>(number) == k + 1)
-      polygons.insert(polygons.end(), features[k].begin(), features[k].end());
+    if (number != 0 && static_cast<std::size_t>(number) != k + 1) continue;
+    const auto& of_feature = features[k].polygons;
+    polygons.insert(polygons.end(), of_feature.begin(), of_feature.end());
+    scene.outline.feature.resize(polygons.size(), static_cast<std::int32_t>(k + 1));
+    scene.outline.thickness.resize(polygons.size(), features[k].thickness.value_or(NAN));
   }
   if (polygons.empty())
     throw InputError("sheet: outline_feature: " + std::to_string(number) + ": feature " +
                      std::to_string(number) + " of '" + file + "' has no polygon");
   return Outline(std::move(polygons));
+}
+
+/// Simplifies each polygon by the least of some tolerances with which cells can end on its edges;
+/// all polygons together by half of the element size if they would overlap else.
+SimplifiedOutline simplified_as_needed(const Outline& given, Scene& scene) {
+  auto& source = scene.outline;
+  const double l = scene.sheet.element_size;
+  constexpr std::array tolerances{0.1, 0.2, 0.4, 0.8};  // over l
+  SimplifiedOutline result;
+  std::vector<RingedPolygon> polygons;
+  source.simplify = 0, source.least_simplify = tolerances.back() * l;
+  for (const RingedPolygon& polygon : given.polygons()) {
+    SimplifiedOutline one;
+    double tolerance = 0;
+    for (const double t : tolerances) {
+      tolerance = t * l;
+      one = simplified(Outline({polygon}), tolerance);
+      if (can_be_followed(one.outline.polygons().front(), scene.sheet)) break;
+    }
+    source.simplify = std::max(source.simplify, tolerance);
+    source.least_simplify = std::min(source.least_simplify, tolerance);
+    result.moved += one.moved;
+    polygons.push_back(one.outline.polygons().front());
+  }
+  result.outline = Outline(std::move(polygons));
+  if (given.polygons().size() == 1 || result.outline.flaw().empty()) return result;
+  source.simplify = source.least_simplify = l / 2;
+  return simplified(given, l / 2);
 }
 
 void refuse_keys_of_outline(Options& options) {
@@ -104,10 +138,11 @@ bool read_outline(Options& options, Scene& scene) {
                turn = options.number("sheet: outline_turn");
   std::optional<Point2> place;
   if (options.given("sheet: outline_place")) place = options.numbers<2>("sheet: outline_place");
-  source.simplify = options.number("sheet: outline_simplify", {}, plan.element_size / 2);
+  const bool has_tolerance = options.given("sheet: outline_simplify");
+  if (has_tolerance) source.simplify = options.number("sheet: outline_simplify");
 
   const Outline given =
-      chosen(parse_outline(read_on_root(source.file), source.file), feature, source.file);
+      chosen(parse_outline(read_on_root(source.file), source.file), feature, source.file, scene);
   const auto refuse = [&](const std::string& why) {
     throw InputError("sheet: outline: '" + source.file + "': " + why);
   };
@@ -126,7 +161,9 @@ bool read_outline(Options& options, Scene& scene) {
     if (!(std::abs(x) <= farthest)) refuse("reaches farther than 1e+09 m from the origin");
   // Turned and rounded, corners that nearly touched may have come to lie across an edge.
   if (const std::string why = at_place.flaw(); !why.empty()) refuse(why);
-  SimplifiedOutline simple = simplified(at_place, source.simplify);
+  source.least_simplify = source.simplify;
+  SimplifiedOutline simple =
+      has_tolerance ? simplified(at_place, source.simplify) : simplified_as_needed(at_place, scene);
   source.moved = simple.moved;
   plan.outline = std::move(simple.outline);
   const auto [low, high] = plan.outline.box();

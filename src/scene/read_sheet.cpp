@@ -1,6 +1,7 @@
 // Reading of the sheet and its ice, or of a lattice file; regions and cuts.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "floe/mesh/cuts.h"
@@ -11,15 +12,42 @@ namespace {
 
 constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top", "all"};
 
+/// Takes the thickness of each floe from the file of the outline. \return whether it has any
+bool take_thickness_of_floes(Scene& scene) {
+  const std::vector<double>& thickness = scene.outline.thickness;
+  const auto refuse = [&](std::size_t k, const std::string& why) {
+    throw InputError("sheet: outline: '" + scene.outline.file + "': feature " +
+                     std::to_string(scene.outline.feature[k]) + " has " + why +
+                     "; 'sheet: thickness' would take the place of those of the file");
+  };
+  const auto has_none = [](double h) { return std::isnan(h); };
+  if (std::all_of(thickness.begin(), thickness.end(), has_none)) return false;
+  double volume = 0;
+  for (std::size_t k = 0; k < thickness.size(); ++k) {
+    const double h = thickness[k];
+    if (has_none(h)) refuse(k, "no number \"thickness\" among its properties, others have");
+    if (!(h >= 1e-9 && h <= 1e9))
+      refuse(k, "the thickness " + text_of(h) + ", must be >= 1e-9, <= 1e9 [m]");
+    volume += h * Outline({scene.sheet.outline.polygons()[k]}).area();
+  }
+  scene.outline.has_thickness = true;
+  const auto [least, most] = std::minmax_element(thickness.begin(), thickness.end());
+  scene.thickness = *least == *most ? *least : volume / scene.sheet.outline.area();
+  if (*least != *most) scene.thickness_field.of_polygon = thickness;
+  return true;
+}
+
 void read_thickness(Options& options, Scene& scene) {
   ThicknessField& field = scene.thickness_field;
   const bool random = options.given("sheet: thickness_deviation");
+  const bool by_scene =
+      random || options.given("sheet: thickness") || options.given("sheet: thickness_file");
   if (options.given("sheet: thickness_file")) {
     field.file = options.text("sheet: thickness_file");
     scene.inputs.emplace_back("sheet: thickness_file", field.file);
     for (const auto* key : {"sheet: thickness", "sheet: thickness_deviation"})
       options.refuse(key, "would have no effect: 'sheet: thickness_file' says it");
-  } else {
+  } else if (by_scene || !take_thickness_of_floes(scene)) {
     scene.thickness = options.number("sheet: thickness");
     if (random) field.deviation = options.number("sheet: thickness_deviation");
   }

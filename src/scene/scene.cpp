@@ -153,8 +153,9 @@ void check_thickness(const Scene& scene) {
                          : nullptr;
   if (asks != nullptr)
     throw InputError(std::string(asks) + ": is for sheets of one thickness, and '" +
-                     (scene.thickness_field.file.empty() ? "sheet: thickness_deviation"
-                                                         : "sheet: thickness_file") +
+                     (scene.outline.has_thickness          ? "sheet: outline"
+                      : scene.thickness_field.file.empty() ? "sheet: thickness_deviation"
+                                                           : "sheet: thickness_file") +
                      "' makes it vary");
 }
 

@@ -62,7 +62,8 @@ std::vector<std::string> unusual_numbers(const Scene& scene) {
     } else {
       look_at_outline(scene, lines);
     }
-    look("sheet: thickness", scene.thickness, "m", 1e-3, 100);
+    look(scene.outline.has_thickness ? "sheet: outline: thickness" : "sheet: thickness",
+         scene.thickness, "m", 1e-3, 100);
     look("ice: density", scene.ice.density, "kg/m^3", 100, 2000);
     if (scene.forces.beam) look("ice: young", scene.ice.young, "Pa", 1e6, 1e11);
   }

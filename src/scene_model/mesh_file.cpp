@@ -121,8 +121,7 @@ std::vector<Tessellation> tessellate_with_file(const SheetPlan& plan, const std:
   if (there) {
     relaxed = read(plan, boxes, file);
   } else {
-    for (const MeshedBox& box : boxes) {
-      Tessellation made = tessellate(box.plan, comm, on_iteration);
+    for (Tessellation& made : tessellate(boxes, comm, on_iteration)) {
       relaxed.generators.push_back(std::move(made.generators));
       relaxed.iterations = std::max(relaxed.iterations, made.iterations);
     }

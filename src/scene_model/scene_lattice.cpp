@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -72,8 +75,9 @@ std::string remark_on(const std::vector<FittedCut>& cuts, const Scene& scene) {
 
 /// Makes cells end on the outline, if there is one, and on the scene's cuts. \return what became of
 /// each cut
+/// \param polygon  set to the outline's, in which each cell lies
 std::vector<FittedCut> fit(const Scene& scene, MPI_Comm comm, std::vector<Tessellation> relaxed,
-                           Tessellation& cells) {
+                           Tessellation& cells, std::vector<std::int32_t>& polygon) {
   std::vector<CutLine> lines;
   if (scene.fit_cuts)
     for (const Cut& c : scene.cuts) lines.push_back({c.from, c.to});
@@ -82,6 +86,7 @@ std::vector<FittedCut> fit(const Scene& scene, MPI_Comm comm, std::vector<Tessel
     const auto& edges = fitted.unfollowed;
     if (!edges.empty()) refuse(edges.front(), edges.size() - 1, scene);
     cells = std::move(fitted.cells);
+    polygon = std::move(fitted.polygon);
     return std::move(fitted.cuts);
   }
   if (lines.empty()) {
@@ -104,10 +109,28 @@ std::vector<Tessellation> relax(const Scene& scene, MPI_Comm comm, MeshReport& r
   };
   if (!scene.mesh_file.empty())
     return tessellate_with_file(scene.sheet, scene.mesh_file, comm, show, report.keep);
-  std::vector<Tessellation> relaxed;
-  for (const MeshedBox& box : meshed_boxes(scene.sheet))
-    relaxed.push_back(tessellate(box.plan, comm, show));
-  return relaxed;
+  return tessellate(meshed_boxes(scene.sheet), comm, show);
+}
+
+/// Returns the sets of the scene's boundaries, loads and initial motions that are named floe_K, K
+/// the number of a feature of the outline, and are no regions.
+std::map<std::string, std::int32_t> floes_named(const Scene& scene) {
+  std::set<std::string> names;
+  for (const Boundary& b : scene.boundaries) names.insert(b.set);
+  for (const Load& l : scene.loads) names.insert(l.set);
+  for (const Initial& i : scene.initials) names.insert(i.set);
+  for (const Region& region : scene.regions) names.erase(region.name);
+  const std::set<std::int32_t> features(scene.outline.feature.begin(), scene.outline.feature.end());
+  std::map<std::string, std::int32_t> found;
+  const std::string front = "floe_";
+  for (const std::string& name : names) {
+    std::int32_t number = 0;
+    const char* end = name.data() + name.size();
+    if (!name.starts_with(front) || name.starts_with(front + "0")) continue;
+    const auto [rest, error] = std::from_chars(name.data() + front.size(), end, number);
+    if (error == std::errc() && rest == end && features.contains(number)) found[name] = number;
+  }
+  return found;
 }
 
 /// Adds the sets of bodies with an edge of the sheet in a region.
@@ -131,6 +154,17 @@ void add_edge_regions(const Scene& scene, const Tessellation& cells, Lattice& la
       throw InputError("region: " + region.name +
                        ": box: no edge of the sheet has its middle inside this box");
     lattice.sets[region.name] = std::move(inside);
+  }
+}
+
+/// Adds the sets floe_1, floe_2, ... that the scene names: the bodies of the outline's features.
+void add_floes(const Scene& scene, const std::vector<std::int32_t>& polygon, Lattice& lattice) {
+  std::map<std::int32_t, std::vector<std::int32_t>*> floes;
+  for (const auto& [set, feature] : floes_named(scene)) floes[feature] = &lattice.sets[set];
+  if (floes.empty()) return;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const auto found = floes.find(item(scene.outline.feature, polygon[k]));
+    if (found != floes.end()) found->second->push_back(static_cast<std::int32_t>(k));
   }
 }
 
@@ -167,11 +201,13 @@ std::string outline_text(const Scene& scene) {
   std::string text = "outline: " + std::to_string(polygons) + " polygon" +
                      (polygons == 1 ? "" : "s") + ", " + std::to_string(outline.corners()) +
                      " corners, " + text_of(outline.area()) + " m^2";
-  if (scene.outline.simplify > 0)
-    text += " (simplified to " + text_of(scene.outline.simplify) + " m from " +
-            std::to_string(scene.outline.corners) + " corners, " + text_of(scene.outline.area) +
-            " m^2; " + text_of(100 * scene.outline.moved / scene.outline.area) +
-            " % of the area moved)";
+  const double least = scene.outline.least_simplify, most = scene.outline.simplify;
+  if (most > 0)
+    text += " (simplified to " + (least < most ? text_of(least) + " to " : "") + text_of(most) +
+            " m from " + std::to_string(scene.outline.corners) + " corners, " +
+            text_of(scene.outline.area) + " m^2; " +
+            text_of(100 * scene.outline.moved / scene.outline.area) + " % of the area moved)";
+  if (scene.outline.has_thickness) text += ", each of its own thickness";
   return text;
 }
 
@@ -181,6 +217,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
   const SheetSection section = section_of(scene);
   check_size(scene, free_memory(comm), size(comm));
   Tessellation cells;
+  std::vector<std::int32_t> polygon;  // of the outline, in which each cell lies
   {
     const Timed timed(Event::mesh);
     std::vector<Tessellation> relaxed = relax(scene, comm, report);
@@ -190,7 +227,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
     }
     if (!scene.sheet.outline.empty() && finds_strength(scene))
       around = largest(scene.sheet, relaxed);
-    std::vector<FittedCut> fitted = fit(scene, comm, std::move(relaxed), cells);
+    std::vector<FittedCut> fitted = fit(scene, comm, std::move(relaxed), cells, polygon);
     report.outline = outline_text(scene);
     report.cuts = remark_on(fitted, scene);
     if (!fitted.empty()) cuts = std::move(fitted);
@@ -198,10 +235,11 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
   report.energy_ratio = cells.energy_ratio;
   report.degenerate = cells.degenerate;
   const Timed timed(Event::lattice);
-  const std::vector<double> thickness = thickness_of_cells(scene, cells);
+  const std::vector<double> thickness = thickness_of_cells(scene, cells, polygon);
   if (!thickness.empty()) report.thickness = thickness_report(cells, thickness);
   Lattice lattice = make_sheet(cells, section, thickness);
   add_edge_regions(scene, cells, lattice);
+  add_floes(scene, polygon, lattice);
   return lattice;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "files/hdf5.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"
 #include "scene/reading.h"
@@ -183,10 +184,15 @@ std::span<const Point2> polygon(const Tessellation& cells, std::size_t k) {
 
 }  // namespace
 
-std::vector<double> thickness_of_cells(const Scene& scene, const Tessellation& cells) {
+std::vector<double> thickness_of_cells(const Scene& scene, const Tessellation& cells,
+                                       const std::vector<std::int32_t>& polygon_of) {
   std::vector<double> all;
   const ThicknessField& field = scene.thickness_field;
   if (!field.varies()) return all;
+  if (!field.of_polygon.empty()) {
+    for (const std::int32_t k : polygon_of) all.push_back(item(field.of_polygon, k));
+    return all;
+  }
   const auto fill = [&](const auto& source) {
     for (std::size_t k = 0; k < cells.generators.size(); ++k)
       all.push_back(source.at(plan_properties(polygon(cells, k)).centroid));

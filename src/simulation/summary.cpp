@@ -202,8 +202,9 @@ Json as_json(const Outline& outline, const Scene& scene) {
           {"box", {least[0], most[0], least[1], most[1]}},
           {"corners_of_file", scene.outline.corners},
           {"area_of_file", scene.outline.area},
-          {"simplified_to", scene.outline.simplify},
-          {"area_moved", scene.outline.moved}};
+          {"simplified_to", {scene.outline.least_simplify, scene.outline.simplify}},
+          {"area_moved", scene.outline.moved},
+          {"thickness_of_file", scene.outline.has_thickness}};
 }
 
 /// Adds where a path ended, and its limit points.

@@ -79,7 +79,9 @@ class Floes(OutlineTest):
         self.assertEqual((outline["polygons"], outline["holes"], outline["corners_of_file"]),
                          (1, 0, 46))
         self.assertAlmostEqual(outline["area_of_file"] / (4 * 93.86), 1, delta=1e-4)
-        self.assertEqual(outline["simplified_to"], 1.5)
+        least, most = outline["simplified_to"]
+        self.assertEqual(least, most)
+        self.assertIn(round(most, 9), (0.3, 0.6, 1.2, 2.4))  # element_size times 0.1, 0.2, ...
         self.assertLessEqual(abs(outline["area"] - outline["area_of_file"]), outline["area_moved"])
         self.assertLess(outline["area_moved"], 0.1 * outline["area"])
         self.assertIn(f"outline: 1 polygon, {outline['corners']} corners", out)
@@ -304,9 +306,10 @@ class Refused(OutlineTest):
         self.table(notch, "sheet: outline: 'o.csv': the polygon: no cells of sheet: element_size: "
                    "1 can end on edge", "-sheet_outline_simplify", "0")
         self.write(STATIC)
-        self.said()  # simplified to half of the element size
+        self.said()  # simplified as little as needed
         outline = self.summary()["outline"]
         self.assertEqual((outline["corners"], outline["corners_of_file"]), (4, 8))
+        self.assertEqual(outline["simplified_to"], [0.4, 0.4])
         self.assertAlmostEqual(outline["area_moved"], 0.09, delta=1e-12)
 
     def test_keys(self):
@@ -327,6 +330,129 @@ class Refused(OutlineTest):
         (self.folder / "out/scene/history.csv").write_text(HOLED)
         self.write(STATIC.replace("o.csv", "out/scene/history.csv"))
         return self.refused().replace("out/scene/history.csv", "o.csv", 1)
+
+
+FIELD = """integrator: explicit
+forces: [beam, fracture, gravity, buoyancy]
+sheet: {outline: field.geojson, element_size: 2, iterations: 20}
+beam: {damping_ratio: 0.1}
+fracture: {tensile_strength: 5e5, shear_strength: 5e5, energy: 15}
+time: {end: 0.02}
+output: {history: 0.01}
+"""
+SQUARE = ((0, 0), (8, 0), (8, 8), (0, 8))
+BOOT = ((0, 0), (10, 0), (10, 5), (5, 5), (5, 10), (0, 10))
+CHIP = ((0, 0), (2, 0), (2, 1.5), (0, 1.5))  # smaller than a cell
+
+
+class Fields(OutlineTest):
+    """Floes of a file with their own thicknesses."""
+    AREA = {SQUARE: 64, BOOT: 75, CHIP: 3}
+
+    def setUp(self):
+        super().setUp()
+        self.write(FIELD)
+        self.field((SQUARE, 0.5), (BOOT, 0.8), (CHIP, 0.3))
+
+    def field(self, *floes):
+        """Writes a file of floes side by side, each with its thickness (or a word for none)."""
+        features = []
+        for k, (ring, thickness) in enumerate(floes):
+            moved = [[x + 12 * k, y] for x, y in ring]
+            features.append({"type": "Feature", "properties": {"id": k, "thickness": thickness},
+                             "geometry": {"type": "Polygon", "coordinates": [moved + moved[:1]]}})
+        (self.folder / "field.geojson").write_text(
+            json.dumps({"type": "FeatureCollection", "features": features}))
+
+    def test_each_floe_has_its_own_thickness(self):
+        out = self.said()
+        self.assertIn("each of its own thickness", out)
+        lattice, summary = self.lattice(), self.summary()
+        mass, x = lattice["bodies/mass"], lattice["bodies/position"]
+        floe = (x[:, 0] // 12).astype(int)
+        h = np.array([0.5, 0.8, 0.3])
+        np.testing.assert_allclose(x[:, 2], h[floe] * (0.5 - 920 / 1010), rtol=1e-13)
+        for k, area in enumerate(self.AREA.values()):
+            self.assertAlmostEqual(mass[floe == k].sum() / (920 * h[k] * area), 1, delta=1e-12)
+        np.testing.assert_array_equal(lattice["beams/height"], h[floe[lattice["beams/bodies"][:, 0]]])
+        self.assertNotIn("beams/offsets", lattice)  # within a floe beams are centric
+        self.assertEqual((floe == 2).sum(), 1)
+        self.assertEqual(summary["outline"]["polygons"], 3)
+        self.assertTrue(summary["outline"]["thickness_of_file"])
+        self.assertEqual((summary["thickness"]["least"], summary["thickness"]["most"]), (0.3, 0.8))
+        mean = (0.5 * 64 + 0.8 * 75 + 0.3 * 3) / 142
+        self.assertAlmostEqual(summary["thickness"]["mean"] / mean, 1, delta=1e-12)
+        for row in self.rows():  # they float at rest
+            self.assertLess(float(row["energy_kinetic"]), 1e-12)
+            self.assertEqual(int(float(row["fragments"])), 3)
+
+    def test_the_scene_has_the_last_word(self):
+        self.said("-sheet_thickness", "0.7")
+        height = self.lattice()["bodies/position"][:, 2]
+        np.testing.assert_allclose(height, 0.7 * (0.5 - 920 / 1010), rtol=1e-13)
+        self.assertFalse(self.summary()["outline"]["thickness_of_file"])
+        self.assertNotIn("thickness", self.summary())
+
+    def test_floes_of_one_thickness_are_as_a_sheet_of_it(self):
+        self.field((SQUARE, 0.7), (BOOT, 0.7))
+        self.said("-output_dir", "out/file")
+        self.said("-output_dir", "out/scene", "-sheet_thickness", "0.7")
+        file, scene = self.lattice("out/file"), self.lattice("out/scene")
+        self.assertEqual(file.keys(), scene.keys())
+        for name, values in file.items():
+            self.assertEqual(values.tobytes(), scene[name].tobytes(), name)
+        self.assertEqual(self.rows("out/file"), self.rows("out/scene"))
+
+    def test_same_bits_on_two_ranks(self):
+        for ranks in (1, 2):
+            self.finish(self.begin("-output_dir", f"out/{ranks}", ranks=ranks))
+        one, two = self.lattice("out/1"), self.lattice("out/2")
+        for name, values in one.items():
+            self.assertEqual(values.tobytes(), two[name].tobytes(), name)
+        self.assertEqual(self.rows("out/1"), self.rows("out/2"))
+
+    def test_bad_thickness(self):
+        for bad in (None, "thick"):
+            self.field((SQUARE, 0.5), (BOOT, bad))
+            self.assertIn("sheet: outline: 'field.geojson': feature 2 has no number \"thickness\" "
+                          "among its properties, others have; 'sheet: thickness' would take the "
+                          "place of those of the file", self.refused())
+        self.said("-sheet_outline_feature", "1")
+        self.field((SQUARE, -0.5))
+        self.assertIn("feature 1 has the thickness -0.5, must be >= 1e-9", self.refused())
+        self.said("-sheet_thickness", "1")
+
+    def test_what_needs_one_thickness(self):
+        self.assertIn("fracture: flexural_strength: is for sheets of one thickness, and "
+                      "'sheet: outline' makes it vary",
+                      self.refused("-fracture_flexural_strength", "5e5"))
+
+    def test_sets_of_floes(self):
+        motion = "initial: {names: [a], a: {set: floe_2, velocity: [0.1, 0, 0]}}\n"
+        self.write(FIELD + motion)
+        self.said()
+        lattice = self.lattice()
+        np.testing.assert_array_equal(lattice["sets/floe_2"], np.flatnonzero(
+            lattice["bodies/position"][:, 0] // 12 == 1))
+        self.assertNotIn("sets/floe_1", lattice)
+        energy = float(self.rows()[0]["energy_kinetic"])
+        self.assertAlmostEqual(energy / (0.005 * 920 * 0.8 * 75), 1, delta=1e-9)
+        for name in ("floe_4", "floe_0", "floe_02", "floe_2x"):
+            self.write(FIELD + motion.replace("floe_2", name))
+            self.assertIn(name, self.refused())
+
+    def test_each_is_simplified_as_needed(self):
+        """A step of 0.6 m is in the way of cells of 2 m, one of 0.15 m too; a triangle is not."""
+        step = ((0, 0), (10, 0), (10, 5), (6, 5), (6, 5.6), (0, 5.6))
+        low = ((0, 0), (10, 0), (10, 5), (6, 5), (6, 5.15), (0, 5.15))
+        for rings, tolerances, corners in (((SQUARE,), [0.2, 0.2], 4),
+                                           ((SQUARE, low), [0.2, 0.2], 8),
+                                           ((SQUARE, low, step), [0.2, 0.8], 12)):
+            self.field(*((ring, 1) for ring in rings))
+            self.said()
+            outline = self.summary()["outline"]
+            self.assertEqual(outline["simplified_to"], tolerances)
+            self.assertEqual(outline["corners"], corners)
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ std::vector<Outline> real_floes(const std::string& file) {
   std::ostringstream text;
   text << stream.rdbuf();
   std::vector<Outline> floes;
-  for (const auto& polygons : parse_outline(text.str(), file)) floes.emplace_back(polygons);
+  for (const auto& feature : parse_outline(text.str(), file)) floes.emplace_back(feature.polygons);
   return floes;
 }
 
@@ -207,6 +207,40 @@ TEST(Outline, RealFloes) {
       for (const Point2& p : ring) EXPECT_LE(outline.distance(p), l / 2 * (1 + 1e-12));
     expect_meshed(plan_of(outline, l));
   }
+}
+
+TEST(Outline, WhetherEdgesCanBeFollowedIsKnownBeforeMeshing) {
+  int with_room = 0, without = 0;
+  for (const Outline& floe : real_floes(FLOE_TEST_DATA "/floes.geojson")) {
+    const double l = std::sqrt(floe.area() / 60);
+    for (const double tolerance : {0.05, 0.1, 0.2, 0.4}) {
+      const SheetPlan plan = plan_of(simplified(floe, tolerance * l).outline, l);
+      const bool room = can_be_followed(plan.outline.polygons().front(), plan);
+      EXPECT_EQ(room, meshed(plan).unfollowed.empty()) << tolerance;
+      ++(room ? with_room : without);
+    }
+  }
+  EXPECT_GT(with_room, 0);
+  EXPECT_GT(without, 0);
+}
+
+TEST(Outline, SmallConvexPolygonsAreOneCell) {
+  const Ring small = turned({{0, 0}, {1.4, 0}, {1.5, 0.7}, {0.1, 0.8}}, 20);
+  EXPECT_TRUE(is_one_cell({small}, 1));
+  EXPECT_FALSE(is_one_cell({small}, 0.8));                                   // too large
+  EXPECT_FALSE(is_one_cell({box(0, 3, 0, 0.3)}, 1));                         // too long
+  EXPECT_FALSE(is_one_cell({{{0, 0}, {1, 0}, {0.2, 0.2}, {0, 1}}}, 1));      // not convex
+  EXPECT_FALSE(is_one_cell({box(0, 1, 0, 1), box(0.4, 0.6, 0.4, 0.6)}, 1));  // with a hole
+  const SheetPlan plan = plan_of(Outline({{small}, {box(4, 8, 0, 3)}, {turned(small, 90)}}), 1);
+  const OutlinedCells made = meshed(plan);
+  const Tessellation& t = made.cells;
+  ASSERT_EQ(made.polygon.size(), t.generators.size());
+  EXPECT_EQ(std::count(made.polygon.begin(), made.polygon.end(), 0), 1);
+  EXPECT_GT(std::count(made.polygon.begin(), made.polygon.end(), 1), 10);
+  EXPECT_EQ(std::count(made.polygon.begin(), made.polygon.end(), 2), 1);
+  EXPECT_EQ(polygon(t, 0).size(), 4U);
+  EXPECT_EQ(t.sides[0], side_left | side_right | side_bottom | side_top);
+  expect_tiles(plan, t);
 }
 
 TEST(Outline, SidesAreThoseOfTheNormals) {
@@ -304,8 +338,8 @@ TEST(Outline, Files) {
   const std::string polygon = R"({"type":"Polygon","coordinates":[)" + square + "," + hole + "]}";
   const auto corners = [](const std::string& text, const std::string& name = "f") {
     std::vector<std::size_t> counts;
-    for (const auto& polygons : parse_outline(text, name))
-      counts.push_back(Outline(polygons).corners());
+    for (const auto& feature : parse_outline(text, name))
+      counts.push_back(Outline(feature.polygons).corners());
     return counts;
   };
   using Counts = std::vector<std::size_t>;
@@ -317,6 +351,16 @@ TEST(Outline, Files) {
                     polygon + "}]}"),
             (Counts{0, 8}));
   EXPECT_EQ(corners(R"({"type":"GeometryCollection","geometries":[)" + polygon + "]}"), Counts{8});
+  const auto thickness = [&](const std::string& properties) {
+    return parse_outline(R"({"type":"Feature","properties":)" + properties + R"(,"geometry":)" +
+                             polygon + "}",
+                         "f")
+        .front()
+        .thickness;
+  };
+  EXPECT_EQ(thickness(R"({"id":3,"thickness":0.5})"), 0.5);
+  for (const auto* none : {"null", "{}", R"({"thickness":null})", R"({"thickness":"0.5"})"})
+    EXPECT_FALSE(thickness(none).has_value()) << none;
   // Tables: rings by empty lines or by the third column, holes by their place.
   EXPECT_EQ(corners("x,y\n0,0\n4,0\n4,4\n0,4\n0,0\n\n1,1\n2,1\n2,2\n"), Counts{7});
   EXPECT_EQ(corners("0;0;a\n4;0;a\n4;4;a\n9;9;b\n12;9;b # comment\n12;12;b\n"), (Counts{3, 3}));

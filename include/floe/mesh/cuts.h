@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -42,9 +43,23 @@ struct MeshedBox {
   SheetPlan plan;  ///< rectangular
   std::array<double, 2> centre{};
 };
-/// Returns the rectangles of a sheet, one per polygon of its outline; that of a plan without
-/// outline is the plan.
+/// Whether a polygon is a single cell: convex, of the area of one and a half hexagons of the mean
+/// cell area at most, and nowhere longer than 3 l.
+/// \param l  element size [m]
+bool is_one_cell(const RingedPolygon& polygon, double l);
+
+/// Whether rows of cells find room along all edges of a polygon, or it is a single cell.
+/// \param plan  element_size and seed are used
+bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan);
+
+/// Returns the rectangles of a sheet, one per polygon of its outline, whose sides are multiples of
+/// the element size; that of a plan without outline is the plan.
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan);
+
+/// Meshes these rectangles, those of one size once. Collective.
+/// \param on_iteration  as of tessellate()
+std::vector<Tessellation> tessellate(const std::vector<MeshedBox>& boxes, MPI_Comm comm,
+                                     const std::function<void(int, double)>& on_iteration = {});
 
 /// An edge of an outline on which no row of cells could end.
 struct UnfollowedEdge {
@@ -54,14 +69,15 @@ struct UnfollowedEdge {
 
 struct OutlinedCells {
   Tessellation cells;
+  std::vector<std::int32_t> polygon;       ///< of the outline, in which each cell lies
   std::vector<FittedCut> cuts;             ///< one per line
   std::vector<UnfollowedEdge> unfollowed;  ///< where there are any, there are no cells
 };
 
 /// Changes the cells of the rectangles so that they end on the edges of the outline, polygon by
-/// polygon, and keeps those inside. Lines of cuts are followed inside the polygons, as by
-/// fit_to_cuts. Collective; the same bits for any number of ranks.
-/// \param relaxed  cells of the meshed_boxes()
+/// polygon, and keeps those inside; polygons that are single cells are taken as they are. Lines of
+/// cuts are followed inside the polygons, as by fit_to_cuts. Collective; the same bits for any
+/// number of ranks. \param relaxed  cells of the meshed_boxes()
 OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> relaxed,
                              std::span<const CutLine> lines, MPI_Comm comm);
 

@@ -72,6 +72,28 @@ def check_real_floe(test, run):
     test.assertEqual(row["fragments"], 1)
 
 
+def check_floe_field(test, run):
+    output = run()
+    outline, thickness = output.summary["outline"], output.summary["thickness"]
+    test.assertEqual(outline["polygons"], 39)
+    test.assertAlmostEqual(outline["area_of_file"] / 2679, 1, delta=1e-3)
+    test.assertTrue(outline["thickness_of_file"])
+    test.assertTrue(0.4 <= thickness["least"] < thickness["most"] <= 0.8)
+    with h5py.File(output.folder / "lattice.h5") as file:
+        mass, z = file["bodies/mass"][:], file["bodies/position"][:, 2]
+    mean, area = thickness["mean"], outline["area"]
+    test.assertAlmostEqual(mass.sum() / (920 * mean * area), 1, delta=1e-12)
+    draft = 920 / 1010  # over the thickness
+    test.assertAlmostEqual((mass @ z) / mass.sum() / (0.5 - draft), (
+        mean * (1 + (thickness["deviation"] / mean) ** 2)), delta=1e-12)
+    test.assertEqual(output.history("fragments")[0], 39)
+    kinetic = output.history("energy_kinetic")[0]
+    test.assertAlmostEqual(kinetic / (0.125 * mass.sum()), 1, delta=1e-9)
+    test.assertLess(abs(last_row(output)["energy_balance_error"]), 1e-3 * kinetic)
+    test.assertGreater(output.summary["peak_force"]["leg"][0], 1e5)
+    test.assertGreater(output.summary["contacts"], 10)
+
+
 def check_rubble_pile(test, run):
     output = run("-time_end", "3")
     test.assertEqual(output.summary["bodies"], 1000)
