@@ -374,7 +374,8 @@ class Fields(OutlineTest):
         np.testing.assert_allclose(x[:, 2], h[floe] * (0.5 - 920 / 1010), rtol=1e-13)
         for k, area in enumerate(self.AREA.values()):
             self.assertAlmostEqual(mass[floe == k].sum() / (920 * h[k] * area), 1, delta=1e-12)
-        np.testing.assert_array_equal(lattice["beams/height"], h[floe[lattice["beams/bodies"][:, 0]]])
+        of_beam = floe[lattice["beams/bodies"][:, 0]]
+        np.testing.assert_array_equal(lattice["beams/height"], h[of_beam])
         self.assertNotIn("beams/offsets", lattice)  # within a floe beams are centric
         self.assertEqual((floe == 2).sum(), 1)
         self.assertEqual(summary["outline"]["polygons"], 3)
