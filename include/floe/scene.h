@@ -74,6 +74,7 @@ struct Scene {
          contact = false;
   } forces;
   bool has_sheet = false;  ///< whether a sheet is meshed; otherwise lattice_file is read
+  bool fit_cuts = true;    ///< whether the sheet's cells end on the lines of cuts
   SheetPlan sheet;
   /// Where the sheet's outline comes from, as placed but before it was simplified.
   struct {
@@ -87,7 +88,6 @@ struct Scene {
     double area = 0;                    ///< [m^2]
     double moved = 0;                   ///< area between it and the simplified one [m^2]
   } outline;
-  bool fit_cuts = true;   ///< whether the sheet's cells end on the lines of cuts
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;   ///< of the sheet [m]; the mean of a random field
   ThicknessField thickness_field;

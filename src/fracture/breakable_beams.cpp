@@ -576,12 +576,18 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       g.dissipated += path.squeeze;
       g.released += energy.squeeze;
       next.time = state.time;
-      for (std::size_t k = 0; k < 3; ++k)
-        next.place[k] = 0.5 * (item(part_.bodies.position, i)[k] + record(state, i)[k] +
-                               item(part_.bodies.position, j)[k] + record(state, j)[k]);
+      next.place = 0.5 * (end_of(m, 0, state) + end_of(m, 1, state));
     }
     next.dissipated += g.dissipated;
     return g;
+  }
+
+  /// Returns where an end of a beam is [m].
+  Vec3<double> end_of(std::int32_t m, std::size_t end, const State<Spatial>& state) const {
+    const auto body = static_cast<std::size_t>(item(part_.beams.bodies, m)[end]);
+    const Vec3<double> at = part_.bodies.position[body] + displacement(state, body);
+    if (part_.beams.offsets.empty()) return at;
+    return at + rotate(normalised(rotation(state, body)), offset(part_.beams, m, end));
   }
 
   static BeamStress<double> rates(const Constants& c, const BeamStrains<double>& e, const double* i,

@@ -19,7 +19,7 @@ namespace floe {
 struct Break {
   double time;        ///< of the state in which the beam broke [s]
   std::int32_t beam;  ///< global index
-  Point3 place;       ///< middle between the centroids of its bodies at this time [m]
+  Point3 place;       ///< middle between the ends of its beam at this time [m]
   double mode_mix;    ///< beta: share of shear and torsion in the energy at initiation
   double energy;      ///< dissipated [J]
   double nominal;     ///< G A, the energy it should dissipate [J]; less than `energy` if brittle

@@ -135,10 +135,13 @@ void add_facets(const Lattice& lattice, const std::vector<Meeting>& meetings, Ju
       continue;
     const auto [i, j] = a.bodies;
     const Point3 &xi = item(lattice.bodies.position, i), &xj = item(lattice.bodies.position, j);
-    const Point3 middle{0.5 * (a.place[0] + b.place[0]), 0.5 * (a.place[1] + b.place[1]),
-                        0.5 * (xi.z + xj.z)};
     const auto beam = std::lower_bound(beams.begin(), beams.end(), std::pair(a.bodies, 0));
     const bool joined = beam != beams.end() && beam->first == a.bodies;
+    const double height = joined ? xi.z + offset(lattice.beams, beam->second, 0).z + xj.z +
+                                       offset(lattice.beams, beam->second, 1).z
+                                 : xi.z + xj.z;
+    const Point3 middle{0.5 * (a.place[0] + b.place[0]), 0.5 * (a.place[1] + b.place[1]),
+                        0.5 * height};
     const auto facet = static_cast<std::int32_t>(found.facets.size());
     found.facets.push_back({.bodies = a.bodies,
                             .beam = joined ? beam->second : Junctions::none,

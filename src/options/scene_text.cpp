@@ -1,21 +1,16 @@
 #include "options/scene_text.h"
 
-#include <sys/stat.h>
 #include <yaml.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string_view>
 
-#include "base/collectives.h"
 #include "floe/options/options.h"
 #include "options/option_names.h"
 #include "options/option_values.h"
+#include "options/text_file.h"
 
 namespace floe {
 namespace {
@@ -271,29 +266,6 @@ class SceneParser {
   std::size_t expanded_ = 0;  ///< bytes that aliases have expanded to
 };
 
-using NearTo = std::function<std::string(const std::string&)>;
-
-std::string read_file(const std::string& path, const NearTo& near_to) {
-  const auto refuse = [&](const std::string& why) {
-    throw InputError("scene " + shown(path) + ": " + why);
-  };
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    const std::string why = std::strerror(errno);
-    refuse(why + (near_to ? near_to(path) : ""));
-  }
-  if (!S_ISREG(status.st_mode))
-    refuse(S_ISDIR(status.st_mode) ? "is a directory, not a file" : "is not a regular file");
-  if (static_cast<std::size_t>(status.st_size) > largest_scene)
-    refuse("has " + std::to_string(status.st_size) + " bytes, too large for a scene");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(std::strerror(errno));
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (file.bad() || text.bad()) refuse("cannot be read");
-  return text.str();
-}
-
 void check_text(const std::string& path, const std::string& text) {
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
     throw InputError(path + ": line 1: is a text in UTF-16; save it in UTF-8");
@@ -331,17 +303,10 @@ GivenOptions parse_scene(const std::string& path, const std::string& text, Sourc
   return SceneParser(path, text, source).parse();
 }
 
-GivenOptions read_scene_text(const std::string& path, MPI_Comm comm, const NearTo& near_to) {
-  std::string text, verdict;
-  if (rank(comm) == 0) {
-    try {
-      text = read_file(path, near_to);
-    } catch (const InputError& error) {
-      verdict = error.what();
-    }
-  }
-  throw_verdict(std::move(verdict), comm);
-  broadcast(text, comm);
+GivenOptions read_scene_text(const std::string& path, MPI_Comm comm,
+                             const std::function<std::string(const std::string&)>& near_to) {
+  const std::string text =
+      read_text_file("scene " + shown(path), path, largest_scene, comm, near_to);
   return parse_scene(path, text);
 }
 

@@ -1,13 +1,13 @@
 #include "scene/outline_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "floe/base/petsc.h"
+#include "options/option_values.h"
 
 namespace floe {
 namespace {
@@ -153,12 +153,6 @@ std::string_view take_word(std::string_view& line) {
   return word;
 }
 
-bool to_coordinate(std::string_view word, double& value) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && end == word.data() + word.size();
-}
-
 /// The rings of a table as polygons: a ring inside an odd number of others is a hole of the
 /// innermost.
 OutlineFeatures nested(const std::vector<Ring>& rings) {
@@ -212,14 +206,12 @@ OutlineFeatures Reader::table(const std::string& text) {
       if (!has_comment && !rings.back().empty()) rings.emplace_back();
       continue;
     }
-    Position p{};
-    const bool is_heading = std::exchange(is_first, false) && !to_coordinate(x, p[0]);
-    if (is_heading) continue;
-    if (!to_coordinate(x, p[0]) || !to_coordinate(y, p[1])) refuse(where + ": is not x, y");
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1])) refuse(where + ": is not finite");
+    const auto px = to_number(x), py = to_number(y);
+    if (std::exchange(is_first, false) && !px) continue;  // a heading
+    if (!px || !py) refuse(where + ": is not x, y");
     if (!rings.back().empty() && third != mark) rings.emplace_back();
     mark = third;
-    rings.back().push_back(p);
+    rings.back().push_back({*px, *py});
     count();
   }
   if (rings.back().empty()) rings.pop_back();

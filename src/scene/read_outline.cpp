@@ -1,45 +1,15 @@
 // Reading of a sheet's outline: the file, its place, its simplification.
-#include <sys/stat.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
-#include "base/collectives.h"
-#include "base/on_root.h"
 #include "floe/mesh/cuts.h"
+#include "options/text_file.h"
 #include "reading.h"
 #include "scene/outline_file.h"
 
 namespace floe {
 namespace {
-
-std::string contents(const std::string& path) {
-  const auto refuse = [&](const std::string& why) {
-    throw InputError("sheet: outline: '" + path + "': " + why);
-  };
-  constexpr long long largest = 1'000'000'000;  // [B]
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) refuse(std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
-  if (status.st_size > largest) refuse("has more than 1e9 bytes");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(std::strerror(errno));
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (file.bad() || text.bad()) refuse("cannot be read");
-  return text.str();
-}
-
-std::string read_on_root(const std::string& path) {
-  std::string text;
-  on_root(PETSC_COMM_WORLD, [&] { text = contents(path); });
-  broadcast(text, PETSC_COMM_WORLD);
-  return text;
-}
 
 /// Scales an outline, turns it about its centroid, and moves its centroid.
 Outline placed(const Outline& given, double scale, double degrees,
@@ -142,8 +112,10 @@ bool read_outline(Options& options, Scene& scene) {
   const bool has_tolerance = options.given("sheet: outline_simplify");
   if (has_tolerance) source.simplify = options.number("sheet: outline_simplify");
 
-  const Outline given =
-      chosen(parse_outline(read_on_root(source.file), source.file), feature, source.file, scene);
+  constexpr std::size_t largest = 1'000'000'000;  // [B]
+  const std::string text = read_text_file("sheet: outline: '" + source.file + "'", source.file,
+                                          largest, PETSC_COMM_WORLD);
+  const Outline given = chosen(parse_outline(text, source.file), feature, source.file, scene);
   const auto refuse = [&](const std::string& why) {
     throw InputError("sheet: outline: '" + source.file + "': " + why);
   };

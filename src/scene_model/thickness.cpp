@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
@@ -13,6 +13,8 @@
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/geometry/polyhedron.h"
+#include "options/option_values.h"
+#include "options/text_file.h"
 #include "scene/reading.h"
 
 namespace floe {
@@ -81,7 +83,9 @@ struct Grid {
 /// Reads rows of numbers: first any word and the values of x, then each y and its thicknesses.
 Grid read_csv(const std::string& path) {
   Grid grid{path, {}, {}, {}};
-  std::ifstream in(path);
+  constexpr std::size_t largest = 1'000'000'000;  // [B]
+  std::istringstream in(
+      read_text_file(std::string(key) + ": '" + path + "'", path, largest, PETSC_COMM_WORLD));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     if (line.find_first_not_of(" \t\r,") == std::string::npos || line.front() == '#') continue;
@@ -91,18 +95,11 @@ Grid read_csv(const std::string& path) {
     const bool head = grid.x.empty();
     for (bool first = true; std::getline(words, word, ','); first = false) {
       if (head && first) continue;
-      const auto end = word.find_last_not_of(" \t\r");
-      std::size_t read = 0;
-      double value = 0;
-      try {
-        value = std::stod(word, &read);
-      } catch (const std::exception&) {
-        read = 0;
-      }
-      if (end == std::string::npos || read != end + 1 || !std::isfinite(value))
+      const std::optional<double> value = to_number(word);
+      if (!value)
         grid.refuse("line " + std::to_string(number) + ": '" + word.substr(0, 40) +
                     "' is not a number");
-      row.push_back(value);
+      row.push_back(*value);
     }
     if (head) {
       if (row.empty())
@@ -117,7 +114,7 @@ Grid read_csv(const std::string& path) {
     grid.y.push_back(row.front());
     grid.thickness.insert(grid.thickness.end(), row.begin() + 1, row.end());
   }
-  if (grid.x.empty()) grid.refuse("is empty or cannot be read");
+  if (grid.x.empty()) grid.refuse("is empty");
   return grid;
 }
 

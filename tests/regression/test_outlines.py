@@ -192,11 +192,10 @@ class Shapes(OutlineTest):
         self.assertAlmostEqual(self.lattice()["bodies/mass"].sum() / area, 1, delta=1e-12)
         turned = [self.modulus(f"outline: o.csv, outline_turn: -30, seed: {seed}",
                                rectangle(24, 12, 30)) for seed in range(1, 5)]
-        # Rows of cells along the sides are more regular than the others: the mean may differ by
-        # some scatter of the meshes.
-        scatter = 3 * np.std(plain, ddof=1) + 0.02
-        self.assertAlmostEqual(np.mean(given), np.mean(plain), delta=scatter)
-        self.assertAlmostEqual(np.mean(turned), np.mean(given), delta=scatter)
+        # Rows of cells along the sides are more regular than the others, and so stiffer: over 12
+        # seeds 0.843, 0.863 and 0.855, a mean of four scatters by 0.004 at most.
+        for outlined, stiffer in ((given, 0.020), (turned, 0.012)):
+            self.assertAlmostEqual(np.mean(outlined) - np.mean(plain), stiffer, delta=0.012)
 
     def test_edges_in_a_box(self):
         (self.folder / "o.csv").write_text(HOLED)
@@ -275,12 +274,12 @@ class Refused(OutlineTest):
         self.write(STATIC)
         self.assertIn("sheet: outline: 'o.csv': No such file", self.refused())
         (self.folder / "o.csv").mkdir()
-        self.assertIn("sheet: outline: 'o.csv': is not a regular file", self.refused())
+        self.assertIn("sheet: outline: 'o.csv': is a directory, not a file", self.refused())
 
     def test_tables(self):
         self.table("", "sheet: outline: 'o.csv': has no polygon")
         self.table("0,0\n9,0\n", "the polygon: has 2 different corners")
-        self.table("0,0\n9,0\nnan,9\n", "line 3: is not finite")
+        self.table("0,0\n9,0\nnan,9\n", "line 3: is not x, y")
         self.table("0,0\n9,0\n9\n", "line 3: is not x, y")
         self.table("0,0\n9,9\n9,0\n0,9\n", "the polygon: crosses itself near (4.5, 4.5)")
         self.table("0,0\n9,0\n9,9\n\n5,-1\n6,-1\n6,8\n5,8\n", "overlap")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Sheets of any thickness: a plate by finite elements, random fields, grids, files, ranks."""
 import json
+import os
 import unittest
 
 import h5py
@@ -221,6 +222,26 @@ class Thickness(FolderTest):
         self.run_scene(text.replace("thickness_file: grid.csv", "thickness: 0.5"), name="plain")
         even, plain = (last_frame(self.folder / "out" / name) for name in ("even", "plain"))
         np.testing.assert_array_equal(even["bodies_displacement"], plain["bodies_displacement"])
+
+    def test_what_is_no_file(self):
+        (self.folder / "scene.yaml").write_text(PLATE)
+        path = self.folder / "grid.csv"
+        for make, part in ((path.mkdir, "is a directory, not a file"),
+                           (lambda: os.mkfifo(path), "is not a regular file"),
+                           (lambda: path.symlink_to("/dev/zero"), "is not a regular file"),
+                           (path.touch, "is empty")):
+            make()
+            done = launch.run("scene.yaml", cwd=self.folder)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"sheet: thickness_file: 'grid.csv': {part}", done.stderr)
+            path.rmdir() if path.is_dir() else path.unlink()
+
+    def test_cracks_run_by_energy(self):
+        self.run_scene(BREAKS, "-fracture_propagation", "energy", "-time_end", "1.5")
+        rows = np.genfromtxt(self.folder / "out/scene/history.csv", delimiter=",", names=True)
+        self.assertGreater(rows["beams_broken"][-1], 1)
+        work = rows["energy_boundary"][-1]
+        self.assertLess(abs(rows["energy_balance_error"][-1]), 1e-3 * abs(work))
 
     def test_breaks_the_same_on_ranks_and_after_restarts(self):
         self.run_scene(BREAKS, name="one")

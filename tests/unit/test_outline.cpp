@@ -377,7 +377,7 @@ TEST(Outline, Files) {
   EXPECT_EQ(refusal("1,2\n", "f.geojson"), "sheet: outline: 'f.geojson': is not JSON (at byte 2)");
   EXPECT_EQ(refusal("", "f.csv"), "sheet: outline: 'f.csv': has no polygon");
   EXPECT_EQ(refusal("0,0\n1,a\n", "f"), "sheet: outline: 'f': line 2: is not x, y");
-  EXPECT_EQ(refusal("0,0\n1,nan\n", "f"), "sheet: outline: 'f': line 2: is not finite");
+  EXPECT_EQ(refusal("0,0\n1,nan\n", "f"), "sheet: outline: 'f': line 2: is not x, y");
   EXPECT_EQ(refusal(R"({"type":"Point","coordinates":[1,2]})", "f"),
             "sheet: outline: 'f': the file is a Point; outlines are Polygon or MultiPolygon");
   EXPECT_EQ(refusal(R"({"type":"Polygon"})", "f"),
