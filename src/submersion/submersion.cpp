@@ -44,23 +44,21 @@ Immersion::Lane Submersion::find(const State<Spatial>& state, std::size_t block,
 }
 
 /// Finds the bodies of a block anew that have moved too far, and leaves the others.
-/// \param apart  > 0 where that is so
 Immersion::Lane Submersion::find_some(const State<Spatial>& state, std::size_t block,
-                                      const BlockMotion& m, const Lanes& apart,
-                                      const Immersion::Lane& followed) {
+                                      const BlockMotion& m, const Followed& followed) {
   Expansion old = expansions_[block];
   Immersion::Lane now = find(state, block, m);
   new_[block] = 0;
   const auto to = numbers_of(expansions_[block]), from = numbers_of(old);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    if (apart[lane] > 0) {
+    if (followed.apart[lane] > 0) {
       new_[block] = static_cast<std::uint8_t>(new_[block] | 1U << lane);
       continue;
     }
     for (std::size_t n = 0; n < numbers; ++n) (*to[n])[lane] = double((*from[n])[lane]);
-    now.volume[lane] = double(followed.volume[lane]);
-    now.moment.x[lane] = double(followed.moment.x[lane]);
-    now.moment.y[lane] = double(followed.moment.y[lane]);
+    now.volume[lane] = double(followed.now.volume[lane]);
+    now.moment.x[lane] = double(followed.now.moment.x[lane]);
+    now.moment.y[lane] = double(followed.now.moment.y[lane]);
   }
   return now;
 }

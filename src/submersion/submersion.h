@@ -86,10 +86,14 @@ class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>,
     Lanes extent2;  ///< square of the distance of the farthest vertex [m^2]
     Lanes most2;    ///< half the square of the largest move [m^2]
   };
+  struct Followed {
+    Immersion::Lane now;
+    Lanes apart;  ///< > 0 where a body has moved too far to be followed
+  };
   Immersion::Lane find(const State<Spatial>& state, std::size_t block, const BlockMotion& m);
   Immersion::Lane follow(const State<Spatial>& state, std::size_t block, const BlockMotion& m);
   Immersion::Lane find_some(const State<Spatial>& state, std::size_t block, const BlockMotion& m,
-                            const Lanes& apart, const Immersion::Lane& followed);
+                            const Followed& followed);
 
   const Part& part_;
   Immersion immersion_;
@@ -125,7 +129,7 @@ inline Immersion::Lane Submersion::follow(const State<Spatial>& state, std::size
   const Lanes apart = shift * shift + sizes_[block].extent2 * dot(turn, turn) - sizes_[block].most2;
   if (none_of(apart > 0.0)) [[likely]]
     return now;
-  return find_some(state, block, m, apart, now);
+  return find_some(state, block, m, {now, apart});
 }
 
 }  // namespace floe
