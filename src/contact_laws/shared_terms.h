@@ -171,11 +171,13 @@ ContactForceOf<T> without_dashpots(const ContactTrialOf<T>& trial) {
 }
 
 /// Returns the couple -(c/|S|) T omega of the viscous pressure, of the spin across n that it slows
-/// down itself.
+/// down itself. The spin of a body that comes to rest falls for ever; below 1e-75 rad/s, where its
+/// fourth power is no longer a number, it counts as 0.
 template <class T>
 Vec3<T> rocking_couple(const ContactTrialOf<T>& trial, const Vec3<T>& across) {
+  constexpr double least = 1e-150;
   const T w2 = dot(across, across);
-  const auto rocks = w2 > 0.0;
+  const auto rocks = w2 > least;
   const DashpotsOf<T>& d = trial.dashpots;
   const Vec3<T> tw = trial.patch.rocking(across);
   const T slows = 0.5 * trial.dt * d.area * dot(across, tw) * dot(across, d.turning * across);

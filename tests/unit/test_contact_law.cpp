@@ -183,6 +183,18 @@ TEST(ContactLaw, ViscousPressureResistsRocking) {
   expect_vector(law(face_of(0.01)).whole_couple(), {0, 0, 0});
 }
 
+/// The spin of a body that comes to rest falls by a part in every step, below any number.
+TEST(ContactLaw, RockingThatDiesAwayLeavesNumbers) {
+  Law law;
+  law.options.damping_ratio = 0.2;
+  for (const double spin : {1e-70, 1e-76, 1e-80, 1e-81, 1e-82, 1e-100, 1e-160, 1e-300}) {
+    law.motion.spin = {spin, 0, 0};
+    const Vec3<double> couple = law(face_of(0.01)).viscous_couple;
+    EXPECT_TRUE(std::isfinite(couple.x)) << spin;
+    EXPECT_LE(couple.x, 0) << spin;
+  }
+}
+
 /// The dashpot sees the velocity at the middle of the facets and acts there.
 TEST(ContactLaw, ViscousForceActsAtTheMiddleOfTheFacets) {
   Law law;
