@@ -14,7 +14,7 @@
 namespace floe {
 namespace {
 
-using test::placed;
+using test::placed, test::Random;
 
 constexpr Quat<double> upright{1, 0, 0, 0};
 
