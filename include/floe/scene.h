@@ -58,7 +58,7 @@ struct Bonds {
   bool given = false, in_box = false;
   /// Where the middle of the faces lies: x0, x1, y0, y1, z0, z1 [m].
   std::array<double, 6> box{-1e9, 1e9, -1e9, 1e9, -1e9, 1e9};
-  double young = 4e9;  ///< [Pa]
+  double young = 4e9;               ///< [Pa]
   double strength = 1, energy = 1;  ///< factors of those of fracture
 };
 

@@ -78,10 +78,9 @@ std::vector<TipOverload> TipBeams::overloads(const std::vector<ArmedBeam>& mine,
                                              const State<Spatial>& state) const {
   std::vector<double> rows;
   for (const auto& [s, m] : mine)
-    rows.insert(rows.end(),
-                {static_cast<double>(item(part_.global_beam, m)), s,
-                 item(part_.beams.young, m) * tips_.junctions().moduli.young, bent_opening(m),
-                 options_.energy * factor(part_.beams.energy, m)});
+    rows.insert(rows.end(), {static_cast<double>(item(part_.global_beam, m)), s,
+                             item(part_.beams.young, m) * tips_.junctions().moduli.young,
+                             bent_opening(m), options_.energy * factor(part_.beams.energy, m)});
   rows = all_gathered(rows, part_.comm);
   if (rows.empty()) return {};
   struct Tip {
@@ -93,8 +92,7 @@ std::vector<TipOverload> TipBeams::overloads(const std::vector<ArmedBeam>& mine,
   std::vector<std::int32_t> bodies;
   for (std::size_t k = 0; k + 5 <= rows.size(); k += 5) {
     const auto beam = static_cast<std::int32_t>(rows[k]);
-    beams.push_back(
-        {beam, rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4], tips_.behind(beam)});
+    beams.push_back({beam, rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4], tips_.behind(beam)});
     tips_.append_bodies(beams.back().cracks, bodies);
   }
   std::sort(bodies.begin(), bodies.end());

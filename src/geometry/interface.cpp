@@ -121,8 +121,7 @@ struct Seen {
 
 /// The faces of a body that look along the normal (side = 1) or against it (side = -1).
 std::vector<Seen> faces_seen(const Placed& body, double side, const Vec3<double>& normal,
-                             const Vec3<double>& u, const Vec3<double>& v,
-                             const Point3& origin) {
+                             const Vec3<double>& u, const Vec3<double>& v, const Point3& origin) {
   constexpr double edge_on = 1e-6;  // a face seen at a smaller sine has no area to speak of
   std::vector<Seen> seen;
   for (std::int32_t f = body.first_face(); f < body.end_face(); ++f) {

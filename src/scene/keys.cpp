@@ -98,10 +98,11 @@ constexpr std::array table{
     OptionSpec{"bonds: gap", number, "(required)", "m", ">= 0, <= 1e6",
                "faces of two bodies, without a beam between them, that are at most this far apart "
                "at the start are frozen together, by a beam of their common area"},
-    OptionSpec{"bonds: box", numbers, "(everywhere)", "m", ">= -1e9, <= 1e9",
-               "x0, x1, y0, y1, z0, z1: where the middle of these faces lies, as of a layer that is "
-               "consolidated down to z0",
-               6},
+    OptionSpec{
+        "bonds: box", numbers, "(everywhere)", "m", ">= -1e9, <= 1e9",
+        "x0, x1, y0, y1, z0, z1: where the middle of these faces lies, as of a layer that is "
+        "consolidated down to z0",
+        6},
     OptionSpec{"bonds: young", number, "(ice: young)", "Pa", ">= 1, <= 1e18",
                "Young's modulus of the bonds; required with lattice_file"},
     OptionSpec{"bonds: strength", number, "1", "", ">= 1e-6, <= 1e6",

@@ -159,8 +159,9 @@ void read_bonds(Options& options, Scene& scene) {
     bonds.box = options.numbers<6>("bonds: box");
     for (const std::size_t k : {0U, 2U, 4U}) {
       if (bonds.box[k] > bonds.box[k + 1])
-        throw InputError("bonds: box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, y0 <= y1, "
-                         "z0 <= z1 [m]");
+        throw InputError(
+            "bonds: box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, y0 <= y1, "
+            "z0 <= z1 [m]");
     }
   }
   bonds.young = scene.has_sheet ? options.number("bonds: young", {}, scene.ice.young)

@@ -88,8 +88,8 @@ void append(Beams& beams, const Bodies& bodies, const std::array<std::int32_t, 2
   beams.axis_y.push_back(face.axis);
   beams.width.push_back(width);
   beams.height.push_back(height);
-  beams.offsets.push_back({face.centre + from * face.normal - xi,
-                           face.centre + to * face.normal - xj});
+  beams.offsets.push_back(
+      {face.centre + from * face.normal - xi, face.centre + to * face.normal - xj});
   beams.strength.push_back(bonds.strength);
   beams.energy.push_back(bonds.energy);
 }
@@ -127,8 +127,8 @@ BondReport add_bonds(const Scene& scene, Lattice& lattice) {
     if (!face || !is_in(scene.bonds.box, face->centre)) continue;
     const double volume =
         std::min(volume_properties(shapes, i).volume, volume_properties(shapes, j).volume);
-    const double along = dot(item(lattice.bodies.position, j) - item(lattice.bodies.position, i),
-                             face->normal);
+    const double along =
+        dot(item(lattice.bodies.position, j) - item(lattice.bodies.position, i), face->normal);
     if (face->area < least * std::cbrt(volume * volume) || !(along > 0)) continue;
     append(beams, lattice.bodies, pair, *face, scene);
     report.least_gap = report.number == 0 ? face->gap : std::min(report.least_gap, face->gap);

@@ -13,8 +13,8 @@ namespace floe {
 /// Bonds that were made.
 struct BondReport {
   std::int64_t number = 0;
-  double area = 0;                      ///< of all interfaces [m^2]
-  double least_gap = 0, most_gap = 0;   ///< between the faces; below 0: they overlap [m]
+  double area = 0;                     ///< of all interfaces [m^2]
+  double least_gap = 0, most_gap = 0;  ///< between the faces; below 0: they overlap [m]
 };
 
 /// Describes them: "4 between faces, 2 m^2; gaps from 0 to 0.01 m".

@@ -132,8 +132,7 @@ TEST(Interfaces, TurnWithTheBodies) {
 /// Highest (side = 1) or lowest point of a body on a line along n; nothing where the line misses.
 std::optional<double> end_on_line(const Shapes& shapes, std::int32_t body,
                                   const std::vector<Vec3<double>>& vertices,
-                                  const Vec3<double>& on_line, const Vec3<double>& n,
-                                  double side) {
+                                  const Vec3<double>& on_line, const Vec3<double>& n, double side) {
   double from = -1e9, to = 1e9;
   const auto b = static_cast<std::size_t>(body);
   for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
@@ -143,9 +142,12 @@ std::optional<double> end_on_line(const Shapes& shapes, std::int32_t body,
     };
     const Vec3<double> m = cross(corner(1) - corner(0), corner(2) - corner(0));
     const double speed = dot(m, n), room = dot(m, corner(0) - on_line);
-    if (speed > 1e-12) to = std::min(to, room / speed);
-    else if (speed < -1e-12) from = std::max(from, room / speed);
-    else if (room < 0) return std::nullopt;
+    if (speed > 1e-12)
+      to = std::min(to, room / speed);
+    else if (speed < -1e-12)
+      from = std::max(from, room / speed);
+    else if (room < 0)
+      return std::nullopt;
   }
   if (from > to) return std::nullopt;
   return side > 0 ? to : from;
