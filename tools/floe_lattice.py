@@ -105,8 +105,9 @@ class Lattice:
 
     position n x 3 [m]; orientation n x 4; mass n [kg]; inertia n x 3, principal [kg m^2];
     bodies m x 2, first < second, sorted; axis_y m x 3; beam: {name of BEAM_SCALARS: m}; sets {name:
-    indices}; offsets m x 6 [m]: ends of beams from the centroids of their bodies, or None; strength,
-    energy m: factors of those of fracture, or None.
+    indices}; offsets m x 6 [m]: ends of beams from the centroids of their bodies, or None; image
+    m x 3 [m]: from the second body to its image that is joined, or None; strength, energy m:
+    factors of those of fracture, or None.
     """
     position: np.ndarray
     orientation: np.ndarray
@@ -118,6 +119,7 @@ class Lattice:
     sets: dict = field(default_factory=dict)
     shapes: Shapes | None = None
     offsets: np.ndarray | None = None
+    image: np.ndarray | None = None
     strength: np.ndarray | None = None
     energy: np.ndarray | None = None
 
@@ -165,7 +167,7 @@ class Lattice:
                 out["beams/axis_y"] = np.asarray(self.axis_y, float)
                 for name in BEAM_SCALARS:
                     out[f"beams/{name}"] = np.asarray(self.beam[name], float)
-                for name in ("offsets", "strength", "energy"):
+                for name in ("offsets", "image", "strength", "energy"):
                     if getattr(self, name) is not None:
                         out[f"beams/{name}"] = np.asarray(getattr(self, name), float)
             for name, members in self.sets.items():

@@ -14,6 +14,7 @@ import floe_lattice as fl
 import floe_program
 import h5py
 import numpy as np
+from floe_output import frames_of
 from scipy.spatial import cKDTree
 
 # Contact is soft while blocks settle, so that steps are long; blocks of 0.3 m overlap by less than
@@ -30,6 +31,7 @@ output: {{dir: out, history: {seconds}}}
 checkpoint: {{every: 1e9}}
 {held}"""
 WATER = "water: {{density: {density}, drag_coefficient: 1, drag_linear: 300, added_mass: 0.5}}\n"
+AFLOAT = 8.0  # s
 HOLDS = 1.0  # friction while keel and sail come together: frozen flanks are steeper than loose ones
 FREEZE = """forces: [beam]
 lattice_file: blocks.h5
@@ -264,10 +266,9 @@ class Settling:
 
 def last_frame(out):
     """Displacements and rotation vectors of the last frame, n x 3 each."""
-    last = sorted(p for p in (out / "fields").glob("*.h5") if p.stem.isdigit())[-1]
-    with h5py.File(last) as file:
-        frame = file[sorted(file)[-1]]
-        return frame["bodies_displacement"][:], frame["bodies_rotation"][:]
+    _, path, group = frames_of(out)[-1]
+    with h5py.File(path) as file:
+        return file[group]["bodies_displacement"][:], file[group]["bodies_rotation"][:]
 
 
 def make(ridge, settling, sheet=None):
@@ -302,7 +303,7 @@ def make(ridge, settling, sheet=None):
     whole = joined(*([sheet] if sheet is not None else []), *parts.values())
     if sheet is not None:
         whole.sets["sheet"] = list(range(len(sheet.position)))
-    whole = settling.settle("ridge", whole, 12.0, shore, HOLDS)
+    whole = settling.settle("ridge", whole, AFLOAT, shore, HOLDS)
     return whole, np.concatenate(list(sides.values()))
 
 

@@ -78,6 +78,7 @@ struct Scene {
   std::string name;  ///< its stem
   Integrator integrator = Integrator::quasistatic;
   Planarity planar = Planarity::automatic;
+  Periods periods;            ///< after which the model repeats itself
   double inertia_factor = 1;  ///< by which the moments of inertia of all bodies are multiplied
   struct {
     bool beam = false, fracture = false, gravity = false, buoyancy = false, drag = false,

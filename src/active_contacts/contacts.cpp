@@ -11,6 +11,16 @@ void write_sums(const ActiveContacts& active, std::span<ContactWrench> wrenches)
     wrenches[s] = active.on_body(static_cast<std::int32_t>(s)).sum();
 }
 
+/// Periods::nearest() in lanes.
+Vec3<Lanes> nearest(const Periods& periods, Vec3<Lanes> apart) {
+  if (!periods.any()) return apart;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const Vec3<double> near = periods.nearest({apart.x[lane], apart.y[lane], apart.z[lane]});
+    apart.x[lane] = near.x, apart.y[lane] = near.y;
+  }
+  return apart;
+}
+
 }  // namespace
 
 Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
@@ -19,8 +29,9 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
     : solids_(shapes, masses, std::move(obstacles), options.inertia_factor),
       options_(options),
       law_(law_of(options)),
-      list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free),
-      places_(solids_.obstacles().size()),
+      list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free,
+            options.periods),
+      places_(solids_.obstacles().size(), options.periods),
       narrow_(options.damping_ratio > 0 || solids_.has_friction(options)),
       active_(solids_.obstacles().size()) {}
 
@@ -50,9 +61,10 @@ void Contacts::place(std::span<const MovingPose> bodies, double time, double vel
 
 void Contacts::overlaps_taken_on(std::span<PairOverlap> overlaps) {
   const std::span<Pair> pairs = list_.taken_on();
+  Placed image;
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    overlaps[k] =
-        narrow_.overlap(solids_, wear_, pairs[k], places_.of_a(pairs[k]), places_.of_b(pairs[k]));
+    overlaps[k] = narrow_.overlap(solids_, wear_, pairs[k], places_.of_a(pairs[k]),
+                                  places_.image_of_b(pairs[k], image));
 }
 
 void Contacts::evaluate(std::span<ContactWrench> wrenches, const OffloadedOverlaps& offloaded) {
@@ -100,8 +112,9 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
   std::span<const PairOverlap> given;  // overlaps of the offloaded pairs, in their order
   std::size_t taken = 0;
   std::int32_t index = 0;
+  Placed image;
   for (Pair& pair : list_.pairs()) {
-    const Placed &a = places_.of_a(pair), &b = places_.of_b(pair);
+    const Placed &a = places_.of_a(pair), &b = places_.image_of_b(pair, image);
     const PairHistory* memory = histories.of(index);
     PairOverlap& met = met_.overlaps[met_.number];
     if (pair.offloaded) {
@@ -158,13 +171,12 @@ void Contacts::find_trials(const Law& law) {
       gathered<MetPairs::GivenOf>([&](std::size_t lane) { return &met_.given[k(lane)]; });
   const auto memory =
       gathered<PairHistoryOf>([&](std::size_t lane) { return met_.memories[k(lane)]; });
-  const MobilityOf<Lanes> mobility{.a = gathered<BodyMobilityOf>([&](std::size_t lane) {
-                                     return &places_.mobility_of_a(pair(lane));
-                                   }),
-                                   .b = gathered<BodyMobilityOf>([&](std::size_t lane) {
-                                     return &places_.mobility_of_b(pair(lane));
-                                   }),
-                                   .apart = vector(a, &Placed::x) - vector(b, &Placed::x)};
+  const MobilityOf<Lanes> mobility{
+      .a = gathered<BodyMobilityOf>(
+          [&](std::size_t lane) { return &places_.mobility_of_a(pair(lane)); }),
+      .b = gathered<BodyMobilityOf>(
+          [&](std::size_t lane) { return &places_.mobility_of_b(pair(lane)); }),
+      .apart = nearest(places_.periods(), vector(a, &Placed::x) - vector(b, &Placed::x))};
   const BodyVelocityOf<Lanes> of_a{vector(a, &Placed::velocity), vector(a, &Placed::spin)},
       of_b{vector(b, &Placed::velocity), vector(b, &Placed::spin)};
   const Vec3<Lanes>& centre = overlap.overlap.centroid;

@@ -22,7 +22,8 @@ std::vector<Penetration> penetrations(const Solids& solids, const PairList& list
     const Pair& pair = list.pair(contacts.pair(k));
     if (!pair.counted || contacts.is_enclosed(k)) continue;
     const Vec3<double> n = contacts.normal(k);
-    const Placed &a = places.of_a(pair), &b = places.of_b(pair);
+    Placed image;
+    const Placed &a = places.of_a(pair), &b = places.image_of_b(pair, image);
     const auto [low, high] = reaches(solids, pair, a, b, n);
     const double depth = high + dot(n, b.x - a.x) - low;
     found.push_back(

@@ -29,9 +29,7 @@ std::unique_ptr<BeamForce<Space>> make(const Part& part, const BeamOptions& opti
 
 Triad<double> beam_triad(const Bodies& bodies, const Beams& beams, std::int32_t m) {
   const auto k = static_cast<std::size_t>(m);
-  const auto [i, j] = beams.bodies[k];
-  const Vec3<double> e0 = (item(bodies.position, j) + offset(beams, m, 1)) -
-                          (item(bodies.position, i) + offset(beams, m, 0));
+  const Vec3<double> e0 = chord(bodies, beams, m);
   const Vec3<double> e1 = (1.0 / std::sqrt(dot(e0, e0))) * e0;
   const Vec3<double>& axis = beams.axis_y[k];
   Vec3<double> e2 = axis - dot(axis, e1) * e1;

@@ -136,9 +136,11 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
       const Constants c = constants(m);
       const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      const Vec3<double> chord = (part_.bodies.position[b] - part_.bodies.position[a]) +
-                                 (displacement(state, b) - displacement(state, a));
-      const double l = std::sqrt(dot(chord, chord)), stretch = c.l0 / l;
+      const Vec3<double> image =
+          part_.beams.image.empty() ? Vec3<double>{} : item(part_.beams.image, m);
+      const Vec3<double> apart = (part_.bodies.position[b] - part_.bodies.position[a]) +
+                                 (displacement(state, b) - displacement(state, a)) + image;
+      const double l = std::sqrt(dot(apart, apart)), stretch = c.l0 / l;
       const double across =
           Beam::shear_stiffness(c) * stretch * stretch + std::abs(c.kn * (l - c.l0)) / l;
       fastest2 = std::max(

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "floe/base/item.h"
 
 namespace floe {
 namespace {
@@ -120,14 +123,70 @@ void NeighbourSearch::test_grid() const {
   }
 }
 
-}  // namespace
+/// Spheres in the first period, and images of those near its lower ends beyond its upper ones.
+struct Images {
+  std::vector<Vec3<double>> centres;
+  std::vector<double> radii;
+  std::vector<std::uint8_t> wanted;
+  std::vector<std::int32_t> of;  ///< the sphere of each
 
-void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
-                std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs) {
+  void add(const Vec3<double>& centre, double radius, std::uint8_t want, std::int32_t sphere) {
+    centres.push_back(centre), radii.push_back(radius);
+    wanted.push_back(want), of.push_back(sphere);
+  }
+};
+
+Images images_of(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
+                 std::span<const std::uint8_t> wanted, const Periods& periods) {
+  double largest = 0;
+  for (const double r : radii) largest = std::max(largest, r);
+  const double margin = 2 * largest + reach;
+  const auto into = [](double x, double period) {
+    return period > 0 ? x - period * std::floor(x / period) : x;
+  };
+  Images all;
+  for (std::size_t b = 0; b < centres.size(); ++b) {
+    const auto& [lx, ly, lz] = periods.length;
+    const Vec3<double> c{into(centres[b].x, lx), into(centres[b].y, ly), centres[b].z};
+    const auto add = [&](double dx, double dy) {
+      all.add({c.x + dx, c.y + dy, c.z}, radii[b], wanted[b], static_cast<std::int32_t>(b));
+    };
+    const bool low_x = lx > 0 && c.x<margin, low_y = ly> 0 && c.y < margin;
+    add(0, 0);
+    if (low_x) add(lx, 0);
+    if (low_y) add(0, ly);
+    if (low_x && low_y) add(lx, ly);
+  }
+  return all;
+}
+
+void search(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
+            std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs) {
   pairs.clear();
   const NeighbourSearch search(centres, radii, reach, wanted, pairs);
   search.test_large();
   search.test_grid();
+}
+
+}  // namespace
+
+void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
+                std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs,
+                const Periods& periods) {
+  if (!periods.any()) {
+    search(centres, radii, reach, wanted, pairs);
+    return;
+  }
+  const Images all = images_of(centres, radii, reach, wanted, periods);
+  search(all.centres, all.radii, reach, all.wanted, pairs);
+  for (BodyPair& pair : pairs) {
+    const auto [a, b] = pair;
+    pair = {item(all.of, a), item(all.of, b)};
+    if (pair[0] > pair[1]) std::swap(pair[0], pair[1]);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::erase_if(pairs, [](const BodyPair& pair) { return pair[0] == pair[1]; });
 }
 
 }  // namespace floe

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contact/pair.h"
+#include "floe/geometry/periods.h"
 
 namespace floe {
 
@@ -17,7 +18,9 @@ namespace floe {
 /// \param reach       [m]
 /// \param wanted      per sphere; a pair needs one sphere at least with a value other than 0
 /// \param[out] pairs  unsorted, the smaller index first
+/// \param periods     the nearest images of two spheres count
 void near_pairs(std::span<const Vec3<double>> centres, std::span<const double> radii, double reach,
-                std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs);
+                std::span<const std::uint8_t> wanted, std::vector<BodyPair>& pairs,
+                const Periods& periods = {});
 
 }  // namespace floe

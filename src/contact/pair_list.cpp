@@ -18,8 +18,9 @@ struct PairList::Search {
   bool is_here(std::int32_t body) const { return item(here, body) != 0; }
 };
 
-PairList::PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free)
-    : eligibility_(solids, std::move(joined)), stress_free_(stress_free) {
+PairList::PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free,
+                   const Periods& periods)
+    : eligibility_(solids, std::move(joined)), periods_(periods), stress_free_(stress_free) {
   // The reach lasts a few hundred steps of slow bodies without listing many more pairs.
   constexpr double part_of_radius = 0.15;
   reach_ = part_of_radius * solids.mean_radius();
@@ -54,7 +55,7 @@ void PairList::list_bodies(const Search& search) {
   for (std::int32_t b = 0; b < solids.bodies(); ++b)
     radii.push_back(intact && !eligibility_.on_surface(b) ? -1 : solids.radius(b));
   std::vector<BodyPair> near;
-  near_pairs(centres, radii, reach_, search.here, near);
+  near_pairs(centres, radii, reach_, search.here, near, periods_);
   for (const auto& [a, b] : near) {
     if (eligibility_.may_touch(a, b))
       list(search, {a, b}, item(search.bodies, a), item(search.bodies, b));
@@ -69,7 +70,7 @@ void PairList::list_obstacles(const Search& search) {
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {
       if (!search.is_here(b)) continue;
       const Placed& body = item(search.bodies, b);
-      const Vec3<double> x = obstacle.axes.to_local(body.x - obstacle.x);
+      const Vec3<double> x = obstacle.axes.to_local(periods_.nearest(body.x - obstacle.x));
       const auto beyond = [&](const HalfSpace& h) {
         return dot(h.normal, x) - h.offset > solids.radius(b) + reach_;
       };
@@ -82,7 +83,9 @@ void PairList::list_obstacles(const Search& search) {
 
 /// Lists a pair unless its gap exceeds the reach.
 void PairList::list(const Search& search, const BodyPair& bodies, const Placed& a,
-                    const Placed& b) {
+                    const Placed& itself) {
+  Placed image;
+  const Placed& b = periods_.any() ? nearest_image(a, itself, periods_, image) : itself;
   constexpr int tries = 20;
   Pair pair{.a = bodies[0],
             .b = bodies[1],
@@ -152,10 +155,6 @@ void PairList::restore(const Solids& solids, std::span<const BodyPair> released,
   pairs_.clear();
   changed_ = true;
   stress_free_ = false;
-}
-
-bool PairList::has_obstacle() const {
-  return std::any_of(pairs_.begin(), pairs_.end(), [](const Pair& p) { return is_obstacle(p.b); });
 }
 
 }  // namespace floe

@@ -23,7 +23,9 @@ class PairList {
  public:
   /// \param joined       pairs with an unbroken beam, sorted, the smaller index first
   /// \param stress_free  whether overlaps before the first step count as stress-free
-  PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free);
+  /// \param periods      of the model
+  PairList(const Solids& solids, std::vector<BodyPair> joined, bool stress_free,
+           const Periods& periods = {});
 
   /// Returns the distance that a vertex may travel between two builds [m]: half the reach.
   double slack() const { return 0.5 * reach_; }
@@ -59,8 +61,6 @@ class PairList {
   std::span<Pair> taken_on() { return taken_on_; }
   /// Returns the involved bodies, by slot.
   std::span<const std::int32_t> involved() const { return involved_; }
-  /// Whether a listed pair has an obstacle.
-  bool has_obstacle() const;
 
  private:
   struct Search;
@@ -72,6 +72,7 @@ class PairList {
   Eligibility eligibility_;
   std::vector<Pair> pairs_, taken_on_;
   std::vector<std::int32_t> involved_;
+  Periods periods_;
   double reach_ = 0;  ///< largest gap of a listed pair [m]
   bool changed_ = true;
   bool stress_free_;             ///< overlaps before the end of the step are stress-free

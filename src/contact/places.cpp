@@ -21,6 +21,13 @@ Placed place_of(const Obstacle& obstacle, double position, double motion) {
           .spin = obstacle.motion.spin(motion)};
 }
 
+const Placed& nearest_image(const Placed& a, const Placed& b, const Periods& periods,
+                            Placed& room) {
+  room = b;
+  room.x = a.x - periods.nearest(a.x - b.x);
+  return room;
+}
+
 void Places::restart(std::size_t slots) {
   bodies_.resize(slots);
   mobility_.resize(slots);

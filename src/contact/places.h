@@ -11,6 +11,7 @@
 #include "contact_laws/mobility.h"
 #include "contact_laws/response.h"
 #include "floe/base/item.h"
+#include "floe/geometry/periods.h"
 
 namespace floe {
 
@@ -39,6 +40,9 @@ struct Placed {
 /// \param motion    time of its velocities [s]
 Placed place_of(const Obstacle& obstacle, double position, double motion);
 
+/// Returns the image of B that is nearest to A, made in `room`.
+const Placed& nearest_image(const Placed& a, const Placed& b, const Periods& periods, Placed& room);
+
 /// Velocity and spin of a body or obstacle [m/s, rad/s].
 template <class T>
 struct BodyVelocityOf {
@@ -66,7 +70,8 @@ RelativeMotionOf<T> relative_motion(const BodyVelocityOf<T>& a, const BodyVeloci
 class Places {
  public:
   /// \param obstacles  number of obstacles
-  explicit Places(std::size_t obstacles) : obstacles_(obstacles), predicted_obstacles_(obstacles) {}
+  explicit Places(std::size_t obstacles, const Periods& periods = {})
+      : obstacles_(obstacles), predicted_obstacles_(obstacles), periods_(periods) {}
 
   /// Begins to count travels, after a new list or new slots.
   void restart(std::size_t slots);
@@ -89,6 +94,12 @@ class Places {
   const Placed& of_b(const Pair& pair) const {
     return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
   }
+  const Periods& periods() const { return periods_; }
+  /// Returns the image of B that is nearest to A. \param room  for its place, if it is not B's own
+  const Placed& image_of_b(const Pair& pair, Placed& room) const {
+    const Placed& b = of_b(pair);
+    return periods_.any() ? nearest_image(of_a(pair), b, periods_, room) : b;
+  }
   /// Predicts the velocities of bodies a time after those of the last evaluation, and sets those of
   /// obstacles at the time of the evaluation.
   /// \param after          [s]
@@ -110,6 +121,7 @@ class Places {
   std::vector<BodyVelocity> predicted_;            ///< per slot
   std::vector<BodyVelocity> predicted_obstacles_;  ///< per obstacle
   BodyMobility of_obstacle_{};
+  Periods periods_;
   double time_ = 0;
   bool counts_travels_ = false;  ///< place() was called since restart()
 };

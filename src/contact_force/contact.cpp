@@ -209,7 +209,7 @@ class DistributedContact final : public Contact,
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
   void accelerate(const Wrenches<Spatial>& others);
   void restore(const std::vector<double>& rows, std::span<const BodyPair> released,
-               std::size_t known, const PairListExpiry& expiry);
+               std::size_t known);
 
   const Part& part_;
   Contacts contacts_;
@@ -227,7 +227,8 @@ class DistributedContact final : public Contact,
   ContactRates rates_;
   int steps_per_touch_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
-  /// would keep the step short), and once an obstacle is listed or bodies of the one piece overlap.
+  /// would keep the step short), and once a body overlaps an obstacle or another. When a list is
+  /// made has no say in it, since that depends on the ranks.
   bool possible_;
   bool near_ = false;  ///< pairs are listed, on some rank
   double dt_ = 0;      ///< last step [s]
@@ -241,7 +242,6 @@ void DistributedContact::build(const State<Spatial>& state) {
   contacts_.build(halo_.poses(state), here_, state.time);
   const PairList& list = contacts_.list();
   possible_ = possible_ || pieces() > 1;
-  if (!possible_) possible_ = anywhere(list.has_obstacle());
   if (!possible_) near_ = anywhere(list.size() > 0);
   balance_.plan(contacts_);
   halo_.choose(list.involved());
@@ -330,9 +330,8 @@ void DistributedContact::accelerate(const Wrenches<Spatial>& others) {
   }
 }
 
-/// The histories of pairs are saved and loaded. Once contacts are possible, a restart builds the
-/// pair list from the state, since results do not depend on the list any more; before that the list
-/// of the run is built again, since it decides when contacts become possible.
+/// The histories of pairs are saved and loaded. A restart builds the pair list from the state,
+/// since results do not depend on when a list was made.
 void DistributedContact::persist(Archive& archive) {
   StoredAtStart& start = contacts_.stored_at_start();
   if (archive.within_run()) remarks_.persist(archive, part_.comm);
@@ -348,8 +347,6 @@ void DistributedContact::persist(Archive& archive) {
     released = as_numbers(contacts_.list().eligibility().released());
   }
   archive.common("possible", possible_);
-  PairListExpiry expiry = expiry_;
-  if (!possible_) expiry.persist(archive, part_);  // the list decides when contacts are possible
   archive.common("pairs", rows);
   archive.common("crushed", crushed);
   archive.common("worn", worn);
@@ -358,23 +355,18 @@ void DistributedContact::persist(Archive& archive) {
   auto known = static_cast<std::int64_t>(contacts_.list().eligibility().known());
   archive.common("known", known);
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
-  if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known), expiry);
+  if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known));
 }
 
 /// Goes on from a checkpoint.
 /// \param rows      histories of the pairs of all ranks
 /// \param released  pairs whose beam broke, in this order
 /// \param known     number of these that the last build knew
-/// \param expiry    of the list of the run, if contacts are not possible
 void DistributedContact::restore(const std::vector<double>& rows,
-                                 std::span<const BodyPair> released, std::size_t known,
-                                 const PairListExpiry& expiry) {
+                                 std::span<const BodyPair> released, std::size_t known) {
   overlap_told_ = true;  // the run has given this remark at its start
   contacts_.restore(rows, released, known);
   expiry_ = PairListExpiry(contacts_.solids());
-  if (possible_ || known < released.size()) return;
-  build(expiry.at_build(part_));  // the same list as before the restart
-  expiry_ = expiry;
 }
 
 void check_shapes(const Lattice& lattice) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "base/collectives.h"
 
@@ -91,37 +90,6 @@ double PairListExpiry::travels(const State<Spatial>& state, const Part& part,
                                                     length(Vec3<double>{turn.x, turn.y, turn.z}));
   }
   return farthest;
-}
-
-void PairListExpiry::persist(Archive& archive, const Part& part) {
-  std::vector<std::int32_t> owned(static_cast<std::size_t>(part.owned));
-  std::iota(owned.begin(), owned.end(), 0);
-  at_build_.resize(owned.size() * Spatial::record);
-  archive.rows("at_build", owned, at_build_, Spatial::record);
-  archive.common("build_time", time_);
-  archive.common("asks_in", asks_in_, -(std::int64_t{1} << 53));  // below 0 on a single rank
-  std::vector<double> all = all_gathered(std::vector{travelled_, speed_}, part.comm);
-  const std::size_t numbers = all.size();
-  archive.common("ways_of_ranks", all);
-  started_ = true;
-  if (!archive.loading()) return;
-  // On another number of ranks each rank takes the largest bounds of all; the list may then be made
-  // at another step.
-  const auto me = static_cast<std::size_t>(rank(part.comm));
-  for (const std::size_t k : {0UL, 1UL}) {
-    double& mine = k == 0 ? travelled_ : speed_;
-    mine = 0;
-    for (std::size_t r = 0; 2 * r + k < all.size(); ++r) {
-      if (all.size() != numbers || r == me) mine = std::max(mine, all[2 * r + k]);
-    }
-  }
-}
-
-State<Spatial> PairListExpiry::at_build(const Part& part) const {
-  State<Spatial> state(static_cast<std::size_t>(part.local));
-  std::copy(at_build_.begin(), at_build_.end(), state.records.begin());
-  state.time = time_;
-  return state;
 }
 
 }  // namespace floe

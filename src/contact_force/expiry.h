@@ -8,7 +8,6 @@
 
 #include "active_contacts/contacts.h"
 #include "floe/lattice/state.h"
-#include "lattice/archive.h"
 #include "lattice/partition.h"
 
 namespace floe {
@@ -30,12 +29,6 @@ class PairListExpiry {
   /// Whether a new list is due; the same on all ranks. Collective.
   /// \param dt  length of the last step [s]
   bool is_due(const State<Spatial>& state, const Part& part, const Contacts& contacts, double dt);
-
-  /// Saves or loads the poses from which the list was made, and the bounds of the travels since.
-  /// Collective.
-  void persist(Archive& archive, const Part& part);
-  /// The state from which the list was made, of owned bodies only.
-  State<Spatial> at_build(const Part& part) const;
 
  private:
   std::array<double, 2> of_obstacles(const Solids& solids, double time) const;

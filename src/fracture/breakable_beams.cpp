@@ -586,7 +586,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// Returns where an end of a beam is [m].
   Vec3<double> end_of(std::int32_t m, std::size_t end, const State<Spatial>& state) const {
     const auto body = static_cast<std::size_t>(item(part_.beams.bodies, m)[end]);
-    const Vec3<double> at = part_.bodies.position[body] + displacement(state, body);
+    Vec3<double> at = part_.bodies.position[body] + displacement(state, body);
+    if (end == 1 && !part_.beams.image.empty()) at = at + item(part_.beams.image, m);
     if (part_.beams.offsets.empty()) return at;
     return at + rotate(normalised(rotation(state, body)), offset(part_.beams, m, end));
   }

@@ -139,10 +139,7 @@ void read_axes(const Reader& in, const Bodies& bodies, Beams& beams) {
   beams.length = in.scalars("/beams/length", m);
   beams.axis_y = in.rows<Point3>("/beams/axis_y", m);
   for (std::size_t k = 0; k < m; ++k) {
-    const auto [a, b] = beams.bodies[k];
-    const auto beam = static_cast<std::int32_t>(k);
-    const Vec3<double> e = (item(bodies.position, b) + offset(beams, beam, 1)) -
-                           (item(bodies.position, a) + offset(beams, beam, 0));
+    const Vec3<double> e = chord(bodies, beams, static_cast<std::int32_t>(k));
     const double distance = std::sqrt(dot(e, e));
     if (std::abs(distance - beams.length[k]) > 1e-9 * distance || distance == 0)
       in.refuse("/beams/length", "row " + std::to_string(k) + " is " + text_of(beams.length[k]) +
@@ -202,6 +199,7 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
   if (in.file().has("/beams/width")) beams.width = in.scalars("/beams/width", m);
   if (in.file().has("/beams/height")) beams.height = in.scalars("/beams/height", m);
   if (in.file().has("/beams/offsets")) read_offsets(in, beams);
+  if (in.file().has("/beams/image")) beams.image = in.rows<Point3>("/beams/image", m);
   if (in.file().has("/beams/strength")) beams.strength = in.scalars("/beams/strength", m);
   if (in.file().has("/beams/energy")) beams.energy = in.scalars("/beams/energy", m);
   read_axes(in, bodies, beams);
@@ -368,6 +366,7 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
         for (const Point3& o : ends) rows.insert(rows.end(), {o[0], o[1], o[2]});
       file.write("/beams/offsets", std::span<const double>(rows), 6);
     }
+    if (!m.image.empty()) file.write("/beams/image", m.image);
     if (!m.strength.empty()) file.write("/beams/strength", m.strength);
     if (!m.energy.empty()) file.write("/beams/energy", m.energy);
   }

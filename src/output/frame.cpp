@@ -182,9 +182,9 @@ std::size_t FrameWriter::write_cracks(Hdf5File& file, const std::string& group,
     const auto [i, j] = beams.bodies[m];
     const auto at = [&](std::int32_t b) { return item(lattice_.bodies.position, b); };
     const auto index = static_cast<std::int32_t>(m);
-    const Vec3<double> first = at(i) + offset(beams, index, 0),
-                       second = at(j) + offset(beams, index, 1), chord = second - first;
-    const Vec3<double> e1 = (1 / std::sqrt(dot(chord, chord))) * chord;
+    const Vec3<double> along = chord(lattice_.bodies, beams, index);
+    const Vec3<double> first = at(i) + offset(beams, index, 0), second = first + along;
+    const Vec3<double> e1 = (1 / std::sqrt(dot(along, along))) * along;
     Vec3<double> e2 = beams.axis_y[m];
     e2 = e2 - dot(e2, e1) * e1;
     e2 = (1 / std::sqrt(dot(e2, e2))) * e2;

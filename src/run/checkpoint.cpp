@@ -83,6 +83,7 @@ std::string fingerprint(const Lattice& lattice) {
     hash.add(*values);
   if (!m.shear_factor_y.empty()) hash.add(m.shear_factor_y);
   if (!m.offsets.empty()) hash.add(m.offsets);
+  if (!m.image.empty()) hash.add(m.image);
   for (const auto* factors : {&m.strength, &m.energy})
     if (!factors->empty()) hash.add(*factors);
   hash.add(lattice.shapes.vertices);

@@ -21,6 +21,10 @@ constexpr std::array table{
     OptionSpec{"model: rotational_inertia_factor", number, "1", "", ">= 1, <= 4",
                "explicit: all moments of inertia of the bodies times this, for a longer stable "
                "step; what rests stays as it is, what vibrates or tumbles becomes slower"},
+    OptionSpec{"model: periodic", numbers, "0 0", "m", ">= 0, <= 1e9",
+               "lengths after which the model repeats itself in x and in y, 0: it does not: bodies "
+               "that leave at one side meet, or by bonds join, those of the other",
+               2},
     OptionSpec{"forces", choices, "(required)", "",
                "beam | fracture | gravity | buoyancy | drag | contact",
                "the forces that act; options of a force that is not named are errors"},

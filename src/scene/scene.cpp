@@ -29,6 +29,24 @@ std::string text_of(double value) {
 
 namespace {
 
+/// Reads after which lengths the model repeats itself, after forces and bonds.
+void read_periods(Options& options, Scene& scene) {
+  if (scene.integrator == Integrator::quasistatic) {
+    options.refuse("model: periodic",
+                   "needs 'integrator' explicit or implicit: statics look for free rigid motions "
+                   "of bodies that do not repeat themselves");
+    return;
+  }
+  if (!scene.forces.contact && !scene.bonds.given) {
+    options.refuse("model: periodic",
+                   "would have no effect: bodies neither touch ('forces': contact) nor freeze "
+                   "together ('bonds')");
+    return;
+  }
+  const auto [x, y] = options.numbers<2>("model: periodic");
+  scene.periods.length = {x, y, 0};
+}
+
 void read_time(Options& options, Scene& scene) {
   scene.limit.steps = options.number("limit: steps");
   scene.limit.frames = options.number("limit: frames");
@@ -185,6 +203,7 @@ Scene read_all(Options& options, const std::string& path) {
   }
   if (scene.forces.fracture) read_fracture(options, scene);
   read_bonds(options, scene);
+  read_periods(options, scene);
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   if (scene.forces.contact) read_contact(options, scene);

@@ -33,7 +33,8 @@ std::vector<Point3> placed_vertices(const Lattice& lattice) {
 }
 
 /// The pairs of bodies within `reach` of each other that no beam joins, sorted.
-std::vector<std::array<std::int32_t, 2>> loose_pairs(const Lattice& lattice, double reach) {
+std::vector<std::array<std::int32_t, 2>> loose_pairs(const Lattice& lattice, double reach,
+                                                     const Periods& periods) {
   const Shapes& shapes = lattice.shapes;
   std::vector<double> radii;
   for (std::int32_t b = 0; b < shapes.bodies(); ++b) {
@@ -44,7 +45,7 @@ std::vector<std::array<std::int32_t, 2>> loose_pairs(const Lattice& lattice, dou
   }
   std::vector<BodyPair> near;
   const std::vector<std::uint8_t> wanted(radii.size(), 1);
-  near_pairs(lattice.bodies.position, radii, reach, wanted, near);
+  near_pairs(lattice.bodies.position, radii, reach, wanted, near, periods);
   std::vector<std::array<std::int32_t, 2>> joined = lattice.beams.bodies, pairs;
   std::sort(joined.begin(), joined.end());
   for (const auto& [i, j] : near) {
@@ -64,6 +65,15 @@ std::vector<std::vector<std::int32_t>> neighbours(const Lattice& lattice) {
   return all;
 }
 
+/// From a body to its image that is nearest to another, exactly: whole periods.
+/// \param apart  from the other to it
+Point3 whole_periods(const Periods& periods, const Point3& apart) {
+  const auto whole = [](double x, double period) {
+    return period > 0 ? -period * std::nearbyint(x / period) : 0.0;
+  };
+  return {whole(apart.x, periods.length.x), whole(apart.y, periods.length.y), 0};
+}
+
 bool is_in(const std::array<double, 6>& box, const Point3& p) {
   return p.x >= box[0] && p.x <= box[1] && p.y >= box[2] && p.y <= box[3] && p.z >= box[4] &&
          p.z <= box[5];
@@ -71,16 +81,18 @@ bool is_in(const std::array<double, 6>& box, const Point3& p) {
 
 /// Gives optional columns their values where there are none yet: beams that end at centroids, a
 /// shear factor for both directions, the scene's own strength.
-void fill_columns(Beams& beams, std::size_t size) {
+void fill_columns(Beams& beams, std::size_t size, bool periodic) {
   beams.offsets.resize(size, {Point3{}, Point3{}});
+  if (periodic) beams.image.resize(size, Point3{});
   beams.strength.resize(size, 1.0);
   beams.energy.resize(size, 1.0);
 }
 
+/// \param image  from the second body to its image at the interface
 void append(Beams& beams, const Bodies& bodies, const std::array<std::int32_t, 2>& pair,
-            const Interface& face, const Scene& scene) {
+            const Point3& image, const Interface& face, const Scene& scene) {
   const auto& [i, j] = pair;
-  const Point3 xi = item(bodies.position, i), xj = item(bodies.position, j);
+  const Point3 xi = item(bodies.position, i), xj = item(bodies.position, j) + image;
   const double from = dot(xi - face.centre, face.normal), to = dot(xj - face.centre, face.normal);
   // A rectangle of the interface's area and ratio of second moments.
   const double slender = std::sqrt(face.most / std::max(face.least, 1e-12 * face.most));
@@ -100,6 +112,7 @@ void append(Beams& beams, const Bodies& bodies, const std::array<std::int32_t, 2
   beams.height.push_back(height);
   beams.offsets.push_back(
       {face.centre + from * face.normal - xi, face.centre + to * face.normal - xj});
+  if (scene.periods.any()) beams.image.push_back(image);
   beams.strength.push_back(bonds.strength);
   beams.energy.push_back(bonds.energy);
 }
@@ -136,20 +149,31 @@ BondReport add_bonds(const Scene& scene, Lattice& lattice) {
       return is_inside(shapes, k, vertices(k), middle, 1e-3 * scene.bonds.gap);
     });
   };
-  fill_columns(beams, before);
+  fill_columns(beams, before, scene.periods.any());
   BondReport report;
-  for (const auto& pair : loose_pairs(lattice, scene.bonds.gap)) {
+  std::vector<Point3> moved;
+  for (const auto& pair : loose_pairs(lattice, scene.bonds.gap, scene.periods)) {
     const auto [i, j] = pair;
+    const Point3 apart = item(lattice.bodies.position, j) - item(lattice.bodies.position, i);
+    const Point3 image = whole_periods(scene.periods, apart);
+    const bool elsewhere = image.x != 0 || image.y != 0;
+    moved.assign(vertices(j).begin(), vertices(j).end());
+    if (elsewhere) {
+      for (Point3& p : moved) p = p + image;
+    }
     const std::optional<Interface> face =
-        find_interface(shapes, i, j, vertices(i), vertices(j), scene.bonds.gap);
+        find_interface(shapes, i, j, vertices(i), moved, scene.bonds.gap);
     constexpr double least = 1e-3;
-    if (!face || !is_in(scene.bonds.box, face->centre) || is_between(i, j, face->centre)) continue;
+    if (!face) continue;
+    if (!is_in(scene.bonds.box, face->centre) &&
+        !(elsewhere && is_in(scene.bonds.box, face->centre - image)))
+      continue;
+    if (!elsewhere && is_between(i, j, face->centre)) continue;
     const double volume =
         std::min(volume_properties(shapes, i).volume, volume_properties(shapes, j).volume);
-    const double along =
-        dot(item(lattice.bodies.position, j) - item(lattice.bodies.position, i), face->normal);
+    const double along = dot(apart + image, face->normal);
     if (face->area < least * std::cbrt(volume * volume) || !(along > 0)) continue;
-    append(beams, lattice.bodies, pair, *face, scene);
+    append(beams, lattice.bodies, pair, image, *face, scene);
     report.least_gap = report.number == 0 ? face->gap : std::min(report.least_gap, face->gap);
     report.most_gap = report.number == 0 ? face->gap : std::max(report.most_gap, face->gap);
     report.area += face->area;

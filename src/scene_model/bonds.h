@@ -25,8 +25,8 @@ std::string text_of(const BondReport& report);
 /// interface, through its centre, and ends at the feet of the bodies' centroids; its section has
 /// the interface's area and second moments. Interfaces with a third body in between, to which beams
 /// join both, are none (cells of a sheet that almost meet), nor are those smaller than 1e-3
-/// V^(2/3), V the volume of the smaller body. \throws InputError if the lattice has no shapes, or
-/// if there is no interface
+/// V^(2/3), V the volume of the smaller body. In a model that repeats itself the nearest images of
+/// two bodies count. \throws InputError if the lattice has no shapes, or if there is no interface
 BondReport add_bonds(const Scene& scene, Lattice& lattice);
 
 }  // namespace floe

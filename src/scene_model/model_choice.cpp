@@ -68,6 +68,7 @@ std::string lattice_needs_space(const Scene& scene, const Lattice& lattice) {
       return which + " has an initial velocity out of the x-y plane";
     if (!turns_in_plane(bodies, body)) return which + " has no principal axis along z";
   }
+  if (!lattice.beams.image.empty()) return "beams join images of bodies";
   if (!lattice.beams.offsets.empty()) return "beams do not end at the centroids of bodies";
   for (std::int32_t m = 0; m < lattice.beams.size(); ++m) {
     if (!is_flat(bodies, lattice.beams, m))

@@ -212,6 +212,31 @@ std::string outline_text(const Scene& scene) {
   return text;
 }
 
+/// Refuses periods in which a body could meet another at both sides, and walls across them.
+void check_periods(const Scene& scene, const Lattice& lattice) {
+  if (!scene.periods.any()) return;
+  constexpr double least = 4.5;  // two radii of both bodies, and the reach of the pair list
+  double radius = 0;
+  for (const Point3& v : lattice.shapes.vertices) radius = std::max(radius, length(v));
+  const Vec3<double>& periods = scene.periods.length;
+  for (const double period : {periods.x, periods.y}) {
+    if (period > 0 && period < least * radius)
+      throw InputError("model: periodic: " + text_of(period) +
+                       " must be >= " + text_of(least * radius) + " [m], " + text_of(least) +
+                       " times the radius of the largest body, or 0");
+  }
+  for (const Obstacle& o : scene.obstacles) {
+    if (!o.vertices.empty()) continue;
+    const Vec3<double> n = o.planes.front().normal;
+    for (const std::size_t k : {0U, 1U}) {
+      if (periods[k] > 0 && std::abs(n[k]) > 1e-12)
+        throw InputError("obstacle: " + o.name + ": normal: has a part along " +
+                         (k == 0 ? "x" : "y") +
+                         ", after which the model repeats itself (model: periodic)");
+    }
+  }
+}
+
 /// \param around  set for a sheet with an outline whose strength is to be found
 Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
                    std::vector<FittedCut>& cuts, std::optional<Rectangle>& around) {
@@ -281,6 +306,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
     if (lattice.beams.size() == before && !c.may_miss)
       throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
   }
+  check_periods(scene, lattice);
   if (scene.bonds.given) report.bonds = add_bonds(scene, lattice);
   if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
   auto& all = lattice.sets["all"];

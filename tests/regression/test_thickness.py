@@ -2,6 +2,7 @@
 """Sheets of any thickness: a plate by finite elements, random fields, grids, files, ranks."""
 import json
 import os
+import sys
 import unittest
 
 import h5py
@@ -12,7 +13,10 @@ from scipy.interpolate import RectBivariateSpline
 
 import launch
 from bad_input import BadInput
-from launch import FolderTest
+from launch import REPOSITORY, FolderTest
+
+sys.path.insert(0, str(REPOSITORY / "tools"))
+from floe_output import frames_of  # noqa: E402
 
 YOUNG, POISSON, WATER, GRAVITY = 4e9, 0.3, 1010.0, 9.81
 SIDE = 60.0  # [m]
@@ -118,10 +122,10 @@ def lattice(folder):
 
 
 def last_frame(folder):
-    names = sorted(p for p in (folder / "fields").glob("*.h5") if p.stem.isdigit())
-    with h5py.File(names[-1]) as file:
-        group = file[list(file)[0]]
-        return {key: group[key][:] for key in group if isinstance(group[key], h5py.Dataset)}
+    """The arrays of the last frame of a run."""
+    _, path, group = frames_of(folder)[-1]
+    with h5py.File(path) as file:
+        return {key: item[:] for key, item in file[group].items() if isinstance(item, h5py.Dataset)}
 
 
 class Thickness(FolderTest):

@@ -48,5 +48,31 @@ TEST(NearPairs, OfNobodyAreNone) {
   EXPECT_TRUE(found.empty());
 }
 
+/// The pairs of spheres whose nearest images are near, by brute force; wherever the spheres are.
+TEST(NearPairs, AreThoseOfNearestImages) {
+  test::Random random(11);
+  const Periods periods{{6, 5, 0}};
+  std::vector<Vec3<double>> centres;
+  std::vector<double> radii;
+  for (int k = 0; k < 120; ++k) {
+    const Vec3<double> c{random.uniform(0, 6.0), random.uniform(0, 5.0), random.uniform(0, 3.0)};
+    centres.push_back(c + Vec3<double>{6.0 * (k % 5 - 2), 5.0 * (k % 3 - 1), 0});
+    radii.push_back(random.uniform(0.1, 0.5));
+  }
+  const std::vector<std::uint8_t> wanted(centres.size(), 1);
+  constexpr double reach = 0.1;
+  std::vector<BodyPair> expected, found;
+  for (std::int32_t i = 0; i < 120; ++i) {
+    for (std::int32_t j = i + 1; j < 120; ++j) {
+      const Vec3<double> d = periods.nearest(item(centres, i) - item(centres, j));
+      if (length(d) <= item(radii, i) + item(radii, j) + reach) expected.push_back({i, j});
+    }
+  }
+  near_pairs(centres, radii, reach, wanted, found, periods);
+  std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(expected.size(), 100U);
+}
+
 }  // namespace
 }  // namespace floe

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "floe/geometry/periods.h"
+
 namespace floe {
 
 /// Rule from an overlap to a wrench.
@@ -46,6 +48,7 @@ struct ContactOptions {
   PlasticLimit plastic_limit{};          ///< sigma_p
   bool wear = true;                      ///< bodies lose what a contact crushes when it parts
   InitialOverlap initial_overlap = InitialOverlap::press;
+  Periods periods{};          ///< of the model
   double inertia_factor = 1;  ///< moments of inertia of bodies over those of their shapes
 };
 

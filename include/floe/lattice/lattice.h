@@ -53,6 +53,9 @@ struct Beams {
   /// Ends of the beam from the centroids of its two bodies, at rest, in world axes [m]; empty:
   /// beams end at the centroids.
   std::vector<std::array<Point3, 2>> offsets;
+  /// From the second body to its image that the beam joins, in a model that repeats itself [m];
+  /// empty: the beams join the bodies themselves.
+  std::vector<Point3> image;
   std::vector<double> strength;  ///< factor of the strengths of fracture; empty: 1
   std::vector<double> energy;    ///< factor of the energies of fracture; empty: 1
   std::int32_t size() const { return static_cast<std::int32_t>(bodies.size()); }
@@ -62,6 +65,17 @@ struct Beams {
 /// \param end  0 or 1
 inline Point3 offset(const Beams& beams, std::int32_t m, std::size_t end) {
   return beams.offsets.empty() ? Point3{} : beams.offsets[static_cast<std::size_t>(m)][end];
+}
+
+/// Returns what lies between the ends of beam m at rest, from the first to the second [m].
+/// \param bodies  those that the indices of the beams are of
+inline Point3 chord(const Bodies& bodies, const Beams& beams, std::int32_t m) {
+  const auto k = static_cast<std::size_t>(m);
+  const auto i = static_cast<std::size_t>(beams.bodies[k][0]),
+             j = static_cast<std::size_t>(beams.bodies[k][1]);
+  const Point3 apart =
+      (bodies.position[j] + offset(beams, m, 1)) - (bodies.position[i] + offset(beams, m, 0));
+  return beams.image.empty() ? apart : apart + beams.image[k];
 }
 
 /// Returns the factor of beam m: 1 if there are none.
