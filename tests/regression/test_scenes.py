@@ -27,6 +27,8 @@ EXPECTED = {
     "ice_cylinder.yaml": structures.check_ice_cylinder,
     "ice_vibration.yaml": structures.check_ice_vibration,
     "verify/ice_slope.yaml": structures.check_ice_slope_strip,
+    "ridge_on_leg.yaml": structures.check_ridge_on_leg,
+    "keel_punch.yaml": structures.check_keel_punch,
     "punch_through.yaml": contact.check_punch_through,
     "floes_collide.yaml": contact.check_floes_collide,
     "floe_in_waves.yaml": moving.check_floe_in_waves,

@@ -68,3 +68,22 @@ def check_ice_vibration(test, run):
     test.assertAlmostEqual(force.max() / 1.5e6, 1, delta=0.08)
     test.assertEqual(force[(time > 3.45) & (time < 3.65)].max(), 0)
     test.assertAlmostEqual(output.summary["energy"]["balance_error"], 0, delta=10)
+
+
+def check_ridge_on_leg(test, run):
+    output = run("-time_end", "3.2")
+    bonds = output.summary["bonds"]
+    test.assertEqual((output.summary["bodies"], bonds["number"]), (403, 843))
+    time, load = output.history("time"), output.history("leg_force_x")
+    test.assertEqual(np.abs(load[time < 2]).max(), 0)
+    test.assertTrue(15e3 < load.max() < 100e3, load.max())
+    test.assertTrue(100 < output.summary["beams_broken"] < 300, output.summary["beams_broken"])
+    expect_ledger(test, output)
+
+
+def check_keel_punch(test, run):
+    output = run("-time_end", "1.2")
+    test.assertEqual(output.summary["bonds"]["number"], 1874)
+    lift = output.history("plate_force_z")
+    test.assertTrue(5e3 < lift.max() < 12e3, lift.max())
+    test.assertTrue(800 < output.summary["beams_broken"] < 1500, output.summary["beams_broken"])
