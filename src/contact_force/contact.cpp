@@ -209,7 +209,7 @@ class DistributedContact final : public Contact,
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
   void accelerate(const Wrenches<Spatial>& others);
   void restore(const std::vector<double>& rows, std::span<const BodyPair> released,
-               std::size_t known, const PairListExpiry& expiry);
+               std::size_t known, const PairListExpiry& expiry, bool other_lattice);
 
   const Part& part_;
   Contacts contacts_;
@@ -353,12 +353,25 @@ void DistributedContact::persist(Archive& archive) {
   archive.common("pairs", rows);
   archive.common("crushed", crushed);
   archive.common("worn", worn);
+  archive.renumber_bodies(rows, ContactHistory::width, {0, 1});
+  archive.renumber_bodies(crushed, Crush::numbers, {0, 1});
+  archive.renumber_bodies(worn, WearCut::numbers, {2});
   if (archive.loading()) contacts_.restore_wear(crushed, worn, here_);
   archive.common("released", released);
   auto known = static_cast<std::int64_t>(contacts_.list().eligibility().known());
   archive.common("known", known);
+  if (archive.renumbers() && archive.loading()) {
+    const auto end = released.begin() + 2 * static_cast<std::ptrdiff_t>(known);
+    std::vector<double> old(released.begin(), end), fresh(end, released.end());
+    archive.renumber_bodies(old, 2, {0, 1});
+    archive.renumber_bodies(fresh, 2, {0, 1});
+    known = static_cast<std::int64_t>(old.size() / 2);
+    released = std::move(old);
+    released.insert(released.end(), fresh.begin(), fresh.end());
+  }
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
-  if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known), expiry);
+  if (archive.loading())
+    restore(rows, as_pairs(released), static_cast<std::size_t>(known), expiry, archive.renumbers());
 }
 
 /// Goes on from a checkpoint.
@@ -366,13 +379,14 @@ void DistributedContact::persist(Archive& archive) {
 /// \param released  pairs whose beam broke, in this order
 /// \param known     number of these that the last build knew
 /// \param expiry    of the list of the run, if contacts are not possible
+/// \param other_lattice  whether bodies have joined or left: then the list is made anew
 void DistributedContact::restore(const std::vector<double>& rows,
                                  std::span<const BodyPair> released, std::size_t known,
-                                 const PairListExpiry& expiry) {
+                                 const PairListExpiry& expiry, bool other_lattice) {
   overlap_told_ = true;  // the run has given this remark at its start
   contacts_.restore(rows, released, known);
   expiry_ = PairListExpiry(contacts_.solids());
-  if (possible_ || known < released.size()) return;
+  if (possible_ || known < released.size() || other_lattice) return;
   build(expiry.at_build(part_));  // the same list as before the restart
   expiry_ = expiry;
 }
