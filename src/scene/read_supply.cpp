@@ -26,6 +26,7 @@ void check_company(const Scene& scene) {
     refuse("region: " + scene.regions[0].name,
            "its bodies would change (supply: region is another)");
   if (!scene.loads.empty()) refuse("load: " + scene.loads[0].name, "its bodies would change");
+  if (scene.bonds.given) refuse("bonds", "strips have none");
   if (scene.calibrate != Calibrate::none) refuse("beam: calibrate", "it must be none");
   if (scene.drag.faces) refuse("water: drag", "it must be plan");
 }

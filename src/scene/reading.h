@@ -24,6 +24,8 @@ void read_lattice_source(Options& options, Scene& scene);
 /// with it or without it. \return whether there is one. Collective.
 bool read_outline(Options& options, Scene& scene);
 void read_regions_and_cuts(Options& options, Scene& scene);
+/// Reads which faces are frozen together, after the lattice's source and the fracture.
+void read_bonds(Options& options, Scene& scene);
 void read_fracture(Options& options, Scene& scene);
 void read_water(Options& options, Scene& scene);
 /// Reads contacts and obstacles.
