@@ -99,6 +99,14 @@ struct Scene {
     double area = 0;                    ///< [m^2]
     double moved = 0;                   ///< area between it and the simplified one [m^2]
   } outline;
+  /// Ice that joins the sheet's left side, strip by strip, and leaves.
+  struct {
+    bool on = false;
+    double strip = 0;                                         ///< length of a strip [m]
+    double length = std::numeric_limits<double>::infinity();  ///< of all ice, with the sheet [m]
+    /// Outside this box {x0, x1, y0, y1, z0, z1} pieces leave [m]; none: all stay.
+    std::optional<std::array<double, 6>> region;
+  } supply;
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;   ///< of the sheet [m]; the mean of a random field
   ThicknessField thickness_field;

@@ -350,10 +350,22 @@ void DistributedContact::persist(Archive& archive) {
   archive.common("pairs", rows);
   archive.common("crushed", crushed);
   archive.common("worn", worn);
+  archive.renumber_bodies(rows, ContactHistory::width, {0, 1});
+  archive.renumber_bodies(crushed, Crush::numbers, {0, 1});
+  archive.renumber_bodies(worn, WearCut::numbers, {2});
   if (archive.loading()) contacts_.restore_wear(crushed, worn, here_);
   archive.common("released", released);
   auto known = static_cast<std::int64_t>(contacts_.list().eligibility().known());
   archive.common("known", known);
+  if (archive.renumbers() && archive.loading()) {
+    const auto end = released.begin() + 2 * static_cast<std::ptrdiff_t>(known);
+    std::vector<double> old(released.begin(), end), fresh(end, released.end());
+    archive.renumber_bodies(old, 2, {0, 1});
+    archive.renumber_bodies(fresh, 2, {0, 1});
+    known = static_cast<std::int64_t>(old.size() / 2);
+    released = std::move(old);
+    released.insert(released.end(), fresh.begin(), fresh.end());
+  }
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
   if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known));
 }

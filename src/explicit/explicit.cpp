@@ -96,6 +96,7 @@ std::unique_ptr<Run> make_explicit_run(Model<Space>& model, const ExplicitOption
                                        ObserverOf<Space> observer) {
   if (explicit_type() != TSRK)
     return std::make_unique<LeapfrogRun<Space>>(model, options, std::move(observer));
+  if (options.supply) throw InputError("supply: -ts_type rk steps a lattice that stays as it is");
   if constexpr (std::is_same_v<Space, Spatial>) {
     return make_rk_run(model, options, std::move(observer));
   } else {

@@ -26,6 +26,7 @@ ExplicitRun<Space>::ExplicitRun(std::string_view type, Model<Space>& model,
 
 template <class Space>
 StableStep ExplicitRun<Space>::look() {
+  this->settle();
   const double began = MPI_Wtime();
   StableStep stable = find_stable_step();
   seconds_an_evaluation_ = (MPI_Wtime() - began) / std::max(stable.evaluations, 1);
@@ -132,6 +133,7 @@ double ExplicitRun<Space>::needed() const {
 template <class Space>
 bool ExplicitRun<Space>::look_is_due() {
   if (explicit_options_.allow_unstable || this->done() == 0) return false;
+  if (this->ice_has_changed()) return true;
   if (own_stiffness() > last_own_) return true;
   // A step costs about one evaluation, the rates less than half of one.
   constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;

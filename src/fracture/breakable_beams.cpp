@@ -43,6 +43,7 @@ void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& crac
   if (!archive.loading()) all = all_gathered(packed(cracks), part.comm);
   archive.common("cracks", all);
   if (!archive.loading()) return;
+  archive.renumber_beams(all, width);
   cracks.clear();
   for (std::size_t k = 0; k + width <= all.size(); k += width) {
     const double* v = &all[k];

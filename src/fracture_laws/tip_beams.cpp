@@ -195,6 +195,7 @@ TipBeams::Change TipBeams::persist(Archive& archive, const std::vector<Crack>& c
   std::vector<double> doomed(all_doomed_.begin(), all_doomed_.end());
   archive.common("doomed", doomed);
   if (!archive.loading()) return change;
+  archive.renumber_beams(doomed, 1);
   for (const Crack& c : cracks) {
     if (c.broken()) (void)tips_.lose(c.beam);
   }

@@ -10,7 +10,6 @@
 #include "floe/base/petsc.h"
 
 namespace floe {
-namespace {}  // namespace
 
 void Archive::refuse(const std::string& why) const {
   throw InputError("checkpoint: restart: '" + name_ + "': " + why);
@@ -106,11 +105,57 @@ std::vector<double> Archive::gathered(std::span<const double> mine) const {
   return all;
 }
 
+namespace {
+
+std::vector<std::int32_t> inverse(const std::vector<std::int32_t>& after, std::int64_t count) {
+  std::vector<std::int32_t> before(static_cast<std::size_t>(count), -1);
+  for (std::size_t k = 0; k < after.size(); ++k)
+    if (after[k] >= 0) item(before, after[k]) = static_cast<std::int32_t>(k);
+  return before;
+}
+
+void renumber(std::vector<double>& rows, std::size_t width,
+              std::initializer_list<std::size_t> columns, const std::vector<std::int32_t>& after) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k + width <= rows.size(); k += width) {
+    bool stays = true;
+    for (const std::size_t c : columns) {
+      double& index = rows[k + c];
+      if (index < 0) continue;
+      index = item(after, static_cast<std::int32_t>(index));
+      stays = stays && index >= 0;
+    }
+    if (!stays) continue;
+    std::copy_n(&rows[k], width, &rows[kept]);
+    kept += width;
+  }
+  rows.resize(kept);
+}
+
+}  // namespace
+
+void Archive::renumber(const Renumbering& how) {
+  renumbering_ = &how;
+  bodies_before_ = inverse(how.bodies, part_.global_bodies);
+  beams_before_ = inverse(how.beams, part_.global_beams);
+}
+
+void Archive::renumber_bodies(std::vector<double>& rows, std::size_t width,
+                              std::initializer_list<std::size_t> columns) const {
+  if (renumbers() && loading_) floe::renumber(rows, width, columns, renumbering_->bodies);
+}
+
+void Archive::renumber_beams(std::vector<double>& rows, std::size_t width) const {
+  if (renumbers() && loading_) floe::renumber(rows, width, {0}, renumbering_->beams);
+}
+
 void Archive::rows(const std::string& name, std::span<const std::int32_t> names,
-                   std::span<const std::int32_t> local, std::span<double> rows, int width) {
+                   const std::vector<std::int32_t>& before, std::span<const std::int32_t> local,
+                   std::span<double> rows, int width) {
   std::vector<std::int32_t> global;
   global.reserve(local.size());
-  for (const std::int32_t k : local) global.push_back(item(names, k));
+  for (const std::int32_t k : local)
+    global.push_back(renumbers() ? item(before, item(names, k)) : item(names, k));
   if (!loading_) {
     save_rows(name, global, rows, width);
     return;
@@ -120,6 +165,7 @@ void Archive::rows(const std::string& name, std::span<const std::int32_t> names,
                             values = read(group_ + name, finite, width);
   bool all_there = values.size() == listed.size() * w;
   for (std::size_t k = 0; k < global.size() && all_there; ++k) {
+    if (global[k] < 0) continue;  // has joined
     const auto at = static_cast<std::size_t>(
         std::lower_bound(listed.begin(), listed.end(), static_cast<double>(global[k])) -
         listed.begin());

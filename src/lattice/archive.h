@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 #include "base/on_root.h"
 #include "files/hdf5.h"
 #include "lattice/partition.h"
+#include "lattice/renumbering.h"
 
 namespace floe {
 
@@ -42,6 +44,17 @@ class Archive {
   /// Whether the state stays in its run, and what a restart would begin anew goes with it.
   bool within_run() const { return within_run_; }
   void stay_in_run() { within_run_ = true; }
+  /// Loads what was saved of another lattice: some bodies and beams have left, others have joined
+  /// and keep the values that they have. \param how  must outlive the archive
+  void renumber(const Renumbering& how);
+  /// Whether indices are those of another lattice.
+  bool renumbers() const { return renumbering_ != nullptr; }
+  /// Gives bodies in some columns of rows their new indices, and drops rows of bodies that have
+  /// left. Negative indices stay. Does nothing without renumber().
+  void renumber_bodies(std::vector<double>& rows, std::size_t width,
+                       std::initializer_list<std::size_t> columns) const;
+  /// The same for beams in the first column.
+  void renumber_beams(std::vector<double>& rows, std::size_t width) const;
   /// Returns the outcome of writing, on rank 0. A failed write raises nothing until all ranks know
   /// of the failure.
   const Outcome& outcome() const { return outcome_; }
@@ -65,18 +78,20 @@ class Archive {
   /// \param rows  row-major
   void rows(const std::string& name, std::span<const std::int32_t> bodies, std::span<double> rows,
             int width) {
-    this->rows(name, part_.global, bodies, rows, width);
+    this->rows(name, part_.global, bodies_before_, bodies, rows, width);
   }
   /// As rows(), for beams. When saving, each rank passes the beams that it counts.
   void beam_rows(const std::string& name, std::span<const std::int32_t> beams,
                  std::span<double> rows, int width) {
-    this->rows(name, part_.global_beam, beams, rows, width);
+    this->rows(name, part_.global_beam, beams_before_, beams, rows, width);
   }
 
  private:
-  /// \param names  global index of each local one
+  /// \param names   global index of each local one
+  /// \param before  of renumber(); empty without it
   void rows(const std::string& name, std::span<const std::int32_t> names,
-            std::span<const std::int32_t> local, std::span<double> rows, int width);
+            const std::vector<std::int32_t>& before, std::span<const std::int32_t> local,
+            std::span<double> rows, int width);
   void save_rows(const std::string& name, const std::vector<std::int32_t>& global,
                  std::span<const double> rows, int width);
   std::vector<double> gathered(std::span<const double> mine) const;
@@ -95,6 +110,9 @@ class Archive {
   Hdf5File* file_;
   Outcome outcome_;
   bool loading_, within_run_ = false;
+  const Renumbering* renumbering_ = nullptr;
+  /// Per body and beam now: its index in the lattice of the file; -1: it has joined.
+  std::vector<std::int32_t> bodies_before_, beams_before_;
   std::string name_, group_;
 };
 

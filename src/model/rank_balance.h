@@ -48,6 +48,8 @@ class RankBalance {
                                                 const State<Space>& state);
   /// Owners of the division of a checkpoint on as many ranks; empty: as at the start.
   const std::vector<std::int32_t>& owner() const { return owner_; }
+  /// Forgets the division, since the bodies are others.
+  void forget() { owner_.clear(); }
   const Moves& moves() const { return moves_; }
   /// Saves or loads the division and what has been waited. On another number of ranks the division
   /// is forgotten. Collective.

@@ -25,6 +25,8 @@ class CrackLog {
 
   /// Goes on with another object for the same cracks.
   void follow(const Fracture& fracture) { fracture_ = &fracture; }
+  /// Goes on with other bodies and beams, in the lattice that was given: the file is written anew.
+  void follow_lattice() { written_ = -1; }
 
   /// Writes the file if there are new breaks. Returns the number of fragments, on all ranks.
   double update();

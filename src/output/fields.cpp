@@ -13,8 +13,6 @@ namespace floe {
 namespace {
 
 constexpr const char* key = "checkpoint: restart";
-constexpr const char* mesh_file = "fields/mesh.h5";
-
 std::string number(std::size_t k) {
   char name[32];
   std::snprintf(name, sizeof name, "%06zu", k);
@@ -22,6 +20,9 @@ std::string number(std::size_t k) {
 }
 std::string group_of(std::size_t frame) { return "/t" + number(frame); }
 std::string segment_file(std::size_t first) { return "fields/" + number(first) + ".h5"; }
+std::string mesh_of(std::size_t first) {
+  return first == 0 ? "fields/mesh.h5" : "fields/mesh_" + number(first) + ".h5";
+}
 std::string segment_xmf(std::size_t first) { return "fields/" + number(first) + ".xmf"; }
 
 /// Returns the number of a name NNNNNN.ENDING, nothing for other names.
@@ -32,6 +33,13 @@ std::optional<std::size_t> number_in(const std::string& name, std::string_view e
       std::string_view(name).substr(digits) != ending)
     return {};
   return std::stoull(name.substr(0, digits));
+}
+
+/// Returns the number of a name mesh_NNNNNN.h5.
+std::optional<std::size_t> number_of_mesh(const std::string& name) {
+  constexpr std::string_view front = "mesh_";
+  if (!name.starts_with(front)) return {};
+  return number_in(name.substr(front.size()), ".h5");
 }
 
 /// Returns the names of the files in a folder, none if there is no folder.
@@ -62,7 +70,8 @@ void remove(const std::string& path) {
 
 }  // namespace
 
-Fields::Fields(std::string dir, const Lattice& lattice, std::int64_t keep)
+Fields::Fields(std::string dir, const Lattice& lattice, std::int64_t keep, std::int64_t mesh,
+               std::span<const std::int32_t> names)
     : dir_(std::move(dir)), writer_(lattice) {
   for (const char* name : {"fields.xmf", "fields.h5"}) remove_left_over(path(name));
   if (keep < 0) {
@@ -73,7 +82,41 @@ Fields::Fields(std::string dir, const Lattice& lattice, std::int64_t keep)
   Earlier earlier = look_at(dir_, count_);
   segments_ = std::move(earlier.segments);
   last_ = std::move(earlier.last);
+  const auto present = static_cast<std::size_t>(mesh);
+  for (const std::string& name : names_in(path("fields"))) {
+    const auto first = number_of_mesh(name);
+    if (first && *first < present) meshes_.push_back(*first);
+  }
+  std::sort(meshes_.begin(), meshes_.end());
+  if (present > 0) {
+    meshes_.push_back(present);
+    write_mesh(names);  // a later mesh may have taken its name
+    if (segments_.back() < present) last_.clear();
+  }
   cut_back();
+}
+
+void Fields::write_mesh(std::span<const std::int32_t> names) {
+  Hdf5File mesh = Hdf5File::create(path(mesh_file()));
+  writer_->write_mesh(mesh);
+  if (!names.empty()) mesh.write("/mesh/name", names);
+  mesh.close();
+  not_on_disk_.push_back(path(mesh_file()));
+}
+
+std::string Fields::mesh_file() const { return mesh_of(meshes_.back()); }
+
+void Fields::follow(const Lattice& lattice, std::span<const std::int32_t> names) {
+  if (is_open()) {
+    const std::string full = path(segment_xmf(segments_.back()));
+    write_whole(full, xdmf_document(grids_of_last()));
+    not_on_disk_.push_back(full);
+    not_on_disk_.push_back(path(segment_file(segments_.back())));
+    last_.clear();
+  }
+  if (count_ > meshes_.back()) meshes_.push_back(count_);
+  writer_.emplace(lattice);
+  write_mesh(names);
 }
 
 void Fields::require(const std::string& dir, std::int64_t frames) {
@@ -110,10 +153,7 @@ void Fields::begin() {
   std::error_code error;
   std::filesystem::create_directory(path("fields"), error);
   if (error) throw_file_error("make", path("fields"), error.value());
-  Hdf5File mesh = Hdf5File::create(path(mesh_file));
-  writer_.write_mesh(mesh);
-  mesh.close();
-  not_on_disk_ = {path(mesh_file)};
+  write_mesh({});
   write_index();
 }
 
@@ -123,7 +163,7 @@ void Fields::remove_earlier() const {
   for (const char* name : {"fields.xmf", "fields.h5"}) remove(path(name));
   for (const std::string& name : names_in(path("fields"))) {
     const bool ours = number_in(name, ".h5") || number_in(name, ".xmf") || name == "mesh.h5" ||
-                      name.ends_with(temporary_ending);
+                      number_of_mesh(name) || name.ends_with(temporary_ending);
     if (ours) remove(path("fields/" + name));
   }
 }
@@ -143,16 +183,18 @@ void Fields::cut_back() {
   }
   const std::size_t last = segments_.empty() ? 0 : segments_.back();
   for (const std::string& name : names_in(path("fields"))) {
-    const auto segment = number_in(name, ".h5"), xmf = number_in(name, ".xmf");
+    const auto segment = number_in(name, ".h5"), xmf = number_in(name, ".xmf"),
+               mesh = number_of_mesh(name);
     const bool later = (segment && (*segment > last || segments_.empty())) ||
-                       (xmf && (*xmf >= last || segments_.empty()));
+                       (xmf && (*xmf > last || (*xmf == last && is_open()) || segments_.empty())) ||
+                       (mesh && *mesh > meshes_.back());
     if (later || name.ends_with(temporary_ending)) remove(path("fields/" + name));
   }
 }
 
 /// Size of a frame's values [bytes]; HDF5 needs somewhat more.
 std::size_t Fields::bytes(const Kept& frame) const {
-  const GridSizes& s = writer_.sizes();
+  const GridSizes& s = writer_->sizes();
   return 24 * (s.points + 3 * s.bodies + s.faces) + 80 * s.beams +
          (frame.breakable ? 8 * s.beams : 0) + 116 * frame.cracks;
 }
@@ -160,7 +202,7 @@ std::size_t Fields::bytes(const Kept& frame) const {
 bool Fields::last_is_full() const {
   std::size_t sum = 0;
   for (const Kept& frame : last_) sum += bytes(frame);
-  return segments_.empty() || last_.size() >= segment_frames || sum >= segment_bytes;
+  return segments_.empty() || !is_open() || last_.size() >= segment_frames || sum >= segment_bytes;
 }
 
 void Fields::write(const Frame& frame) {
@@ -168,8 +210,10 @@ void Fields::write(const Frame& frame) {
   const std::size_t first = is_new ? count_ : segments_.back();
   const std::string file = path(segment_file(first));
   Hdf5File segment = is_new ? Hdf5File::create(file) : Hdf5File::change(file);
-  const std::size_t cracks = writer_.write(segment, group_of(count_), frame);
-  if (is_new && !segments_.empty()) {
+  const std::size_t cracks = writer_->write(segment, group_of(count_), frame);
+  if (meshes_.back() > 0)
+    segment.attribute(group_of(count_), "mesh", static_cast<double>(meshes_.back()));
+  if (is_new && is_open()) {
     const std::string full = path(segment_xmf(segments_.back()));
     write_whole(full, xdmf_document(grids_of_last()));
     not_on_disk_.push_back(full);
@@ -194,7 +238,7 @@ void Fields::write(const Frame& frame) {
 std::string Fields::grids_of_last() const {
   std::string grids;
   for (std::size_t k = 0; k < last_.size(); ++k)
-    grids += xdmf_grid(writer_.sizes(), mesh_file,
+    grids += xdmf_grid(writer_->sizes(), mesh_file(),
                        {segment_file(segments_.back()), group_of(segments_.back() + k),
                         last_[k].time, last_[k].cracks, last_[k].breakable});
   return grids;
@@ -202,14 +246,16 @@ std::string Fields::grids_of_last() const {
 
 void Fields::write_xmf() const {
   std::string grids;
-  for (std::size_t k = 0; k + 1 < segments_.size(); ++k)
+  for (std::size_t k = 0; k + (is_open() ? 1 : 0) < segments_.size(); ++k)
     grids += xdmf_include(segment_xmf(segments_[k]));
   write_whole(path("fields.xmf"), xdmf_document(grids + grids_of_last()), Place::swapped);
 }
 
 void Fields::write_index() {
   Hdf5File index = Hdf5File::create(path("fields.h5"));
-  index.link("/mesh", mesh_file, "/mesh");
+  index.link("/mesh", mesh_of(0), "/mesh");
+  for (std::size_t k = 1; k < meshes_.size(); ++k)
+    index.link("/mesh_" + number(meshes_[k]), mesh_of(meshes_[k]), "/mesh");
   for (std::size_t s = 0; s < segments_.size(); ++s) {
     const std::size_t end = s + 1 < segments_.size() ? segments_[s + 1] : count_;
     for (std::size_t k = segments_[s]; k < end; ++k)

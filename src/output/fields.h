@@ -9,9 +9,15 @@
 /// includes fields/NNNNNN.xmf for the frames of full segments. fields.h5 has links to the mesh and
 /// to the frames; links to the last frames (a sixteenth of all) may come later, at the end of a run
 /// at the latest.
+///
+/// Where bodies join or leave, a new segment and a new mesh begin: fields/mesh_NNNNNN.h5 is that of
+/// the frames from NNNNNN on, which have this number as the attribute `mesh`, and has the names of
+/// its bodies as /mesh/name; fields.h5 links to it as /mesh_NNNNNN.
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,11 +35,20 @@ class Fields {
   /// Creates the files, or cuts those of an earlier run back.
   /// \param lattice  must outlive this object
   /// \param keep  number of frames of the earlier run to keep; -1: a new run
+  /// \param mesh  of an earlier run: first frame of the mesh of this lattice
+  /// \param names  of the bodies, if mesh > 0
   /// \throws InputError as require() does
-  Fields(std::string dir, const Lattice& lattice, std::int64_t keep = -1);
+  Fields(std::string dir, const Lattice& lattice, std::int64_t keep = -1, std::int64_t mesh = 0,
+         std::span<const std::int32_t> names = {});
   /// Checks a folder without changing it. \throws InputError if it has fewer frames, or if they
   /// cannot be read
   static void require(const std::string& dir, std::int64_t frames);
+
+  /// Goes on with other bodies. \param lattice  must outlive this object
+  /// \param names  of its bodies
+  void follow(const Lattice& lattice, std::span<const std::int32_t> names);
+  /// First frame of the present mesh.
+  std::int64_t mesh() const { return static_cast<std::int64_t>(meshes_.back()); }
 
   /// Appends a frame. \throws FileError
   void write(const Frame& frame);
@@ -57,6 +72,10 @@ class Fields {
   static Earlier look_at(const std::string& dir, std::size_t keep);
 
   void begin();
+  void write_mesh(std::span<const std::int32_t> names);
+  std::string mesh_file() const;
+  /// Whether the last segment takes further frames.
+  bool is_open() const { return !last_.empty(); }
   std::string path(const std::string& name) const { return dir_ + "/" + name; }
   std::size_t bytes(const Kept& frame) const;
   bool last_is_full() const;
@@ -67,7 +86,8 @@ class Fields {
   void write_index();
 
   std::string dir_;
-  FrameWriter writer_;
+  std::optional<FrameWriter> writer_;
+  std::vector<std::size_t> meshes_{0};    ///< first frame of each mesh
   std::size_t count_ = 0;                 ///< number of frames
   std::size_t linked_ = 0;                ///< number of frames that fields.h5 links to
   std::vector<std::size_t> segments_;     ///< first frame of each segment

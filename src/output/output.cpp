@@ -76,7 +76,8 @@ struct Output<Space>::Impl {
     return global;
   }
 
-  void open_files(const std::string& options_yaml, bool restarted);
+  void open_files(const std::string& options_yaml, bool restarted, const PresentMesh& mesh);
+  void find_sets(const Lattice& of);
   void keep_what_frames_need();
   Sample sample(const Accepted<Space>& accepted);
   void write_row(const Sample& sample);
@@ -88,36 +89,44 @@ struct Output<Space>::Impl {
 template <class Space>
 Output<Space>::Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
                       const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
-                      const OutputArchive* restart) {
+                      const OutputArchive* restart, const PresentMesh& mesh) {
   const Timed timed(Event::output);
   impl_ = std::make_unique<Impl>(options, model);
   for (const PlacedLoad& placed : loads)
     impl_->loads.push_back(
         {placed.load.name, placed.bodies, impl_->part.localise(placed.bodies), placed.arm});
-  for (const PlacedBoundary& placed : model.boundaries()) {
-    const auto& set = lattice.set(placed.boundary.set, "boundary");
-    Point3 mean{};
-    for (const std::int32_t b : set) {
-      for (std::size_t k = 0; k < 3; ++k)
-        mean[k] += item(lattice.bodies.position, b)[k] / static_cast<double>(set.size());
-    }
-    impl_->sets.emplace_back(set.size(), mean);
-  }
+  impl_->find_sets(lattice);
   impl_->lattice = std::move(lattice);
   if (rank(model.part().comm) != 0) impl_->lattice = {};
   if (model.fracture() != nullptr)
     impl_->cracks.emplace(options.dir, impl_->lattice, *model.fracture(), model.part());
   if (restart != nullptr) impl_->memory = *restart;
-  on_root(model.part().comm, [&] { impl_->open_files(options_yaml, restart != nullptr); });
+  on_root(model.part().comm, [&] { impl_->open_files(options_yaml, restart != nullptr, mesh); });
+}
+
+/// Finds numbers and mean places of the boundaries' bodies.
+template <class Space>
+void Output<Space>::Impl::find_sets(const Lattice& of) {
+  sets.clear();
+  for (const PlacedBoundary& placed : model.boundaries()) {
+    const auto& set = of.set(placed.boundary.set, "boundary");
+    Point3 mean{};
+    for (const std::int32_t b : set) {
+      for (std::size_t k = 0; k < 3; ++k)
+        mean[k] += item(of.bodies.position, b)[k] / static_cast<double>(set.size());
+    }
+    sets.emplace_back(set.size(), mean);
+  }
 }
 
 template <class Space>
-void Output<Space>::Impl::open_files(const std::string& options_yaml, bool restarted) {
+void Output<Space>::Impl::open_files(const std::string& options_yaml, bool restarted,
+                                     const PresentMesh& mesh) {
   const std::string& dir = options.dir;
   if (!restarted) write_lattice(lattice, dir + "/lattice.h5");
   history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
   keep_what_frames_need();
-  fields.emplace(dir, lattice, restarted ? memory.frames : -1);
+  fields.emplace(dir, lattice, restarted ? memory.frames : -1, mesh.first, mesh.names);
   if (restarted)
     // The summary in the folder is that of an earlier part of the run.
     std::filesystem::remove(dir + "/summary.json");
@@ -364,6 +373,25 @@ template <class Space>
 void Output<Space>::follow() {
   impl_->find_parts();
   if (impl_->cracks) impl_->cracks->follow(*impl_->model.fracture());
+}
+
+template <class Space>
+void Output<Space>::follow(const Lattice& lattice, std::span<const std::int32_t> names) {
+  Impl& me = *impl_;
+  me.pending_frame.reset();  // of other bodies
+  me.find_sets(lattice);
+  on_root(me.part.comm, [&] {
+    me.lattice = lattice;
+    me.fields->follow(me.lattice, names);
+    me.keep_what_frames_need();
+  });
+  follow();
+  if (me.cracks) me.cracks->follow_lattice();
+}
+
+template <class Space>
+std::int64_t Output<Space>::mesh() const {
+  return impl_->fields ? impl_->fields->mesh() : 0;
 }
 
 template <class Space>

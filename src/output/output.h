@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,12 @@ struct OutputArchive {
 void require_files(const std::string& dir, const OutputArchive& archive, const Sample& columns,
                    MPI_Comm comm);
 
+/// The mesh of the frames of the present bodies, on a restart.
+struct PresentMesh {
+  std::int64_t first = 0;                    ///< frame
+  std::span<const std::int32_t> names = {};  ///< of the bodies
+};
+
 /// Writes every accepted state on rank 0. Files of planar runs have the layout of spatial ones,
 /// with zeros. All calls are collective.
 template <class Space>
@@ -77,10 +84,11 @@ class Output {
   ///   need
   /// \param restart  history of the output from a checkpoint, or null; the files of that run are
   ///   cut back to this history and continued
+  /// \param mesh  of the lattice, where bodies join and leave
   /// \throws InputError if the folder does not have the files to go on with
   Output(const OutputOptions& options, Lattice&& lattice, const Model<Space>& model,
          const std::vector<PlacedLoad>& loads, const std::string& options_yaml,
-         const OutputArchive* restart = nullptr);
+         const OutputArchive* restart = nullptr, const PresentMesh& mesh = {});
   ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
@@ -92,6 +100,12 @@ class Output {
   /// Follows the model, which has been divided anew: its part and its forces are others. To be told
   /// before that, with prepare_to_follow().
   void follow();
+  /// The same with other bodies, some of which have joined or left.
+  /// \param lattice  the whole one, on every rank
+  /// \param names    of its bodies
+  void follow(const Lattice& lattice, std::span<const std::int32_t> names);
+  /// First frame of the mesh of the present bodies; on rank 0.
+  std::int64_t mesh() const;
   /// Gathers what bodies of the present part have not written yet.
   void prepare_to_follow();
   /// Syncs rows and frames to the disk, so that they survive a crash of the machine.

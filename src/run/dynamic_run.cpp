@@ -37,6 +37,7 @@ DynamicRun<Space>::DynamicRun(std::string_view what, std::string_view type, Mode
   energy = sum_over_ranks(energy, model.part().comm);
   ledger_.set_floor(std::max(energy, std::numeric_limits<double>::min()));
   if (options_.balance) balance_.emplace(*options_.balance);
+  ice_.bodies = model.part().global_bodies;
 }
 
 template <class Space>
@@ -131,6 +132,13 @@ void DynamicRun<Space>::persist(Archive& archive) {
   if (model != space)
     throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
                    " model, this run's is " + space + " (model: planar)");
+  if (options_.supply && !archive.within_run()) {  // first, since all others are of these bodies
+    archive.enter("supply");
+    options_.supply->persist(archive);
+    ice_.persist(archive);
+    if (archive.loading()) follow_division();
+    archive.enter("run");
+  }
   archive.common("step", done_);
   archive.common("steps", steps_);
   archive.common("time", state_.time, not_negative);
@@ -190,6 +198,15 @@ void DynamicRun<Space>::take_up_state() {
   state_.set_time(time_);
 }
 
+/// Begins with the bodies of a model that has been divided anew. Collective.
+template <class Space>
+void DynamicRun<Space>::follow_division() {
+  const auto bodies = static_cast<std::size_t>(model_.part().local);
+  state_ = State<Space>(bodies);
+  wrenches_ = Wrenches<Space>(bodies);
+  follow_model();
+}
+
 /// Moves bodies to other ranks if that is worth it. Collective.
 template <class Space>
 void DynamicRun<Space>::move_bodies_if_due() {
@@ -205,6 +222,17 @@ void DynamicRun<Space>::move_bodies_if_due() {
 /// no bit depends on it. Collective.
 template <class Space>
 void DynamicRun<Space>::move_bodies(const std::vector<std::int32_t>& owner) {
+  divide([&] {
+    options_.balance->divide(owner);
+    return Renumbering{};
+  });
+  result_.moves = balance_->moves();
+}
+
+/// Divides the model anew by work, which returns the new indices of bodies and beams if they are
+/// others; bodies that have joined begin with the far edge's motion. Collective.
+template <class Space>
+void DynamicRun<Space>::divide(const std::function<Renumbering()>& work) {
   take_remarks();
   const MPI_Comm comm = model_.part().comm;
   std::optional<Hdf5File> file;
@@ -214,16 +242,147 @@ void DynamicRun<Space>::move_bodies(const std::vector<std::int32_t>& owner) {
   save.stay_in_run();
   persist(save);
   share_outcome(save.outcome(), comm);
-  options_.balance->divide(owner);
-  const auto bodies = static_cast<std::size_t>(model_.part().local);
-  state_ = State<Space>(bodies);
-  wrenches_ = Wrenches<Space>(bodies);
-  follow_model();
+  const Renumbering changed = work();
+  follow_division();
   Archive load(model_.part(), memory, Transfer::load);
   load.stay_in_run();
+  if (!changed.bodies.empty()) {
+    load.renumber(changed);
+    begin_joined();
+  }
   persist(load);
   take_up_state();
-  result_.moves = balance_->moves();
+}
+
+/// Lets ice join and leave if that is due. Collective.
+template <class Space>
+void DynamicRun<Space>::change_ice_if_due() {
+  if (!options_.supply || done_ % options_.supply->every != 0) return;
+  while (options_.supply->is_due(time_)) {
+    change_ice();
+    options_.supply->end_look();
+  }
+}
+
+/// Takes out what has left the region, and lets the next strip join. The energies of both are the
+/// changes of the ledger's balance, by evaluations before and after. Collective.
+template <class Space>
+void DynamicRun<Space>::change_ice() {
+  const SupplyOptions& supply = *options_.supply;
+  evaluate();
+  double before = energy_balance();
+  const IceNow now = ice_now();
+  const std::vector<std::int32_t> gone = supply.leaving(now);
+  const auto take = [&](IceAmount& amount, double sign) {
+    evaluate();
+    const double after = energy_balance();
+    amount.energy += sign * (after - before);
+    before = after;
+    ice_.bodies = model_.part().global_bodies;
+    ice_has_changed_ = true;
+    if (balance_) balance_->forget();
+  };
+  if (!gone.empty()) {
+    add_to(ice_.left,
+           [&](std::int32_t body) { return std::binary_search(gone.begin(), gone.end(), body); });
+    divide([&] { return supply.leave(now, gone); });
+    take(ice_.left, -1);
+  }
+  const std::int32_t bodies = model_.part().global_bodies;
+  if (supply.can_join()) {
+    const IceNow rest = ice_now();
+    divide([&] { return supply.join(rest); });
+    add_to(ice_.joined, [&](std::int32_t body) { return body >= bodies; });
+    take(ice_.joined, 1);
+  }
+}
+
+/// Prescribed places of all local bodies, as if all were at the far edge [m, rad].
+template <class Space>
+std::vector<double> DynamicRun<Space>::places_of_edge(double time) const {
+  const std::array<double, 6> edge = options_.supply->edge.value(time);
+  std::vector<double> values;
+  for (std::int32_t b = 0; b < model_.part().local; ++b) {
+    for (const int component : Space::components) values.push_back(item(edge, component));
+  }
+  model_.prescribe(time, values);
+  return values;
+}
+
+/// Places all bodies as if they had joined now: as the far edge, or as their own boundaries have
+/// it, with the velocities of the last half step.
+template <class Space>
+void DynamicRun<Space>::begin_joined() {
+  const std::vector<double> now = places_of_edge(time_), last = places_of_edge(time_ - dt_);
+  for (std::size_t b = 0; b < static_cast<std::size_t>(model_.part().local); ++b) {
+    double* record = state_.record(b);
+    for (std::size_t k = 0; k < Space::translations; ++k) {
+      const std::size_t at = b * Space::unknowns + k;
+      record[Space::displacement + k] = now[at];
+      record[Space::velocity + k] = (now[at] - last[at]) / dt_;
+    }
+  }
+}
+
+/// Gathers the places of all bodies and the broken beams. Collective.
+template <class Space>
+IceNow DynamicRun<Space>::ice_now() const {
+  constexpr std::size_t width = 4;
+  const Part& part = model_.part();
+  std::vector<double> mine, broken;
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
+    const Vec3<double> at = part.bodies.position[b] + displacement(state_, b);
+    mine.insert(mine.end(), {static_cast<double>(part.global[b]), at.x, at.y, at.z});
+  }
+  const std::vector<double> rows = all_gathered(mine, part.comm);
+  IceNow now{.time = time_,
+             .places = std::vector<Point3>(static_cast<std::size_t>(part.global_bodies)),
+             .broken = {}};
+  for (std::size_t k = 0; k < rows.size(); k += width)
+    item(now.places, static_cast<std::int32_t>(rows[k])) = {rows[k + 1], rows[k + 2], rows[k + 3]};
+  if (model_.fracture() == nullptr) return now;
+  for (const Break& b : model_.fracture()->breaks()) broken.push_back(static_cast<double>(b.beam));
+  for (const double beam : all_gathered(broken, part.comm))
+    now.broken.push_back(static_cast<std::int32_t>(beam));
+  std::sort(now.broken.begin(), now.broken.end());
+  return now;
+}
+
+/// Adds number, mass and momentum of some bodies by their global indices. Collective.
+template <class Space>
+void DynamicRun<Space>::add_to(IceAmount& amount,
+                               const std::function<bool(std::int32_t)>& counts) const {
+  const Part& part = model_.part();
+  std::array<double, 5> sums{};
+  for (std::size_t b = 0; b < static_cast<std::size_t>(part.owned); ++b) {
+    if (!counts(part.global[b])) continue;
+    const double mass = part.bodies.mass[b];
+    const Vec3<double> v = velocity(state_, b);
+    const std::array<double, 5> mine{1, mass, mass * v.x, mass * v.y, mass * v.z};
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += mine[k];
+  }
+  sums = sum_over_ranks(sums, part.comm);
+  amount.bodies += sums[0];
+  amount.mass += sums[1];
+  for (std::size_t k = 0; k < 3; ++k) amount.momentum[k] += sums[2 + k];
+}
+
+/// Energies that the ledger's balance counts at the state, whose wrenches are known [J].
+/// Collective.
+template <class Space>
+double DynamicRun<Space>::energy_balance() {
+  const auto [kinetic, boundary] = energies();
+  const auto all = sum_over_ranks(std::array{kinetic, boundary}, model_.part().comm);
+  return Ledger::balance(model_.report(state_, works()), all[0], all[1]);
+}
+
+/// The columns of the integrator itself.
+template <class Space>
+std::vector<std::pair<std::string, double>> DynamicRun<Space>::ledger_columns() const {
+  auto columns = ledger_.columns();
+  if (options_.supply)
+    for (const auto& column : ice_.columns()) columns.push_back(column);
+  return columns;
 }
 
 template <class Space>
@@ -236,6 +395,7 @@ bool DynamicRun<Space>::advance(double until) {
     const Return back = stand_ == Stand::running ? make_steps() : Return::failure;
     count_steps();
     if (back == Return::pause) return true;
+    if (back == Return::end) change_ice_if_due();
     result_.done = back == Return::end && finish();
   }
   end();
@@ -262,6 +422,7 @@ void DynamicRun<Space>::begin_steps() {
 template <class Space>
 typename DynamicRun<Space>::Return DynamicRun<Space>::make_steps() {
   while (!is_paused()) {
+    change_ice_if_due();
     move_bodies_if_due();
     begin_piece();
     const int ierr = TSSolve(ts_, nullptr);
@@ -312,7 +473,11 @@ void DynamicRun<Space>::begin_piece() {
 template <class Space>
 void DynamicRun<Space>::limit_steps() {
   const std::int64_t end = (done_ / steps_of_a_piece + 1) * steps_of_a_piece;
-  const std::int64_t last = std::max(std::min({last_step(), end, pause_step(), next_look_}), done_);
+  const std::int64_t change = options_.supply
+                                  ? (done_ / options_.supply->every + 1) * options_.supply->every
+                                  : std::numeric_limits<std::int64_t>::max();
+  const std::int64_t last =
+      std::max(std::min({last_step(), end, pause_step(), next_look_, change}), done_);
   check(TSSetMaxSteps(ts_, static_cast<PetscInt>(last - piece_)));
 }
 
@@ -374,7 +539,7 @@ std::vector<std::string> DynamicRun<Space>::column_names() const {
   for (const auto& [name, value] : model_.report(state_, works_.all())) names.push_back(name);
   const Columns own = own_columns();
   for (const auto& [name, value] : own.values()) names.push_back(name);
-  for (const auto& [name, value] : ledger_.columns()) names.push_back(name);
+  for (const auto& [name, value] : ledger_columns()) names.push_back(name);
   return names;
 }
 
@@ -460,7 +625,7 @@ bool DynamicRun<Space>::sample(bool last) {
   const Columns own = own_columns();
   for (const auto& [name, value] : own.values())
     reported.emplace_back(name, sum_over_ranks(value, model_.part().comm));
-  ledger_.take(reported, all[0], all[1]);
+  ledger_.take(reported, all[0], all[1], ice_.joined.energy - ice_.left.energy);
   if (!(ledger_.relative_error() <= options_.energy_limit)) {
     why_ = "the energy balance is off by " + text(ledger_.relative_error()) +
            " of the energies at time " + text(state_.time) + " s (limit: energy_error " +
@@ -470,7 +635,7 @@ bool DynamicRun<Space>::sample(bool last) {
   observer_({.state = state_,
              .wrenches = wrenches_,
              .step = done_,
-             .columns = ledger_.columns(),
+             .columns = ledger_columns(),
              .last = last,
              .forces = reported});
   sampled_ = done_;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -109,7 +110,7 @@ class DynamicRun : public Run {
   /// Saves or loads the integrator's own history, apart from records, time and dt.
   virtual void persist_own(Archive& archive) = 0;
   /// Adapts the integrator's objects to a model that has been divided anew; the state follows. An
-  /// integrator that leaves this out is given no DynamicOptions::balance.
+  /// integrator that leaves this out is given neither DynamicOptions::balance nor supply.
   virtual void follow_model() {}
   /// PETSc objects of the integrator that audits compare.
   virtual std::vector<PetscObject> objects() const { return {}; }
@@ -149,6 +150,9 @@ class DynamicRun : public Run {
   Model<Space>& model() { return model_; }
   const Model<Space>& model() const { return model_; }
   const DynamicOptions& options() const { return options_; }
+  /// Whether ice has joined or left since settle().
+  bool ice_has_changed() const { return ice_has_changed_; }
+  void settle() { ice_has_changed_ = false; }
   /// Key that gave the step: "time: dt" or "ts_dt".
   const std::string& dt_key() const { return dt_key_; }
   const State<Space>& state() const { return state_; }
@@ -199,6 +203,16 @@ class DynamicRun : public Run {
   }
   void move_bodies_if_due();
   void move_bodies(const std::vector<std::int32_t>& owner);
+  void change_ice_if_due();
+  void change_ice();
+  void divide(const std::function<Renumbering()>& work);
+  void follow_division();
+  void begin_joined();
+  std::vector<double> places_of_edge(double time) const;
+  IceNow ice_now() const;
+  void add_to(IceAmount& amount, const std::function<bool(std::int32_t)>& counts) const;
+  double energy_balance();
+  std::vector<std::pair<std::string, double>> ledger_columns() const;
   void take_up_state();
   void count_steps();
   void end();
@@ -225,6 +239,8 @@ class DynamicRun : public Run {
   std::optional<RankBalance> balance_;
   // Steps of looks at the balance. A checkpoint of a step is made before the look after it.
   std::int64_t next_look_ = std::numeric_limits<std::int64_t>::max(), looked_ = -1;
+  IceAccount ice_;
+  bool ice_has_changed_ = false;
   std::string_view what_;
   std::string type_;
   std::optional<Progress> progress_;

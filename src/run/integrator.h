@@ -14,6 +14,7 @@
 #include "model/model.h"
 #include "model/rank_balance.h"
 #include "run/checkpoint.h"
+#include "run/supply.h"
 
 namespace floe {
 
@@ -49,6 +50,7 @@ struct DynamicOptions {
   OnPlan on_plan = nullptr;
   CheckpointOptions checkpoint;
   std::optional<BalanceOptions> balance;  ///< given: the run keeps account of its ranks
+  std::optional<SupplyOptions> supply;    ///< given: ice joins and leaves
 };
 
 }  // namespace floe

@@ -10,33 +10,50 @@ namespace {
 
 constexpr double rounding = 1e-12;
 
+bool is_lost(const std::string& name) {
+  return name == "energy_damping" || name == "energy_drag" || name == "energy_fracture" ||
+         name == "energy_released" || name == "energy_numerical";
+}
+bool is_stored(const std::string& name) {
+  return name != "energy_load" && name.rfind("energy_", 0) == 0;
+}
+
 }  // namespace
 
-void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
-                  double boundary) {
+double Ledger::balance(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
+                       double boundary) {
   double stored = kinetic, lost = 0, external = boundary;
+  for (const auto& [name, value] : forces) {
+    if (is_lost(name)) {
+      lost += value;
+    } else if (name == "energy_external") {
+      external += value;
+    } else if (is_stored(name)) {
+      stored += value;
+    }
+  }
+  return stored + lost - external;
+}
+
+void Ledger::take(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
+                  double boundary, double joined) {
   double size = std::abs(kinetic) + std::abs(boundary);
   for (const auto& [name, value] : forces) {
     if (name.rfind("energy_", 0) == 0) floor_ = std::max(floor_, rounding * std::abs(value));
-    if (name == "energy_damping" || name == "energy_drag" || name == "energy_fracture" ||
-        name == "energy_released" || name == "energy_numerical") {
-      lost += value;
+    if (is_lost(name) || name == "energy_external") {
       size += std::abs(value);  // a current may add energy
-    } else if (name == "energy_external") {
-      external += value;
-      size += std::abs(value);
-    } else if (name != "energy_load" && name.rfind("energy_", 0) == 0) {
-      stored += value;
+    } else if (is_stored(name)) {
       size += std::abs(value - first_.try_emplace(name, value).first->second);
     }
   }
+  const double sum = balance(forces, kinetic, boundary) - joined;
   if (!started_) {
-    offset_ = stored + lost - external;
+    offset_ = sum;
     started_ = true;
   }
   kinetic_ = kinetic;
   boundary_ = boundary;
-  error_ = stored + lost - external - offset_;
+  error_ = sum - offset_;
   largest_ = std::max(largest_, size);
 }
 

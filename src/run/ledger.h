@@ -19,8 +19,14 @@ class Ledger {
   /// \param forces  the forces' columns, summed over ranks
   /// \param kinetic  kinetic energy
   /// \param boundary  work of the boundaries since the start
+  /// \param joined  energy of the bodies that have joined since the start, less that of those that
+  ///   have left
   void take(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
-            double boundary);
+            double boundary, double joined = 0);
+  /// Returns the energies that the balance counts at a state: stored and lost, less external work
+  /// [J]. Parameters as of take().
+  static double balance(const std::vector<std::pair<std::string, double>>& forces, double kinetic,
+                        double boundary);
 
   /// Error of the balance [J]. relative_error() divides it by the largest sum of moved energies.
   double error() const { return error_; }

@@ -84,6 +84,16 @@ constexpr std::array table{
     OptionSpec{"sheet: fit_cuts", flag, "true", "", "",
                "cells end on the lines of cuts; false: the cells stay, and cuts follow them"},
 
+    OptionSpec{
+        "supply: strip", number, "(required)", "m", ">= 1e-9, <= 1e9",
+        "ice without end joins the sheet's left side in strips of this length, each when the "
+        "boundary on left has come so much nearer; sheet: length is a whole number of them"},
+    OptionSpec{"supply: length", number, "(without end)", "m", ">= 1e-9, <= 1e12",
+               "extent in x of all ice, with the sheet"},
+    OptionSpec{"supply: region", numbers, "(all ice stays)", "m", ">= -1e9, <= 1e9",
+               "x0, x1, y0, y1, z0, z1: pieces wholly outside are taken out when a strip is due",
+               6},
+
     OptionSpec{"region: names", names, "(none)", "", "",
                "further sets of bodies: one section each"},
     OptionSpec{"region: NAME: box", numbers, "(required)", "m", ">= -1e9, <= 1e9",

@@ -13,6 +13,9 @@ namespace floe {
 /// Formats a number with at most six digits.
 std::string text_of(double value);
 
+/// Reads ice without end, after all that it depends on. \throws InputError for what it does not go
+/// with
+void read_supply(Options& options, Scene& scene);
 /// Reads which forces act, and refuses keys that have no effect without them.
 void read_forces(Options& options, Scene& scene);
 /// Reads the sheet and its ice, or the lattice file.

@@ -214,6 +214,7 @@ Scene read_all(Options& options, const std::string& path) {
   read_time(options, scene);
   read_path_control(options, scene);
   read_dynamics(options, scene);
+  read_supply(options, scene);
   read_report(options, scene);
   read_output(options, scene);
   check_thickness(scene);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -21,6 +22,7 @@
 #include "scene_model/mesh_file.h"
 #include "scene_model/scene_model.h"
 #include "scene_model/size_check.h"
+#include "scene_model/supplied_ice.h"
 #include "scene_model/thickness.h"
 #include "session/signals.h"
 
@@ -190,10 +192,6 @@ bool finds_strength(const Scene& scene) {
          (scene.fracture.calibrate || scene.fracture.flexural_strength > 0);
 }
 
-SheetSection section_of(const Scene& scene) {
-  return {scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor, scene.torsion};
-}
-
 /// Describes the sheet's outline; empty if it is a rectangle.
 std::string outline_text(const Scene& scene) {
   const Outline& outline = scene.sheet.outline;
@@ -282,14 +280,33 @@ StrengthCalibration strength_of(const Scene& scene, const Lattice& lattice,
   return calibrate_strength(rectangle, cells, comm);
 }
 
+/// Makes the lattice of the strips of a sheet without end. Collective.
+/// \param around  set for a sheet whose strength is to be found: a rectangle of its size
+Lattice mesh_strips(const Scene& scene, MPI_Comm comm, MeshReport& report,
+                    std::optional<Rectangle>& around) {
+  check_size(scene, free_memory(comm), size(comm));
+  const Timed timed(Event::mesh);
+  report.ice = std::make_shared<SuppliedIce>(scene, comm);
+  Lattice lattice = report.ice->lattice();
+  report.energy_ratio = report.ice->energy_ratio();
+  report.iterations = scene.sheet.iterations;
+  if (finds_strength(scene)) around = {scene.sheet, tessellate(scene.sheet, comm)};
+  return lattice;
+}
+
 }  // namespace
+
+SheetSection section_of(const Scene& scene) {
+  return {scene.thickness, mid_plane(scene), scene.ice, scene.shear_factor, scene.torsion};
+}
 
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (!scene.has_sheet) require_lattice_file(scene, comm);
   std::vector<FittedCut> fitted(scene.cuts.size());
   std::optional<Rectangle> around;
-  Lattice lattice = scene.has_sheet ? mesh_sheet(scene, comm, report, fitted, around)
-                                    : read_lattice(scene.lattice_file);
+  Lattice lattice = scene.supply.on   ? mesh_strips(scene, comm, report, around)
+                    : scene.has_sheet ? mesh_sheet(scene, comm, report, fitted, around)
+                                      : read_lattice(scene.lattice_file);
   const Timed timed(Event::lattice);
   if (scene.forces.beam && lattice.beams.size() == 0 && !scene.bonds.given)
     throw InputError(scene.has_sheet
@@ -307,6 +324,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
       throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
   }
   check_periods(scene, lattice);
+  if (scene.supply.on) return lattice;  // in the order of names
   if (scene.bonds.given) report.bonds = add_bonds(scene, lattice);
   if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
   auto& all = lattice.sets["all"];

@@ -18,6 +18,8 @@
 
 namespace floe {
 
+class SuppliedIce;
+
 /// Results of mesh and calibration.
 struct MeshReport {
   double energy_ratio = 0;
@@ -30,6 +32,7 @@ struct MeshReport {
   std::optional<BondReport> bonds;           ///< of a scene with bonds
   std::string outline;  ///< a line on the sheet's outline; empty: the sheet is a rectangle
   std::string cuts;     ///< a remark on cuts on which cells do not end; empty: there are none
+  std::shared_ptr<SuppliedIce> ice;  ///< of a sheet without end
   std::function<void()> keep = [] {
     /// Writes the mesh's file, if one is to be written. Collective.
   };
@@ -39,6 +42,9 @@ struct MeshReport {
 /// is whole and the same on every rank. Collective.
 /// \throws InputError for errors in the file or the scene
 Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report);
+
+/// The section of the scene's sheet.
+SheetSection section_of(const Scene& scene);
 
 /// Sets the velocities of the scene's `initial` sections. \throws InputError for an unknown set
 void set_initial(const Scene& scene, Lattice& lattice);

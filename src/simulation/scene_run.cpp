@@ -50,6 +50,7 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
       return make_implicit_run(model, options, std::move(observer));
   }
   if (scene.forces.contact) options.balance = hooks.balance;
+  options.supply = hooks.supply;
   options.safety = scene.time.safety;
   options.allow_unstable = scene.time.allow_unstable;
   return make_explicit_run(model, options, std::move(observer));

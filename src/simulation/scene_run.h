@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct RunHooks {
   std::function<void(const std::vector<std::string>&)> prepare;  ///< CheckpointOptions::prepare
   std::function<void(Archive&)> others;                          ///< CheckpointOptions::others
   BalanceOptions balance;                                        ///< for explicit runs with contact
+  std::optional<SupplyOptions> supply;                           ///< for ice without end
   const std::vector<PlacedLoad>* loads = nullptr;                ///< for static: monitor
 };
 

@@ -6,6 +6,7 @@
 
 #include "files/files.h"
 #include "files/run_log.h"
+#include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"
@@ -18,6 +19,7 @@
 #include "run_folder/run_folder.h"
 #include "scene/restart.h"
 #include "scene_model/scene_model.h"
+#include "scene_model/supplied_ice.h"
 #include "session/run_place.h"
 #include "session/signals.h"
 #include "simulation/plan.h"
@@ -127,6 +129,11 @@ class RunningIn final : public Running {
   void equip(const Lattice& lattice);
   void divide(const std::vector<std::int32_t>& owner);
   BalanceOptions balance();
+  std::optional<SupplyOptions> supply();
+  void divide(Lattice lattice, const std::vector<std::int32_t>& owner);
+  Renumbering change(SuppliedIce::Change change, const IceNow& now);
+  void persist_ice(Archive& archive);
+  PresentMesh present_mesh() const;
   bool plan(const RunPlan& plan);
   void observe(const Accepted<Space>& accepted);
   void show(std::int64_t step);
@@ -144,6 +151,8 @@ class RunningIn final : public Running {
   /// The lattice once more, for moves of bodies between ranks; empty where none can move.
   Lattice whole_;
   PackedLattice packed_whole_;
+  std::int64_t mesh_frame_ = 0;  ///< first frame of the mesh of the present bodies, on a restart
+  std::vector<std::int32_t> owner_;  ///< of the bodies since ice has joined or left last
   std::vector<PlacedLoad> loads_;
   std::optional<Model<Space>> model_;
   std::optional<OutOfPlane> out_of_plane_;
@@ -183,6 +192,7 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
                        },
                    .others = [this](Archive& archive) { persist(archive); },
                    .balance = std::move(balance),
+                   .supply = supply(),
                    .loads = &loads_},
                   [this](const Accepted<Space>& accepted) { observe(accepted); });
 }
@@ -224,6 +234,79 @@ void RunningIn<Space>::divide(const std::vector<std::int32_t>& owner) {
   if (output_) output_->follow();
 }
 
+/// Settings of a run whose ice joins and leaves.
+template <class Space>
+std::optional<SupplyOptions> RunningIn<Space>::supply() {
+  if (!scene_.supply.on || scene_.check_only) return {};
+  SuppliedIce& ice = *setting_.mesh.ice;
+  SupplyOptions options;
+  options.edge = ice.edge();
+  options.is_due = [&ice](double time) { return ice.is_due(time); };
+  options.leaving = [&ice](const IceNow& now) { return ice.leaving(now); };
+  options.leave = [this, &ice](const IceNow& now, const std::vector<std::int32_t>& gone) {
+    return change(ice.leave(gone), now);
+  };
+  options.can_join = [&ice] { return ice.can_join(); };
+  options.join = [this, &ice](const IceNow& now) { return change(ice.join(), now); };
+  options.end_look = [&ice] { ice.end_look(); };
+  options.persist = [this](Archive& archive) { persist_ice(archive); };
+  return options;
+}
+
+/// Divides the model anew after ice has joined or left, by present places. Collective.
+template <class Space>
+Renumbering RunningIn<Space>::change(SuppliedIce::Change change, const IceNow& now) {
+  std::vector<Point3> at = change.lattice.bodies.position;
+  const auto moved = setting_.mesh.ice->edge().value(now.time);
+  for (Point3& p : at) p = p + Vec3<double>{moved[0], moved[1], 0};  // where they join
+  const std::vector<std::int32_t>& after = change.indices.bodies;
+  for (std::size_t b = 0; b < after.size(); ++b)
+    if (after[b] >= 0) item(at, after[b]) = now.places[b];
+  owner_ = owners_by_load(at, {}, size(), strips_of(scene_, change.lattice));
+  divide(std::move(change.lattice), owner_);
+  return std::move(change.indices);
+}
+
+/// Divides a model of another lattice. Collective.
+template <class Space>
+void RunningIn<Space>::divide(Lattice lattice, const std::vector<std::int32_t>& owner) {
+  if (output_) output_->prepare_to_follow();
+  model_->divide(lattice, owner);
+  equip(lattice);
+  release_setup(scene_, *model_);
+  if (output_) {
+    output_->follow(lattice, setting_.mesh.ice->names());
+  } else {
+    packed_ = {};
+    setting_.lattice = lattice;
+  }
+  if (whole_.bodies.position.empty()) return;  // bodies do not move between ranks
+  packed_whole_ = {};
+  whole_ = std::move(lattice);
+  packed_whole_.pack_shapes(whole_);
+  packed_whole_.pack_beams(whole_);
+}
+
+/// Saves which bodies exist, or loads them and divides the model so. Collective.
+template <class Space>
+void RunningIn<Space>::persist_ice(Archive& archive) {
+  SuppliedIce& ice = *setting_.mesh.ice;
+  ice.persist(archive);
+  std::vector<double> owner(owner_.begin(), owner_.end());
+  std::int64_t ranks = size();
+  archive.common("owner", owner);
+  archive.common("owner_ranks", ranks, 1);
+  if (output_) mesh_frame_ = output_->mesh();
+  archive.common("mesh_frame", mesh_frame_);
+  if (!archive.loading()) return;
+  Lattice lattice = ice.lattice();
+  const bool as_before = ranks == size() && !owner.empty();
+  owner_.assign(owner.begin(), owner.end());
+  if (!as_before)
+    owner_ = owners_by_load(lattice.bodies.position, {}, size(), strips_of(scene_, lattice));
+  divide(std::move(lattice), owner_);
+}
+
 /// Opens the output folder, once all options are known to be understood, so that bad input leaves
 /// no folder behind: solvers read some of their options in the first step.
 template <class Space>
@@ -246,7 +329,8 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
                                                           .history = scene_.output.history,
                                                           .fields = scene_.output.fields},
                                             std::move(setting_.lattice), *model_, loads_,
-                                            scene_.options_yaml, restart_ ? &*restart_ : nullptr);
+                                            scene_.options_yaml, restart_ ? &*restart_ : nullptr,
+                                            present_mesh());
   if (first_) {
     output_->accept({.state = first_->state,
                      .wrenches = first_->wrenches,
@@ -256,6 +340,12 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
     show(0);
   }
   first_.reset();
+}
+
+template <class Space>
+PresentMesh RunningIn<Space>::present_mesh() const {
+  if (mesh_frame_ == 0) return {};
+  return {.first = mesh_frame_, .names = setting_.mesh.ice->names()};
 }
 
 template <class Space>

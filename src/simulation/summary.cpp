@@ -131,6 +131,17 @@ void add_contacts(const Scene& scene, const Sample& last, Json& json) {
   }
 }
 
+/// Adds what has joined and left since the start, and the bodies at the end.
+void add_supply(const Sample& last, Json& json) {
+  Json supply = Json::object();
+  for (const auto& [name, value] : last.forces) {
+    if (name == "bodies" || name.ends_with("_supplied") || name.ends_with("_removed") ||
+        name.find("_supplied_") != std::string::npos || name.find("_removed_") != std::string::npos)
+      supply[name] = value;
+  }
+  json["supply"] = supply;
+}
+
 /// Adds what the cracks cost: l sigma_t^2/(2 E G_f), by means over the beams of l0/E; the areas of
 /// broken sections, at tips of cracks and all; and energy_fracture + energy_released (statics) over
 /// the broken area, over G_f (model.md, "Fracture"). Collective.
@@ -366,6 +377,7 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
   }
   json["energy"] = energy;
   if (scene.forces.contact) add_contacts(scene, last, json);
+  if (scene.supply.on) add_supply(last, json);
   for (const auto& [name, value] : last.forces) {
     if (name.rfind("beams_", 0) == 0 || name == "fragments")
       json[name] = static_cast<std::int64_t>(std::llround(value));

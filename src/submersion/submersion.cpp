@@ -7,6 +7,11 @@
 #include "floe/base/petsc.h"
 
 namespace floe {
+namespace {
+
+constexpr double far_away = 1e9;  ///< place of a body that has not been looked at [m]
+
+}  // namespace
 
 const Part& require_shapes(const Part& part, std::string_view force) {
   if (part.shapes.empty() && part.owned > 0)
@@ -91,6 +96,11 @@ void Submersion::persist(Archive& archive) {
     const auto b = static_cast<std::size_t>(body);
     for (const Lanes* number : numbers_of(expansions_[b / lanes]))
       rows.push_back((*number)[b % lanes]);
+  }
+  if (archive.loading() && archive.renumbers()) {  // bodies that join are looked at at once
+    constexpr std::size_t z = 0, w = 1;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      rows[k] = k % numbers == z ? far_away : k % numbers == w ? 1 : 0;
   }
   archive.rows("submerged", bodies, rows, static_cast<int>(numbers));
   if (!archive.loading()) return;

@@ -102,7 +102,14 @@ void SubmersionInWaves::persist(Archive& archive) {
   std::vector<double> rows;
   for (std::int32_t body = 0; body < part_.owned; ++body) {
     bodies.push_back(body);
-    for (const double* number : numbers_of(item(expansions_, body))) rows.push_back(*number);
+    Expansion& e = item(expansions_, body);
+    if (archive.loading() && archive.renumbers()) {  // a body that joins is looked at at once
+      constexpr double far_away = 1e9;               // [m]
+      e = {};
+      e.z = far_away;
+      e.q.w = 1;
+    }
+    for (const double* number : numbers_of(e)) rows.push_back(*number);
   }
   archive.rows("submerged", bodies, rows, static_cast<int>(numbers));
   if (!archive.loading()) return;

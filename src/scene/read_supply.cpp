@@ -1,0 +1,86 @@
+// Reading of ice without end.
+#include <algorithm>
+#include <cmath>
+
+#include "reading.h"
+
+namespace floe {
+namespace {
+
+/// Refuses what a sheet without end does not go with.
+void check_company(const Scene& scene) {
+  const auto refuse = [](const std::string& key, const std::string& why) {
+    throw InputError(key + ": does not go with 'supply': " + why);
+  };
+  if (!scene.has_sheet) refuse("lattice_file", "strips of a sheet join");
+  if (scene.integrator != Integrator::explicit_) refuse("integrator", "it must be explicit");
+  if (!scene.forces.beam) refuse("forces", "beam must be among them");
+  if (!scene.sheet.outline.empty()) refuse("sheet: outline", "the sheet must be a rectangle");
+  if (scene.thickness_field.varies())
+    refuse(
+        scene.thickness_field.file.empty() ? "sheet: thickness_deviation" : "sheet: thickness_file",
+        "the sheet must have one thickness");
+  if (!scene.mesh_file.empty()) refuse("sheet: mesh_file", "strips are meshed during the run");
+  if (!scene.cuts.empty()) refuse("cut: " + scene.cuts[0].name, "strips have none");
+  if (!scene.regions.empty())
+    refuse("region: " + scene.regions[0].name,
+           "its bodies would change (supply: region is another)");
+  if (!scene.loads.empty()) refuse("load: " + scene.loads[0].name, "its bodies would change");
+  if (scene.bonds.given) refuse("bonds", "strips have none");
+  if (scene.calibrate != Calibrate::none) refuse("beam: calibrate", "it must be none");
+  if (scene.drag.faces) refuse("water: drag", "it must be plan");
+}
+
+/// Refuses boundaries that ice cannot join or leave. \throws InputError
+void check_boundaries(const Scene& scene) {
+  const auto is_edge = [](const Boundary& b) { return b.set == "left" && b.fixed[0]; };
+  const auto edge = std::find_if(scene.boundaries.begin(), scene.boundaries.end(), is_edge);
+  if (edge == scene.boundaries.end() || !edge->velocity || !(edge->velocity->x > 0))
+    throw InputError(
+        "supply: needs a boundary with 'set: left', x among 'fix' and a velocity along +x, by "
+        "which "
+        "the far edge brings the ice");
+  for (const Boundary& b : scene.boundaries) {
+    if (b.set != "left" && b.set != "bottom" && b.set != "top")
+      throw InputError("boundary: " + b.name + ": set: '" + b.set +
+                       "' does not go with 'supply', must be left, bottom or top");
+    if (b.angular_velocity != Point3{})
+      throw InputError("boundary: " + b.name +
+                       ": angular_velocity does not go with 'supply': strips join without turning");
+  }
+}
+
+}  // namespace
+
+void read_supply(Options& options, Scene& scene) {
+  auto& supply = scene.supply;
+  supply.on = options.given_section("supply");
+  if (!supply.on) return;
+  supply.strip = options.number("supply: strip");
+  if (options.given("supply: length")) supply.length = options.number("supply: length");
+  if (options.given("supply: region")) supply.region = options.numbers<6>("supply: region");
+  check_company(scene);
+  check_boundaries(scene);
+  const double least = 8 * scene.sheet.element_size;
+  if (supply.strip < least)
+    throw InputError("supply: strip: " + text_of(supply.strip) + " must be >= " + text_of(least) +
+                     " [m], eight times sheet: element_size");
+  const double strips = scene.sheet.length / supply.strip;
+  constexpr double rounding = 1e-9;
+  if (std::round(strips) < 1 || std::abs(strips - std::round(strips)) > rounding * strips)
+    throw InputError("supply: strip: sheet: length " + text_of(scene.sheet.length) +
+                     " must be a whole number of strips, is " + text_of(strips) + " of " +
+                     text_of(supply.strip) + " m");
+  if (supply.length < scene.sheet.length + supply.strip * (1 - rounding))
+    throw InputError("supply: length: " + text_of(supply.length) +
+                     " must be >= " + text_of(scene.sheet.length + supply.strip) +
+                     " [m], the sheet and one strip, or no ice joins");
+  if (supply.region) {
+    const auto& box = *supply.region;
+    if (!(box[0] < box[1]) || !(box[2] < box[3]) || !(box[4] < box[5]))
+      throw InputError(
+          "supply: region: must be x0, x1, y0, y1, z0, z1 with x0 < x1, y0 < y1, z0 < z1 [m]");
+  }
+}
+
+}  // namespace floe

@@ -1,0 +1,216 @@
+#!/usr/bin/python3
+"""Ice without end: strips join and pieces leave; the ledger, restarts, ranks and files follow.
+
+A sheet drives against a slope so fast that three strips join in a run of seconds, breaks, and some
+of its pieces leave over the slope.
+"""
+import csv
+import json
+import random
+import unittest
+
+import h5py
+import numpy as np
+
+from test_restart import RestartTest, contents
+
+SCENE = """integrator: explicit
+forces: [beam, fracture, gravity, buoyancy, drag, contact]
+ice: {young: 4e7}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+supply: {strip: 12, region: [-100, 11, -20, 20, -5, 20]}
+beam: {damping_ratio: 0.1}
+fracture: {tensile_strength: 1e5, shear_strength: 1e5, energy: 15}
+water: {drag_coefficient: 1, drag_linear: 200, current: [4, 0, 0]}
+contact: {young: 1e7, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
+obstacle:
+  names: [slope]
+  slope: {shape: halfspace, point: [12.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
+boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [8, 0, 0], ramp: 0.2}}
+time: {end: 5, dt: 5e-4}
+output: {history: 0.101, fields: 0.37}
+checkpoint: {every: 1000}
+"""
+# Bodies float by themselves, the edge moves them all: every number is known.
+CALM = """integrator: explicit
+forces: [beam, gravity, buoyancy]
+ice: {young: 4e7}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+supply: {strip: 12, length: 48}
+boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [8, 0, 0]}}
+initial: {names: [moving], moving: {set: all, velocity: [8, 0, 0]}}
+time: {end: 5, dt: 5e-4}
+output: {history: 0.1, fields: 1}
+"""
+
+
+def rows_of(folder):
+    with open(folder / "history.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+class SupplyTest(RestartTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "scene.yaml").write_text(SCENE)
+        (self.folder / "calm.yaml").write_text(CALM)
+
+
+class Account(SupplyTest):
+    def test_of_ice_at_one_speed(self):
+        """Mass, momentum and energy of two strips, to rounding of the sums."""
+        folder = self.run_whole(dir="a", scene="calm.yaml")
+        rows = rows_of(folder)
+        with h5py.File(folder / "lattice.h5") as file:
+            first = float(np.sum(file["bodies/mass"][:]))
+            count = len(file["bodies/mass"])
+        self.assertEqual(list(np.unique(rows["bodies"])), [count, 1.5 * count, 2 * count])
+        self.assertEqual(rows["bodies_supplied"][-1], count)
+        mass = rows["mass_supplied"][-1]
+        # Strips have the sheet's area but for their joints.
+        self.assertLess(abs(mass / first - 1), 0.05)
+        np.testing.assert_allclose(rows["momentum_supplied_x"], 8 * rows["mass_supplied"],
+                                   rtol=1e-11)
+        # What floats has the energy of its motion and the potentials of weight and water, which
+        # are those of the first ice per mass.
+        potential = (rows["energy_gravity"][0] + rows["energy_water"][0]) / first
+        np.testing.assert_allclose(rows["energy_supplied"][-1], mass * (32 + potential),
+                                   rtol=1e-9)
+        self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                        1e-10 * np.max(rows["energy_kinetic"]))
+        # Joints bear nothing, since all moves as one.
+        self.assertLess(np.max(np.abs(rows["energy_strain"])), 1e-9 * rows["energy_kinetic"][0])
+
+    def test_of_ice_that_breaks(self):
+        folder = self.run_whole(dir="a")
+        rows = rows_of(folder)
+        with h5py.File(folder / "lattice.h5") as file:
+            mass = float(np.sum(file["bodies/mass"][:]))
+            count = len(file["bodies/mass"])
+        self.assertEqual(rows["bodies_supplied"][-1], 1.5 * count)  # three strips
+        self.assertGreater(rows["bodies_removed"][-1], 0)
+        np.testing.assert_array_equal(
+            rows["bodies"], count + rows["bodies_supplied"] - rows["bodies_removed"])
+        self.assertGreater(rows["beams_broken"][-1], 5)
+        self.assertGreater(rows["mass_removed"][-1], 0)
+        self.assertLess(rows["mass_removed"][-1], mass + rows["mass_supplied"][-1])
+        # The balance jumps by nothing where ice joins or leaves: its error grows by other steps.
+        error = rows["energy_balance_error"]
+        scale = np.max(np.abs(rows["energy_kinetic"]))
+        self.assertLess(np.max(np.abs(error)), 1e-2 * scale)
+        changes = np.flatnonzero(np.diff(rows["bodies"]))
+        self.assertEqual(len(changes), 3)
+        self.assertLess(np.max(np.abs(np.diff(error)[changes])),
+                        2 * np.max(np.abs(np.diff(error)[~np.isin(np.arange(len(error) - 1),
+                                                                  changes)])) + 1e-9 * scale)
+
+
+class Restarts(SupplyTest):
+    def same_end(self, a, b):
+        rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
+        for row in (a / "history.csv").read_text().split("\n"):
+            self.assertTrue(row in rows, row)
+        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
+        self.assertEqual(set(first), set(second))
+        for key in set(first) - {"options", "supply/mesh_frame"}:
+            if not key.startswith("output/"):
+                np.testing.assert_array_equal(first[key], second[key], key)
+
+    def stopped(self, steps, dir, ranks=1):
+        resume = []
+        for step in steps:
+            self.run_whole("-ts_max_steps", str(step), *resume, dir=dir, ranks=ranks)
+            resume = ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
+        return self.go_on(dir=dir, ranks=ranks)
+
+    def test_at_twenty_times(self):
+        """Those of changes and those beside them among others."""
+        a = self.run_whole(dir="a")
+        changes = rows_of(a)["time"][1:][np.diff(rows_of(a)["bodies"]) != 0]
+        near = [50 * round(float(t) / 5e-4 / 50) for t in changes]
+        steps = {step + d for step in near for d in (-50, 0, 1)}
+        random.seed(5)
+        while len(steps) < 20:
+            steps.add(random.randrange(1, 10000))
+        self.same_end(a, self.stopped(sorted(steps), "b"))
+
+    def test_on_two_ranks(self):
+        """The same states as on one; restarts bit for bit."""
+        alone, two = (self.run_whole(dir=f"r{ranks}", ranks=ranks) for ranks in (1, 2))
+        one, other = contents(alone / "checkpoint.h5"), contents(two / "checkpoint.h5")
+        for key in ("bodies/records", "force_4_contact/pairs", "supply/names"):
+            np.testing.assert_array_equal(one[key], other[key], key)
+        for path in alone.glob("fields/*.h5"):
+            first, second = contents(path), contents(two / "fields" / path.name)
+            self.assertEqual(set(first), set(second))
+            for key, values in first.items():
+                np.testing.assert_array_equal(values, second[key], f"{path.name}: {key}")
+        self.same_end(two, self.stopped((1111, 3050, 6200), "b", ranks=2))
+        three = self.stopped((3050,), "c", ranks=1)  # and on another number
+        np.testing.assert_array_equal(contents(three / "checkpoint.h5")["bodies/records"],
+                                      one["bodies/records"])
+
+
+class Files(SupplyTest):
+    def test_frames_have_their_mesh(self):
+        folder = self.run_whole(dir="a")
+        names = []
+        with h5py.File(folder / "fields.h5") as file:
+            frames = sorted(name for name in file if name.startswith("t"))
+            for name in frames:
+                frame = file[name]
+                first = int(frame.attrs.get("mesh", 0))
+                mesh = file["mesh" if first == 0 else f"mesh_{first:06d}"]
+                self.assertLessEqual(first, int(name[1:]))
+                bodies = len(frame["centres"])
+                self.assertEqual(mesh["body"][-1], bodies - 1)
+                self.assertEqual(len(frame["beams_force"]), len(mesh["beams"]))
+                self.assertLess(np.max(mesh["beams"][:]), bodies)
+                names.append(mesh["name"][:] if first else np.arange(bodies))
+                self.assertEqual(len(names[-1]), bodies)
+                # A body is where it was but for the way of a frame.
+                if len(names) > 1:
+                    both, i, j = np.intersect1d(names[-2], names[-1], return_indices=True)
+                    way = frame["centres"][:][j] - file[frames[len(names) - 2]]["centres"][:][i]
+                    self.assertGreater(len(both), 0)
+                    self.assertLess(np.max(np.abs(way[:, 1:])), 6)
+                    self.assertLess(np.median(np.abs(way[:, 0])), 3.5)
+        self.assertEqual(len({len(n) for n in names}), 4)
+        text = (folder / "fields.xmf").read_text()
+        grids = text.count("<Grid Name=\"sheet\"") + sum(
+            (folder / href).read_text().count("<Grid Name=\"sheet\"")
+            for href in (part.split('"')[0] for part in text.split('href="')[1:]))
+        self.assertEqual(grids, len(frames))
+
+    def test_summary(self):
+        folder = self.run_whole(dir="a")
+        summary = json.loads((folder / "summary.json").read_text())
+        rows = rows_of(folder)
+        self.assertEqual(summary["supply"]["bodies_supplied"], rows["bodies_supplied"][-1])
+        self.assertAlmostEqual(summary["supply"]["mass_removed"] / rows["mass_removed"][-1], 1, 9)
+
+
+class Refused(SupplyTest):
+    def says(self, *words):
+        said = self.finish(self.begin(*words, dir="bad"), 2)
+        self.assertEqual(said.count("\n"), 1, said)
+        return said
+
+    def test_what_does_not_go_together(self):
+        for words, expected in (
+                (("-supply_strip", "7"), "supply: strip: 7 must be >= 12"),
+                (("-supply_strip", "13"), "must be a whole number of strips, is 1.84615 of 13 m"),
+                (("-supply_length", "30"), "supply: length: 30 must be >= 36"),
+                (("-supply_region", "5 1 0 1 0 1"), "supply: region: must be x0, x1"),
+                (("-sheet_mesh_file", "m.h5"), "sheet: mesh_file: does not go with 'supply'"),
+                (("-forces", "gravity,buoyancy"), "forces: does not go with 'supply'"),
+                (("-beam_calibrate", "isotropic", "-beam_shear", "one_point"), "beam"),
+                (("-boundary_push_velocity", "-1 0 0"), "a velocity along +x"),
+                (("-boundary_push_set", "right"), "'set: left'"),
+                (("-ts_type", "rk"), "supply: -ts_type rk")):
+            self.assertIn(expected, self.says(*words))
+
+
+if __name__ == "__main__":
+    unittest.main()
