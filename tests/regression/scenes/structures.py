@@ -87,3 +87,20 @@ def check_keel_punch(test, run):
     lift = output.history("plate_force_z")
     test.assertTrue(5e3 < lift.max() < 12e3, lift.max())
     test.assertTrue(800 < output.summary["beams_broken"] < 1500, output.summary["beams_broken"])
+
+
+def check_rafting(test, run):
+    output = run("-time_end", "2")
+    peak = np.abs(output.history("hold_force_x")).max() / 12e3  # kN per metre
+    test.assertTrue(500 < peak < 800, peak)
+    test.assertGreater(output.summary["beams_broken"], 500)
+    expect_ledger(test, output, 1e-4)
+
+
+def check_ridge_building(test, run):
+    output = run("-time_end", "1.5")
+    force = np.abs(output.history("hold_force_x")) / 12e3
+    test.assertTrue(200 < force.max() < 450, force.max())
+    test.assertLess(output.history("time")[force.argmax()], 0.6)
+    test.assertGreater(output.summary["thickness"]["deviation"], 0.1)
+    expect_ledger(test, output, 1e-4)
