@@ -13,6 +13,7 @@ along axis 2 and `height` along axis 3, so inertia_y (about axis 2) = width heig
 """
 import os
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -363,6 +364,68 @@ def rubble(columns, size, spacing, depth, seed=1, density=920.0):
     return lattice
 
 
+def shear_box(columns, size, spacing, plates, seed=1, density=920.0):
+    """Loose equal boxes above z = 0, turned at random, on a grid that fills one period in x and y,
+    and a lid of plates above them: for a scene with model: periodic: [columns[0] spacing,
+    columns[1] spacing].
+
+    columns 3, number along x, y, z; size 3 [m]; spacing of the grid [m], more than the box's
+    diagonal; plates 2, number along x, y, 3 or more: boxes a fifth of the spacing high and 2 %
+    apart, joined. Set `lid`.
+    """
+    if spacing <= np.linalg.norm(size):
+        raise ValueError("shear_box: spacing must be more than the box's diagonal")
+    if min(plates) < 3:
+        raise ValueError("shear_box: there must be 3 plates along x and along y at least")
+    grains = rubble(columns, size, spacing, 0.0, seed, density)
+    grains.position[:, 2] += spacing * (columns[2] - 0.5)
+    period = spacing * np.array(columns[:2], float)
+    pitch = period / plates
+    x, y = np.meshgrid(*(p * (np.arange(n) + 0.5) - n * p / 2 for n, p in zip(plates, pitch)),
+                       indexing="ij")
+    height = spacing / 5
+    place = np.column_stack([x.ravel(), y.ravel(),
+                             np.full(x.size, spacing * columns[2] + height / 2)])
+    side = np.array([*(0.98 * pitch), height])
+    lid = blocks(np.tile(side, (len(place), 1)), place, density)
+    count = len(grains.position)
+    whole = blocks(np.vstack([np.tile(size, (count, 1)), np.tile(side, (len(place), 1))]),
+                   np.vstack([grains.position, lid.position]), density)
+    whole.orientation[:count] = grains.orientation
+    whole.sets = {"lid": list(range(count, count + len(place)))}
+    join_plates(whole, count, plates, pitch, side, density)
+    return whole
+
+
+def join_plates(lattice, first, plates, pitch, side, density):
+    """Beams between neighbouring plates, and across the ends of the period, that are 1000 times as
+    strong as others: the plates are one stiff lid."""
+    rows = []
+    for i in range(plates[0]):
+        for j in range(plates[1]):
+            here = first + i * plates[1] + j
+            for axis, (p, q) in enumerate((((i + 1) % plates[0], j), (i, (j + 1) % plates[1]))):
+                there = first + p * plates[1] + q
+                if there == here:
+                    continue
+                step = np.zeros(3)
+                step[axis] = pitch[axis]
+                image = lattice.position[here] + step - lattice.position[there]
+                a, b = sorted((here, there))
+                rows.append((a, b, axis, *(image if here == a else -image)))
+    rows = sorted({row[:2]: row for row in rows}.values())
+    axis = np.array([row[2] for row in rows])
+    lattice.bodies = np.array([row[:2] for row in rows], np.int64)
+    lattice.image = np.array([row[3:] for row in rows])
+    lattice.axis_y = np.where(axis[:, None] == 0, [[0.0, 1, 0]], [[1.0, 0, 0]])
+    beams = [Section(side[1 - a], side[2], young=1e9, density=density).scalars([0]) for a in axis]
+    lattice.beam = {name: np.concatenate([beam[name] for beam in beams]) for name in beams[0]}
+    chords = (lattice.position[lattice.bodies[:, 1]] + lattice.image
+              - lattice.position[lattice.bodies[:, 0]])
+    lattice.beam["length"] = np.linalg.norm(chords, axis=1)
+    lattice.strength = np.full(len(rows), 1e3)
+
+
 def block(size, height=0.0, density=920.0):
     """One upright box with its centroid at (0, 0, height); size 3 [m], height [m]."""
     return blocks([size], [[0, 0, height]], density)
@@ -426,3 +489,84 @@ def elastica(elements):
     inextensible."""
     return straight_frame(10.0, elements, Section(0.01, 0.01, young=2.1e11, poisson=0.3,
                                                   density=7850.0))
+
+
+def read(path):
+    """A lattice.h5 file as a lattice, with its beams, sets and shapes."""
+    with h5py.File(path) as file:
+        def get(name):
+            return file[name][:]
+        lattice = Lattice(*(get(f"bodies/{name}")
+                               for name in ("position", "orientation", "mass", "inertia")),
+                             shapes=Shapes(*(get(f"shapes/{name}") for name in
+                                                ("vertices", "corners", "corner_of", "face_of",
+                                                 "vertex_of"))))
+        if "beams" in file:
+            lattice.bodies, lattice.axis_y = get("beams/bodies"), get("beams/axis_y")
+            lattice.beam = {name: get(f"beams/{name}") for name in BEAM_SCALARS}
+            for name in ("offsets", "image", "strength", "energy"):
+                if name in file["beams"]:
+                    setattr(lattice, name, get(f"beams/{name}"))
+        if "sets" in file:
+            lattice.sets = {name: list(get(f"sets/{name}")) for name in file["sets"]}
+    return lattice
+
+
+def product(a, b):
+    """Quaternion products n x 4 of a (n x 4) and b (n x 4): first b."""
+    aw, ax, ay, az = a.T
+    bw, bx, by, bz = b.T
+    return np.column_stack([aw * bw - ax * bx - ay * by - az * bz,
+                            aw * bx + ax * bw + ay * bz - az * by,
+                            aw * by - ax * bz + ay * bw + az * bx,
+                            aw * bz + ax * by - ay * bx + az * bw])
+
+
+def matrices(turn):
+    """Rotation matrices n x 3 x 3 of unit quaternions."""
+    w, x, y, z = turn.T
+    return np.stack([np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)]),
+                     np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)]),
+                     np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
+                     ]).transpose(2, 0, 1)
+
+
+def settled(folder):
+    """The bodies of the last frame of a run, at rest, and the beams between them that are whole, as
+    stress-free as they then lie; sets stay. folder: of the run's results."""
+    from floe_output import frames_of
+    folder = Path(folder)
+    lattice = read(folder / "lattice.h5")
+    frames = frames_of(folder)
+    if not frames:
+        raise ValueError(f"{folder}: has no frames")
+    _, path, group = frames[-1]
+    with h5py.File(path) as file:
+        move, turn = file[group]["bodies_displacement"][:], file[group]["bodies_rotation"][:]
+        damage = file[group]["damage"][:] if "damage" in file[group] else None
+    angle = np.linalg.norm(turn, axis=1)
+    spin = np.column_stack([np.cos(angle / 2), 0.5 * np.sinc(angle / (2 * np.pi))[:, None] * turn])
+    lattice.position = lattice.position + move
+    lattice.orientation = product(spin, lattice.orientation)
+    lattice.orientation /= np.linalg.norm(lattice.orientation, axis=1)[:, None]
+    if not len(lattice.bodies):
+        return lattice
+    whole = np.ones(len(lattice.bodies), bool) if damage is None else damage < 1
+    first, second = lattice.bodies[whole].T
+    lattice.bodies = lattice.bodies[whole]
+    lattice.beam = {name: values[whole] for name, values in lattice.beam.items()}
+    for name in ("offsets", "image", "strength", "energy"):
+        if getattr(lattice, name) is not None:
+            setattr(lattice, name, getattr(lattice, name)[whole])
+    turns = matrices(spin)
+    lattice.axis_y = np.einsum("mij,mj->mi", turns[first], lattice.axis_y[whole])
+    chord = lattice.position[second] - lattice.position[first]
+    if lattice.image is not None:
+        chord += lattice.image
+    if lattice.offsets is not None:
+        ends = [np.einsum("mij,mj->mi", turns[b], lattice.offsets[:, k:k + 3])
+                for b, k in ((first, 0), (second, 3))]
+        lattice.offsets = np.hstack(ends)
+        chord += ends[1] - ends[0]
+    lattice.beam["length"] = np.linalg.norm(chord, axis=1)
+    return lattice

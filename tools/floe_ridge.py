@@ -14,6 +14,7 @@ import floe_lattice as fl
 import floe_program
 import h5py
 import numpy as np
+from floe_lattice import matrices, product, read
 from floe_output import frames_of
 from scipy.spatial import cKDTree
 
@@ -153,48 +154,6 @@ def joined(*parts):
         for name, members in part.sets.items():
             together.sets.setdefault(name, []).extend(int(m) + int(start) for m in members)
     return together
-
-
-def read(path):
-    """A lattice.h5 file as a lattice, with its beams, sets and shapes."""
-    with h5py.File(path) as file:
-        def get(name):
-            return file[name][:]
-        lattice = fl.Lattice(*(get(f"bodies/{name}")
-                               for name in ("position", "orientation", "mass", "inertia")),
-                             shapes=fl.Shapes(*(get(f"shapes/{name}") for name in
-                                                ("vertices", "corners", "corner_of", "face_of",
-                                                 "vertex_of"))))
-        if "beams" in file:
-            lattice.bodies, lattice.axis_y = get("beams/bodies"), get("beams/axis_y")
-            lattice.beam = {name: get(f"beams/{name}") for name in fl.BEAM_SCALARS}
-            if "offsets" in file["beams"]:
-                lattice.offsets = get("beams/offsets")
-            for name in ("strength", "energy"):
-                if name in file["beams"]:
-                    setattr(lattice, name, get(f"beams/{name}"))
-        if "sets" in file:
-            lattice.sets = {name: list(get(f"sets/{name}")) for name in file["sets"]}
-    return lattice
-
-
-def product(a, b):
-    """Quaternion products n x 4 of a (n x 4) and b (n x 4): first b."""
-    aw, ax, ay, az = a.T
-    bw, bx, by, bz = b.T
-    return np.column_stack([aw * bw - ax * bx - ay * by - az * bz,
-                            aw * bx + ax * bw + ay * bz - az * by,
-                            aw * by - ax * bz + ay * bw + az * bx,
-                            aw * bz + ax * by - ay * bx + az * bw])
-
-
-def matrices(turn):
-    """Rotation matrices n x 3 x 3 of unit quaternions."""
-    w, x, y, z = turn.T
-    return np.stack([np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)]),
-                     np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)]),
-                     np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
-                     ]).transpose(2, 0, 1)
 
 
 def placed(lattice):

@@ -27,6 +27,8 @@ EXPECTED = {
     "ice_cylinder.yaml": structures.check_ice_cylinder,
     "ice_vibration.yaml": structures.check_ice_vibration,
     "verify/ice_slope.yaml": structures.check_ice_slope_strip,
+    "shear_box_pour.yaml": contact.check_shear_box_pour,
+    "shear_box.yaml": contact.check_shear_box,
     "rafting.yaml": structures.check_rafting,
     "ridge_building.yaml": structures.check_ridge_building,
     "ridge_on_leg.yaml": structures.check_ridge_on_leg,

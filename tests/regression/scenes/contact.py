@@ -122,3 +122,27 @@ def check_punch_through(test, run):
     # over every step, where history.csv has samples
     mean = output.summary["mean_force"]["plate"][2]
     test.assertAlmostEqual(energy["external"] / (mean * 18 * 0.25), 1, delta=1e-3)
+
+
+def check_shear_box_pour(test, run):
+    output = run("-time_end", "1.6")
+    area = 6.24 * 5.46
+    lift = -output.history("floor_force_z")[output.history("time") > 1.3].mean() / area
+    test.assertAlmostEqual(lift / 11.7e3, 1, delta=0.15)
+    heights = output.position[-16:, 2] + output.field("bodies_displacement", 1.6)[-16:, 2]
+    test.assertLess(np.ptp(heights), 0.02)  # the plates are one lid
+    test.assertTrue(0.8 < heights.mean() < 1.6, heights.mean())
+
+
+def check_shear_box(test, run):
+    output = run("-time_end", "0.8")
+    area = 6.24 * 5.46
+    held = -output.history("bottom_force_x") / area
+    time = output.history("time")
+    test.assertTrue(5e3 < held[time < 0.25].max() < 12e3, held)  # bonds break
+    test.assertAlmostEqual(held[(time > 0.14) & (time < 0.3)].mean() / 3.6e3, 1, delta=0.3)
+    test.assertTrue(300 < output.summary["beams_broken"] < 1000, output.summary["beams_broken"])
+    drawn = (output.history("draw_force_x") + output.history("top_force_x")) / area
+    floor = output.history("floor_force_x") / area
+    late = output.history("time") > 0.4
+    test.assertAlmostEqual((held - floor)[late].mean() / drawn[late].mean(), 1, delta=0.1)
