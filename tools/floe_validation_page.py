@@ -1,15 +1,18 @@
 """The page docs/validation.md and its pictures, of the rows' finished runs (tools/validate)."""
 import datetime
+import hashlib
+import json
 import os
 import re
 import textwrap
+from dataclasses import asdict, dataclass
 from pathlib import Path
-
 
 import floe_program
 from floe_program import BadInput
 from floe_runs import clock, write_whole
 from floe_validation import SEEDS, verdict_of
+from floe_validation_measures import Found, Line
 
 with floe_program.packages():
     import matplotlib
@@ -110,53 +113,121 @@ def picture(found, path):
     plt.close(figure)
 
 
-def parameters(row):
-    """What the row runs, as text: scenes and what is varied."""
+def scenes_of(row):
+    """The files of its scenes."""
     runs = row.runs
     scenes = [runs["scene"]] if "scene" in runs else []
     scenes += [entry["scene"] for entry in runs.get("list", []) if "scene" in entry]
-    names = []
-    for scene in dict.fromkeys(scenes):
-        path = Path(os.path.normpath(row.path.parent / scene))
-        name = path.relative_to(floe_program.HOME)
-        names.append(f"[{name}](../{name})")
-    return ", ".join(names)
+    return [Path(os.path.normpath(row.path.parent / scene)) for scene in dict.fromkeys(scenes)]
 
 
-def section(row, found, done, number_of_runs, directory, page):
+def parameters(row):
+    """The scenes that a row runs, as text."""
+    names = [path.relative_to(floe_program.HOME) for path in scenes_of(row)]
+    return ", ".join(f"[{name}](../{name})" for name in names)
+
+
+def section(row, result):
     """A row's part of the page."""
+    found, done, number_of_runs = result.found, result.done, result.runs
     spec = row.path.relative_to(floe_program.HOME)
     lines = [f"## {row.title}", "", wrapped(row.text), "",
              wrapped(f"Scenes: {parameters(row)}; all parameters: [{spec}](../{spec})."), "",
              wrapped(f"Published: {row.published}. Source: {row.source}"), ""]
     if found is None:
-        lines += [wrapped(f"**Not run** ({len(done)} of {number_of_runs} runs are done): "
+        lines += [wrapped(f"**Not run** ({done} of {number_of_runs} runs are done): "
                           f"`tools/validate --only {row.name}`, about {clock(row.seconds)} of one "
                           "core."), ""]
         return lines
-    if len(done) < number_of_runs:
-        lines += [wrapped(f"**Not run in full**: {len(done)} of {number_of_runs} runs are done; "
+    if done < number_of_runs:
+        lines += [wrapped(f"**Not run in full**: {done} of {number_of_runs} runs are done; "
                           f"`tools/validate --only {row.name}`, about {clock(row.seconds)} of one "
                           "core for all."), ""]
     else:
         lines += [wrapped(f"Command: `tools/validate --only {row.name}`; {number_of_runs} runs, "
-                          f"about {clock(row.seconds)} of one core."), ""]
+                          f"about {clock(row.seconds)} of one core; these are of {result.day}."),
+                  ""]
     lines += [table(["", "seeds", "floe", "published (allowed)", "deviation", ""],
                     [cells(line) for line in found.lines]), ""]
     lines += [f"![{row.title}](pictures/validation_{row.name}.png)", ""]
     return lines
 
 
+@dataclass
+class Result:
+    """What there is of a row: number of runs that are done, of all runs, Found or None, versions of
+    floe, and the day."""
+    done: int
+    runs: int
+    found: Found | None
+    versions: list
+    day: str
+
+
+def digest(row):
+    """Of what the row runs and measures, its scenes included: another one is another row."""
+    text = json.dumps([row.runs, row.settings, row.measure.__name__, row.lattice_seeds],
+                      sort_keys=True)
+    for scene in scenes_of(row):
+        text += scene.read_text()
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def kept(row, path):
+    """The Result of a row that was run in full before, as keep() wrote it; None without one."""
+    if not path.exists():
+        return None
+    with floe_program.reading(path):
+        text = json.loads(path.read_text())
+        if text.pop("digest") != digest(row):
+            return None
+        text["found"] = Found(**{**text["found"],
+                                 "lines": [Line(**line) for line in text["found"]["lines"]]})
+        return Result(**text)
+
+
+def as_text(dataclass_):
+    """A dataclass as JSON; arrays as lists."""
+    return json.dumps(asdict(dataclass_), indent=1, default=lambda array: array.tolist())
+
+
+def keep(row, result, path):
+    """Writes the Result of a row whose runs are all done: the page has it without the runs too."""
+    path.parent.mkdir(exist_ok=True)
+    text = {"digest": digest(row), **json.loads(as_text(result))}
+    write_whole(path, json.dumps(text, indent=1) + "\n")
+
+
+def result_of(row, directory, path):
+    """The Result of the runs in a folder of results; where they are not all there, that of all runs
+    which was kept, if there is one."""
+    done, number_of_runs = row.finished(directory)
+    found = None
+    if done:
+        try:
+            found = row.found(done)
+        except BadInput as error:
+            print(f"{row.name}: {error}")
+    versions = sorted({run.summary.get("version", "of an unknown version") for run in done})
+    result = Result(len(done), number_of_runs, found, versions,
+                    datetime.date.today().isoformat())
+    before = kept(row, path)
+    if found is None or len(done) < number_of_runs:
+        return before or result
+    if before is None or as_text(before.found) != as_text(found):
+        keep(row, result, path)
+    return kept(row, path)
+
+
 def page_of(rows, results, directory, page):
-    """The page as text. results: {name: (finished runs, their number, Found or None)}."""
-    version = ", ".join(sorted({run.summary.get("version", "of an unknown version")
-                                for done, _, _ in results.values() for run in done}))
+    """The page as text. results: {name: Result}."""
+    version = ", ".join(sorted({v for result in results.values() for v in result.versions}))
     verdicts = {}
     for row in rows:
-        done, number_of_runs, found = results[row.name]
+        found = results[row.name].found
         verdicts[row.name] = "not run" if found is None else verdict_of(row, found)
     few = sum("seeds" in verdict for verdict in verdicts.values())
-    missing = sum(len(done) < n for done, n, _ in results.values())
+    missing = sum(result.done < result.runs for result in results.values())
     text = [HEAD.format(version=version or "not run", date=datetime.date.today().isoformat(),
                         rows=len(rows),
                         agree=sum(v.startswith("agrees") for v in verdicts.values()),
@@ -164,7 +235,7 @@ def page_of(rows, results, directory, page):
                         few=few, missing=missing, seeds=SEEDS),
             "## Where floe disagrees", ""]
     for row in rows:
-        found = results[row.name][2]
+        found = results[row.name].found
         wrong = [line for line in found.lines if line.verdict == "disagrees"] if found else []
         if wrong:
             text += [wrapped(f"**[{row.title}](#{anchor(row.title)})**. {row.disagreement}"), "",
@@ -175,11 +246,10 @@ def page_of(rows, results, directory, page):
     text += ["## All rows", "",
              table(["row", "published", "runs", "verdict"],
                    [[f"[{row.title}](#{anchor(row.title)})", row.published,
-                     f"{len(results[row.name][0])} of {results[row.name][1]}", verdicts[row.name]]
+                     f"{results[row.name].done} of {results[row.name].runs}", verdicts[row.name]]
                     for row in rows]), ""]
     for row in rows:
-        done, number_of_runs, found = results[row.name]
-        text += section(row, found, done, number_of_runs, directory, page)
+        text += section(row, results[row.name])
     return "\n".join(text).rstrip() + "\n"
 
 
@@ -194,15 +264,9 @@ def write(rows, directory, page):
     results = {}
     pictures = Path(page).parent / "pictures"
     for row in rows:
-        done, number_of_runs = row.finished(directory)
-        found = None
-        if done:
-            try:
-                found = row.found(done)
-            except BadInput as error:
-                print(f"{row.name}: {error}")
-        if found is not None:
-            picture(found, pictures / f"validation_{row.name}.png")
-        results[row.name] = done, number_of_runs, found
+        result = result_of(row, directory, Path(page).parent / f"validation/{row.name}.json")
+        if result.found is not None:
+            picture(result.found, pictures / f"validation_{row.name}.png")
+        results[row.name] = result
     write_whole(Path(page), page_of(rows, results, directory, page))
     return page

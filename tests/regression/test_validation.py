@@ -227,6 +227,22 @@ class Runs(FolderTest):
         page = (self.folder / "docs/validation.md").read_text()
         self.assertLess(page.index("+40.0 %"), page.index("## All rows"))  # first of all
 
+        # A row that was run in full keeps its numbers, until another is run under its name.
+        shutil.copytree(history.parent, self.folder / "kept/row/runs/s003")
+        shutil.copy(self.folder / "kept/row/results/s002.json",
+                    self.folder / "kept/row/results/s003.json")
+        self.validate("--page", "--dir", "kept")
+        whole = (self.folder / "docs/validation.md").read_text()
+        self.assertNotIn("Not run", whole)
+        (self.folder / "empty").mkdir()
+        self.validate("--page", "--dir", "empty")
+        self.assertEqual((self.folder / "docs/validation.md").read_text(), whole)
+        spec = self.folder / "tools/validation/row.yaml"
+        spec.write_text(spec.read_text().replace("seeds: 3", "seeds: 4"))
+        self.validate("--page", "--dir", "empty")
+        self.assertIn("**Not run** (0 of 4 runs are done)",
+                      (self.folder / "docs/validation.md").read_text())
+
     def test_bad_input(self):
         for words, part in ((("--only", "none"), "--only: 'none' is no row; there are row"),
                             (("--page", "--dir", "none"), "--page: none is no folder"),
