@@ -158,6 +158,26 @@ std::string overlap(const RingedPolygon& a, const RingedPolygon& b) {
   return sorted == same ? place(a.front().front()) : "";
 }
 
+/// Moves each edge of a ring to its left, where the ice is, by a distance that is small beside the
+/// edges [m].
+Ring moved_inwards(const Ring& ring, double distance) {
+  const std::size_t n = ring.size();
+  const auto normal = [&](std::size_t k) {
+    const Point2 &a = ring[k % n], &b = ring[(k + 1) % n];
+    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    return Point2{(a[1] - b[1]) / length, (b[0] - a[0]) / length};
+  };
+  Ring result;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Point2 before = normal(k + n - 1), after = normal(k);
+    constexpr double sharpest = 0.01;  // a sharper corner moves less far than its edges
+    const double d = distance / std::max(1 + before[0] * after[0] + before[1] * after[1], sharpest);
+    result.push_back(
+        {ring[k][0] + d * (before[0] + after[0]), ring[k][1] + d * (before[1] + after[1])});
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string Outline::flaw() const {
@@ -168,20 +188,31 @@ std::string Outline::flaw() const {
     std::string why = flaw_of_holes(polygons_[k], name_of_ring(*this, k, 0));
     if (!why.empty()) return why;
   }
+  const std::optional<OverlappingPolygons> pair = find_overlap(polygons_);
+  if (!pair) return {};
+  return name_of_ring(*this, pair->first, 0) + " and polygon " + std::to_string(pair->second + 1) +
+         ": overlap" + pair->place;
+}
+
+std::optional<OverlappingPolygons> find_overlap(const std::vector<RingedPolygon>& given,
+                                                double slack) {
+  std::vector<RingedPolygon> polygons = given;
+  if (slack > 0)
+    for (RingedPolygon& polygon : polygons)
+      for (Ring& ring : polygon) ring = moved_inwards(ring, slack / 2);
   // From left to right, so that only polygons that overlap in x are compared.
-  std::vector<std::size_t> order(polygons_.size());
+  std::vector<std::size_t> order(polygons.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::vector<PlanBox> boxes;
-  for (const RingedPolygon& polygon : polygons_) boxes.push_back(box_of(polygon));
+  for (const RingedPolygon& polygon : polygons) boxes.push_back(box_of(polygon));
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return boxes[a].least < boxes[b].least; });
   for (std::size_t i = 0; i < order.size(); ++i) {
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const auto [a, b] = std::minmax(order[i], order[j]);
       if (boxes[order[j]].least[0] > boxes[order[i]].most[0]) break;
-      if (const std::string at = overlap(polygons_[a], polygons_[b]); !at.empty())
-        return name_of_ring(*this, a, 0) + " and polygon " + std::to_string(b + 1) + ": overlap" +
-               at;
+      if (std::string at = overlap(polygons[a], polygons[b]); !at.empty())
+        return OverlappingPolygons{a, b, std::move(at)};
     }
   }
   return {};

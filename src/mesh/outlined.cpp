@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -24,31 +25,46 @@ std::uint8_t side_of(const Point2& normal) {
   return normal[1] < 0 ? side_bottom : side_top;
 }
 
-CutLine moved(const CutLine& line, const Point2& by) {
-  return {{line.from[0] + by[0], line.from[1] + by[1]}, {line.to[0] + by[0], line.to[1] + by[1]}};
+Point2 from_box(const MeshedBox& box, const Point2& p) {
+  const auto& [c, s] = box.axis;
+  return {box.centre[0] + (c * p[0] - s * p[1]), box.centre[1] + (s * p[0] + c * p[1])};
+}
+Point2 to_box(const MeshedBox& box, const Point2& p) {
+  const auto& [c, s] = box.axis;
+  const double x = p[0] - box.centre[0], y = p[1] - box.centre[1];
+  return {c * x + s * y, c * y - s * x};
+}
+
+/// The sides of a cell of a box that has been turned.
+std::uint8_t turned(std::uint8_t sides, const MeshedBox& box) {
+  const auto& [c, s] = box.axis;
+  std::uint8_t result = 0;
+  if (sides & side_left) result |= side_of({-c, -s});
+  if (sides & side_right) result |= side_of({c, s});
+  if (sides & side_bottom) result |= side_of({s, -c});
+  if (sides & side_top) result |= side_of({-s, c});
+  return result;
 }
 
 /// Appends the cells inside a polygon.
-/// \param fitted  cells that end on the polygon, in the frame of a box about `centre`
+/// \param fitted  cells that end on the polygon, in the frame of its box
 /// \param index  of the polygon in its outline
 /// \param cut_of_line  of the fitted lines, to which those of `fitted` are added: per line, its cut
 void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, std::int32_t index,
-                 const Point2& centre, const std::vector<std::size_t>& cut_of_line,
+                 const MeshedBox& box, const std::vector<std::size_t>& cut_of_line,
                  OutlinedCells& kept) {
   const Tessellation& t = fitted.cells;
   Tessellation& all = kept.cells;
   std::vector<std::int32_t> number(t.generators.size(), -1);
   for (std::size_t k = 0; k < t.generators.size(); ++k) {
-    const Point2 z{t.generators[k][0] + centre[0], t.generators[k][1] + centre[1]};
-    if (!contains(polygon, z)) continue;
+    const Point2 z = from_box(box, t.generators[k]);
+    if (!box.is_polygon && !contains(polygon, z)) continue;
     number[k] = static_cast<std::int32_t>(all.generators.size());
     all.generators.push_back(z);
-    for (std::int32_t v = t.offset[k]; v < t.offset[k + 1]; ++v) {
-      const Point2& p = item(t.vertices, v);
-      all.vertices.push_back({p[0] + centre[0], p[1] + centre[1]});
-    }
+    for (std::int32_t v = t.offset[k]; v < t.offset[k + 1]; ++v)
+      all.vertices.push_back(from_box(box, item(t.vertices, v)));
     all.offset.push_back(static_cast<std::int32_t>(all.vertices.size()));
-    all.sides.push_back(0);
+    all.sides.push_back(box.is_polygon ? turned(t.sides[k], box) : 0);
     kept.polygon.push_back(index);
   }
   for (const Facet& facet : t.facets) {
@@ -90,27 +106,35 @@ void add_cell(const RingedPolygon& polygon, std::int32_t index, OutlinedCells& k
 }
 
 /// Sets the measures of quality of the cells (see Tessellation).
-void measure(Tessellation& t, double l) {
-  double area = 0, energy = 0, move = 0;
+void measure(OutlinedCells& cells, const SheetPlan& plan) {
+  Tessellation& t = cells.cells;
+  struct Group {  // of cells that should be of one size
+    double area = 0, cells = 0;
+  };
+  std::vector<Group> groups(plan.of_polygon.empty() ? 1 : plan.of_polygon.size());
+  double energy = 0, move = 0, best = 0;
   for (std::size_t k = 0; k < t.generators.size(); ++k) {
     const std::span cell(t.vertices.data() + t.offset[k], t.vertices.data() + t.offset[k + 1]);
     const PlanProperties p = plan_properties(cell);
     const double x = p.centroid[0] - t.generators[k][0], y = p.centroid[1] - t.generators[k][1];
-    area += p.area;
+    Group& group = plan.of_polygon.empty() ? groups.front() : item(groups, cells.polygon[k]);
+    group.area += p.area, group.cells += 1;
     energy += p.xx + p.yy + p.area * (x * x + y * y);
-    move = std::max(move, std::hypot(x, y));
+    move = std::max(move, std::hypot(x, y) / plan.size_of(cells.polygon[k]));
   }
-  const auto n = static_cast<double>(t.generators.size());
-  t.energy_ratio = energy / (5 / (18 * std::numbers::sqrt3) * area * area / n);
-  t.largest_move = move / l;
+  for (const Group& group : groups)
+    if (group.cells > 0)
+      best += 5 / (18 * std::numbers::sqrt3) * group.area * group.area / group.cells;
+  t.energy_ratio = energy / best;
+  t.largest_move = move;
 }
 
 /// The edges of a polygon, ring after ring, in the frame of its box.
-std::vector<CutLine> edges_of(const RingedPolygon& polygon, const Point2& centre) {
+std::vector<CutLine> edges_of(const RingedPolygon& polygon, const MeshedBox& box) {
   std::vector<CutLine> lines;
   for (const Ring& ring : polygon) {
     for (std::size_t k = 0; k < ring.size(); ++k)
-      lines.push_back(moved({ring[k], ring[(k + 1) % ring.size()]}, {-centre[0], -centre[1]}));
+      lines.push_back({to_box(box, ring[k]), to_box(box, ring[(k + 1) % ring.size()])});
   }
   return lines;
 }
@@ -124,7 +148,16 @@ SheetPlan rules_of(const SheetPlan& plan) {
           .tolerance = plan.tolerance};
 }
 
-MeshedBox box_around(const RingedPolygon& polygon, const SheetPlan& rules) {
+/// \param rules  of this polygon
+/// \param own  empty, or the polygon's plan
+MeshedBox box_around(const RingedPolygon& polygon, const SheetPlan& rules,
+                     std::span<const PolygonPlan> own = {}) {
+  if (!own.empty() && own.front().rectangle) {
+    const auto& [length, width, centre, axis] = *own.front().rectangle;
+    MeshedBox box{rules, centre, axis, true};
+    box.plan.length = length, box.plan.width = width;
+    return box;
+  }
   const auto [least, most] = box_of(polygon);
   MeshedBox box{rules, {(least[0] + most[0]) / 2, (least[1] + most[1]) / 2}};
   const double l = rules.element_size;
@@ -157,7 +190,7 @@ bool is_one_cell(const RingedPolygon& polygon, double l) {
 bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan) {
   if (is_one_cell(polygon, plan.element_size)) return true;
   const MeshedBox box = box_around(polygon, rules_of(plan));
-  const mesh::CutGraph graph = mesh::make_cut_graph(box.plan, edges_of(polygon, box.centre));
+  const mesh::CutGraph graph = mesh::make_cut_graph(box.plan, edges_of(polygon, box));
   const mesh::CutGenerators placed = mesh::place_generators(graph, box.plan);
   return std::none_of(placed.pairs.begin(), placed.pairs.end(),
                       [](const auto& pairs) { return pairs.empty(); });
@@ -165,20 +198,27 @@ bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan) {
 
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan) {
   if (plan.outline.empty()) return {{plan, {}}};
-  const SheetPlan rules = rules_of(plan);
+  SheetPlan rules = rules_of(plan);
   std::vector<MeshedBox> boxes;
-  for (const RingedPolygon& polygon : plan.outline.polygons())
-    boxes.push_back(box_around(polygon, rules));
+  for (std::size_t k = 0; k < plan.outline.polygons().size(); ++k) {
+    std::span<const PolygonPlan> own;
+    if (!plan.of_polygon.empty()) {
+      own = {&plan.of_polygon[k], 1};
+      rules.element_size = own.front().element_size, rules.seed = own.front().seed;
+    }
+    boxes.push_back(box_around(plan.outline.polygons()[k], rules, own));
+  }
   return boxes;
 }
 
 std::vector<Tessellation> tessellate(const std::vector<MeshedBox>& boxes, MPI_Comm comm,
                                      const std::function<void(int, double)>& on_iteration) {
-  std::map<std::array<double, 2>, std::size_t> of_size;
+  std::map<std::tuple<double, double, double, std::uint64_t>, std::size_t> of_size;
   std::vector<Tessellation> cells;
   for (const MeshedBox& box : boxes) {
+    const SheetPlan& plan = box.plan;
     const auto [same, is_new] =
-        of_size.try_emplace({box.plan.length, box.plan.width}, cells.size());
+        of_size.try_emplace({plan.length, plan.width, plan.element_size, plan.seed}, cells.size());
     Tessellation made = is_new ? tessellate(box.plan, comm, on_iteration) : cells[same->second];
     cells.push_back(std::move(made));
   }
@@ -193,13 +233,14 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
   result.cuts.resize(cuts.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     const RingedPolygon& polygon = plan.outline.polygons()[k];
-    const Point2& centre = boxes[k].centre;
-    std::vector<CutLine> lines = edges_of(polygon, centre);
+    const MeshedBox& box = boxes[k];
+    std::vector<CutLine> lines;
+    if (!box.is_polygon) lines = edges_of(polygon, box);
     const std::size_t edges = lines.size();
     std::vector<std::size_t> cut_of_line;
     result.cells.iterations = std::max(result.cells.iterations, relaxed[k].iterations);
     const auto index = static_cast<std::int32_t>(k);
-    if (is_one_cell(polygon, plan.element_size)) {
+    if (!box.is_polygon && is_one_cell(polygon, box.plan.element_size)) {
       for (std::size_t c = 0; c < cuts.size(); ++c)
         for (const auto& [from, to] : clipped(polygon, cuts[c]))
           result.cuts[c].length += std::hypot(to[0] - from[0], to[1] - from[1]);
@@ -208,23 +249,24 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
     }
     for (std::size_t c = 0; c < cuts.size(); ++c) {
       for (const CutLine& part : clipped(polygon, cuts[c])) {
-        lines.push_back(moved(part, {-centre[0], -centre[1]}));
+        lines.push_back({to_box(box, part.from), to_box(box, part.to)});
         cut_of_line.push_back(c);
       }
     }
-    const FittedCells fitted = fit_to_cuts(boxes[k].plan, std::move(relaxed[k]), lines, comm);
+    const FittedCells fitted = fit_to_cuts(box.plan, std::move(relaxed[k]), lines, comm);
     std::size_t ring = 0, first = 0;
     for (std::size_t e = 0; e < edges; ++e) {
       if (e == first + polygon[ring].size()) first = e, ++ring;
       const Point2 &a = lines[e].from, &b = lines[e].to;
       const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
       if (std::abs(fitted.cuts[e].followed - length) <= 1e-6 * length) continue;
-      result.unfollowed.push_back({k, ring, e - first, moved(lines[e], centre)});
+      const std::size_t n = polygon[ring].size(), at = e - first;
+      result.unfollowed.push_back({k, ring, at, {polygon[ring][at], polygon[ring][(at + 1) % n]}});
     }
-    if (result.unfollowed.empty()) keep_inside(fitted, polygon, index, centre, cut_of_line, result);
+    if (result.unfollowed.empty()) keep_inside(fitted, polygon, index, box, cut_of_line, result);
   }
   if (result.unfollowed.empty())
-    measure(result.cells, plan.element_size);
+    measure(result, plan);
   else
     result.cells = {};
   return result;

@@ -19,14 +19,14 @@ constexpr std::size_t most_corners = 2'000'000;
 
 class Reader {
  public:
-  explicit Reader(const std::string& file) : file_(file) {}
+  Reader(const std::string& file, const std::string& key) : file_(file), key_(key) {}
 
   OutlineFeatures json(const std::string& text);
   OutlineFeatures table(const std::string& text);
 
  private:
   [[noreturn]] void refuse(const std::string& why) const {
-    throw InputError("sheet: outline: '" + file_ + "': " + why);
+    throw InputError(key_ + ": '" + file_ + "': " + why);
   }
   const Json& member(const Json& object, const char* name, const std::string& where) const;
   std::string type_of(const Json& object, const std::string& where) const;
@@ -39,7 +39,7 @@ class Reader {
       refuse("has more than " + std::to_string(most_corners) + " corners");
   }
 
-  const std::string& file_;
+  const std::string &file_, &key_;
   std::size_t corners_ = 0;
 };
 

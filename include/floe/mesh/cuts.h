@@ -38,10 +38,13 @@ struct FittedCells {
 FittedCells fit_to_cuts(const SheetPlan& plan, Tessellation cells, std::span<const CutLine> lines,
                         MPI_Comm comm);
 
-/// A rectangle that is meshed first: that of a polygon of the outline with a margin.
+/// A rectangle that is meshed first: that of a polygon of the outline with a margin, or the polygon
+/// itself.
 struct MeshedBox {
   SheetPlan plan;  ///< rectangular
   std::array<double, 2> centre{};
+  std::array<double, 2> axis{1, 0};  ///< direction of its length
+  bool is_polygon = false;           ///< whether all of its cells are kept
 };
 /// Whether a polygon is a single cell: convex, of the area of one and a half hexagons of the mean
 /// cell area at most, and nowhere longer than 3 l.
@@ -53,10 +56,11 @@ bool is_one_cell(const RingedPolygon& polygon, double l);
 bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan);
 
 /// Returns the rectangles of a sheet, one per polygon of its outline, whose sides are multiples of
-/// the element size; that of a plan without outline is the plan.
+/// the element size; that of a plan without outline is the plan, and that of a polygon with
+/// PolygonPlan::rectangle is this.
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan);
 
-/// Meshes these rectangles, those of one size once. Collective.
+/// Meshes these rectangles, those of one size, element size and seed once. Collective.
 /// \param on_iteration  as of tessellate()
 std::vector<Tessellation> tessellate(const std::vector<MeshedBox>& boxes, MPI_Comm comm,
                                      const std::function<void(int, double)>& on_iteration = {});

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,15 @@ PlanBox box_of(const RingedPolygon& polygon);
 bool contains(const RingedPolygon& polygon, const std::array<double, 2>& p);
 /// Returns the parts of a line inside a polygon.
 std::vector<CutLine> clipped(const RingedPolygon& polygon, const CutLine& line);
+
+/// Two polygons that overlap.
+struct OverlappingPolygons {
+  std::size_t first = 0, second = 0;
+  std::string place;  ///< " near (X, Y)"
+};
+/// Returns two polygons that overlap by more than `slack` [m], if there are any.
+std::optional<OverlappingPolygons> find_overlap(const std::vector<RingedPolygon>& polygons,
+                                                double slack = 0);
 
 /// Names a ring of a polygon: "polygon 2", "polygon 2, hole 1"; just "the polygon" if there is one.
 std::string name_of_ring(const Outline& outline, std::size_t polygon, std::size_t ring);
