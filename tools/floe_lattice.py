@@ -105,7 +105,8 @@ class Lattice:
 
     position n x 3 [m]; orientation n x 4; mass n [kg]; inertia n x 3, principal [kg m^2];
     bodies m x 2, first < second, sorted; axis_y m x 3; beam: {name of BEAM_SCALARS: m}; sets {name:
-    indices}; offsets m x 6 [m]: ends of beams from the centroids of their bodies, or None.
+    indices}; offsets m x 6 [m]: ends of beams from the centroids of their bodies, or None; strength,
+    energy m: factors of those of fracture, or None.
     """
     position: np.ndarray
     orientation: np.ndarray
@@ -117,6 +118,8 @@ class Lattice:
     sets: dict = field(default_factory=dict)
     shapes: Shapes | None = None
     offsets: np.ndarray | None = None
+    strength: np.ndarray | None = None
+    energy: np.ndarray | None = None
 
     def check(self):
         """Raises ValueError with what is wrong, if anything is."""
@@ -127,6 +130,8 @@ class Lattice:
         shapes += [(name, self.beam[name], (m,)) for name in BEAM_SCALARS]
         if self.offsets is not None:
             shapes.append(("offsets", self.offsets, (m, 6)))
+        shapes += [(name, getattr(self, name), (m,)) for name in ("strength", "energy")
+                   if getattr(self, name) is not None]
         for name, array, shape in shapes:
             if np.shape(array) != shape:
                 raise ValueError(f"{name}: shape {np.shape(array)}, expected {shape}")
@@ -160,8 +165,9 @@ class Lattice:
                 out["beams/axis_y"] = np.asarray(self.axis_y, float)
                 for name in BEAM_SCALARS:
                     out[f"beams/{name}"] = np.asarray(self.beam[name], float)
-                if self.offsets is not None:
-                    out["beams/offsets"] = np.asarray(self.offsets, float)
+                for name in ("offsets", "strength", "energy"):
+                    if getattr(self, name) is not None:
+                        out[f"beams/{name}"] = np.asarray(getattr(self, name), float)
             for name, members in self.sets.items():
                 out[f"sets/{name}"] = np.asarray(sorted(members), np.int32)
             if self.shapes is not None:

@@ -52,6 +52,16 @@ struct Initial {
   Point3 angular_velocity{};  ///< [rad/s]
 };
 
+/// Where faces of bodies are frozen together at the start, and how well.
+struct Bonds {
+  double gap = 0;  ///< widest gap between two faces that are [m]
+  bool given = false, in_box = false;
+  /// Where the middle of the faces lies: x0, x1, y0, y1, z0, z1 [m].
+  std::array<double, 6> box{-1e9, 1e9, -1e9, 1e9, -1e9, 1e9};
+  double young = 4e9;               ///< [Pa]
+  double strength = 1, energy = 1;  ///< factors of those of fracture
+};
+
 /// How the thickness of a sheet varies over its plan.
 struct ThicknessField {
   std::string file;                     ///< a grid; empty: none
@@ -111,6 +121,7 @@ struct Scene {
   std::string lattice_file;
   std::vector<Region> regions;
   std::vector<Cut> cuts;
+  Bonds bonds;
   BeamOptions beam;
   FractureOptions fracture;
   Calibrate calibrate = Calibrate::none;

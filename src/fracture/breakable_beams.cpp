@@ -550,8 +550,9 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if (next.crushed) energy.crush();
     if (known == nullptr) {
       next.beam = m;
+      const double of_ice = factor(part_.beams.energy, m);
       initiate(next, energy, s, item(part_.beams.width, m) * item(part_.beams.height, m),
-               options_.energy, options_.energy_shear);
+               of_ice * options_.energy, of_ice * options_.energy_shear);
     }
     next.kappa = std::max(s, passed);
     next.damage = at_once ? 1 : damage_at(next, s);

@@ -8,6 +8,7 @@
 #include "base/union_find.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "lattice/permute.h"
 
 namespace floe {
 namespace {
@@ -53,14 +54,23 @@ void append_corners(const Lattice& lattice, std::int32_t body, double tolerance,
 }
 
 /// Moduli of the sheet over its beams' Young's modulus, for means of its beams. Those of the beams
-/// themselves if the lattice gives no sections: such beams cannot break.
-LatticeModuli moduli_of(const Lattice& lattice, Shear shear) {
+/// themselves if the lattice gives no sections: such beams cannot break. Beams without a facet are
+/// not the sheet's. \param facets  per beam: its facet, or none
+LatticeModuli moduli_of(const Lattice& lattice, const std::vector<std::int32_t>& facets,
+                        Shear shear) {
   const Beams& b = lattice.beams;
   const std::size_t all = b.bodies.size();
   if (b.width.size() != all || b.torsion.size() != all || b.young.size() != all)
     return {
         .young = 1, .poisson = 0, .shear = 0.5, .bulk = 0.5, .bending = 1, .bending_poisson = 0};
-  return lattice_moduli(lattice_ratios(lattice, shear), 0, shear);
+  std::vector<std::int32_t> of_sheet;
+  for (std::int32_t m = 0; m < b.size(); ++m)
+    if (item(facets, m) != Junctions::none) of_sheet.push_back(m);
+  if (of_sheet.empty() || of_sheet.size() == all)
+    return lattice_moduli(lattice_ratios(lattice, shear), 0, shear);
+  Lattice sheet;
+  sheet.bodies = lattice.bodies, sheet.beams = pick(b, of_sheet), sheet.sets = lattice.sets;
+  return lattice_moduli(lattice_ratios(sheet, shear), 0, shear);
 }
 
 /// Global beams by their bodies, sorted.
@@ -197,7 +207,7 @@ Junctions find_junctions(const Lattice& lattice, Shear shear) {
                    [](const Meeting& a, const Meeting& b) { return a.bodies < b.bodies; });
 
   add_facets(lattice, meetings, found);
-  found.moduli = moduli_of(lattice, shear);
+  found.moduli = moduli_of(lattice, found.facet_of, shear);
   return found;
 }
 

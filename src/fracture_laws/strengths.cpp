@@ -74,11 +74,12 @@ std::vector<Strength<double>> strengths(const Part& part, const FractureOptions&
   all.reserve(beams.bodies.size());
   for (std::size_t m = 0; m < beams.bodies.size(); ++m) {
     const double w = beams.width[m], h = beams.height[m];
-    const double factor = scattered ? weibull_factor(options.seed, part.global_beam[m],
-                                                     options.weibull_modulus, w * h / reference)
-                                    : 1;
-    all.push_back(
-        section_strength(w, h, factor * options.tensile_strength, factor * options.shear_strength));
+    const double scatter = scattered ? weibull_factor(options.seed, part.global_beam[m],
+                                                      options.weibull_modulus, w * h / reference)
+                                     : 1;
+    const double all_of_it = scatter * factor(beams.strength, static_cast<std::int32_t>(m));
+    all.push_back(section_strength(w, h, all_of_it * options.tensile_strength,
+                                   all_of_it * options.shear_strength));
     all.back().bending_y *= options.bending_factor;
     all.back().torsion *= options.bending_factor * share_of_section(beams.torsion[m], w, h);
   }
@@ -103,7 +104,8 @@ Strength<double> tip_strength(const Part& part, std::int32_t beam, const Fractur
   constexpr double in_plane = 2.45, out_of_plane = 4.0;  // kappa, measured on notched sheets
   const Beams& beams = part.beams;
   const double w = item(beams.width, beam), h = item(beams.height, beam);
-  const double scale = item(beams.young, beam) * options.energy / item(beams.length, beam);
+  const double energy = options.energy * factor(beams.energy, beam);
+  const double scale = item(beams.young, beam) * energy / item(beams.length, beam);
   const double membrane = std::sqrt(2 / in_plane * scale),
                bending = std::sqrt(6 / out_of_plane * scale);
   const Strength<double> stretched = section_strength(w, h, membrane, bending),

@@ -78,21 +78,21 @@ std::vector<TipOverload> TipBeams::overloads(const std::vector<ArmedBeam>& mine,
                                              const State<Spatial>& state) const {
   std::vector<double> rows;
   for (const auto& [s, m] : mine)
-    rows.insert(rows.end(),
-                {static_cast<double>(item(part_.global_beam, m)), s,
-                 item(part_.beams.young, m) * tips_.junctions().moduli.young, bent_opening(m)});
+    rows.insert(rows.end(), {static_cast<double>(item(part_.global_beam, m)), s,
+                             item(part_.beams.young, m) * tips_.junctions().moduli.young,
+                             bent_opening(m), options_.energy * factor(part_.beams.energy, m)});
   rows = all_gathered(rows, part_.comm);
   if (rows.empty()) return {};
   struct Tip {
     std::int32_t beam;
-    double s, young, bent;
+    double s, young, bent, energy;
     std::vector<CrackBehind> cracks;
   };
   std::vector<Tip> beams;
   std::vector<std::int32_t> bodies;
-  for (std::size_t k = 0; k + 4 <= rows.size(); k += 4) {
+  for (std::size_t k = 0; k + 5 <= rows.size(); k += 5) {
     const auto beam = static_cast<std::int32_t>(rows[k]);
-    beams.push_back({beam, rows[k + 1], rows[k + 2], rows[k + 3], tips_.behind(beam)});
+    beams.push_back({beam, rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4], tips_.behind(beam)});
     tips_.append_bodies(beams.back().cracks, bodies);
   }
   std::sort(bodies.begin(), bodies.end());
@@ -106,7 +106,7 @@ std::vector<TipOverload> TipBeams::overloads(const std::vector<ArmedBeam>& mine,
     double most = 0;
     for (const CrackBehind& crack : tip.cracks) {
       const double released =
-          tip.young * tips_.opening(crack, tip.bent, linear_, pose_of) / options_.energy;
+          tip.young * tips_.opening(crack, tip.bent, linear_, pose_of) / tip.energy;
       const double s_open = std::sqrt(released);
       most = std::max(most, s_open * std::min(s_open, tip.s));
     }

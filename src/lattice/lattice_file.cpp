@@ -202,6 +202,8 @@ Beams read_beams(const Reader& in, const Bodies& bodies) {
   if (in.file().has("/beams/width")) beams.width = in.scalars("/beams/width", m);
   if (in.file().has("/beams/height")) beams.height = in.scalars("/beams/height", m);
   if (in.file().has("/beams/offsets")) read_offsets(in, beams);
+  if (in.file().has("/beams/strength")) beams.strength = in.scalars("/beams/strength", m);
+  if (in.file().has("/beams/energy")) beams.energy = in.scalars("/beams/energy", m);
   read_axes(in, bodies, beams);
   return beams;
 }
@@ -366,6 +368,8 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
         for (const Point3& o : ends) rows.insert(rows.end(), {o[0], o[1], o[2]});
       file.write("/beams/offsets", std::span<const double>(rows), 6);
     }
+    if (!m.strength.empty()) file.write("/beams/strength", m.strength);
+    if (!m.energy.empty()) file.write("/beams/energy", m.energy);
   }
   for (const auto& [name, set] : lattice.sets) {
     if (name != "all") file.write("/sets/" + name, set);

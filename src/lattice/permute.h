@@ -31,7 +31,8 @@ inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
           pick(b.inertia_z, order),      pick(b.torsion, order),       pick(b.length, order),
           pick(b.young, order),          pick(b.shear_modulus, order), pick(b.shear_factor, order),
           pick(b.shear_factor_y, order), pick(b.axis_y, order),        pick(b.width, order),
-          pick(b.height, order),         pick(b.offsets, order)};
+          pick(b.height, order),         pick(b.offsets, order),       pick(b.strength, order),
+          pick(b.energy, order)};
 }
 
 /// Reorder in place, array by array: each old array is freed before the next is copied. The
@@ -44,9 +45,9 @@ inline void permute(Bodies& b, std::span<const std::int32_t> order) {
 inline void permute(Beams& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
   auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height,
-         offsets] = b;
+         offsets, strength, energy] = b;
   each(bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height,
-       offsets);
+       offsets, strength, energy);
 }
 
 inline Shapes pick(const Shapes& s, std::span<const std::int32_t> order) {

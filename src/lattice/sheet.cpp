@@ -173,10 +173,10 @@ void cut(Lattice& lattice, const Point2& a, const Point2& b,
     column.resize(kept.size());
   };
   auto& [bodies, area, iy, iz, torsion, length, young, shear, factor, factor_y, axis, width, height,
-         offsets] = lattice.beams;
+         offsets, strength, energy] = lattice.beams;
   keep(bodies), keep(area), keep(iy), keep(iz), keep(torsion), keep(length), keep(young);
   keep(shear), keep(factor), keep(factor_y), keep(axis), keep(width), keep(height);
-  keep(offsets);
+  keep(offsets), keep(strength), keep(energy);
 }
 
 void add_region(Lattice& lattice, const std::string& name, const std::array<double, 6>& box,

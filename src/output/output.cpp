@@ -130,6 +130,7 @@ template <class Space>
 void Output<Space>::Impl::keep_what_frames_need() {
   Beams& b = lattice.beams;
   b.torsion = b.length = b.young = b.shear_modulus = b.shear_factor = b.shear_factor_y = {};
+  b.strength = b.energy = {};
   if (cracks) return;  // cracks need places and pieces
   b.axis_y = {};
   b.offsets = {};

@@ -83,6 +83,8 @@ std::string fingerprint(const Lattice& lattice) {
     hash.add(*values);
   if (!m.shear_factor_y.empty()) hash.add(m.shear_factor_y);
   if (!m.offsets.empty()) hash.add(m.offsets);
+  for (const auto* factors : {&m.strength, &m.energy})
+    if (!factors->empty()) hash.add(*factors);
   hash.add(lattice.shapes.vertices);
   return std::to_string(lattice.bodies.size()) + " bodies, " +
          std::to_string(lattice.beams.size()) + " beams, " + hash.text();

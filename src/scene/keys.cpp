@@ -122,6 +122,21 @@ constexpr std::array table{
     OptionSpec{"cut: NAME: to", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "x, y of the other end", 2},
 
+    OptionSpec{"bonds: gap", number, "(required)", "m", ">= 0, <= 1e6",
+               "faces of two bodies, without a beam between them, that are at most this far apart "
+               "at the start are frozen together, by a beam of their common area"},
+    OptionSpec{
+        "bonds: box", numbers, "(everywhere)", "m", ">= -1e9, <= 1e9",
+        "x0, x1, y0, y1, z0, z1: where the middle of these faces lies, as of a layer that is "
+        "consolidated down to z0",
+        6},
+    OptionSpec{"bonds: young", number, "(ice: young)", "Pa", ">= 1, <= 1e18",
+               "Young's modulus of the bonds; required with lattice_file"},
+    OptionSpec{"bonds: strength", number, "1", "", ">= 1e-6, <= 1e6",
+               "fracture: strengths of the bonds over those of fracture:"},
+    OptionSpec{"bonds: energy", number, "1", "", ">= 1e-6, <= 1e6",
+               "fracture: energies per area of the bonds over those of fracture:"},
+
     OptionSpec{"ice: young", number, "4e9", "Pa", ">= 1, <= 1e18", "Young's modulus of the beams"},
     OptionSpec{"ice: poisson", number, "0.3", "", "> -1, < 0.5", "Poisson's ratio of the beams"},
     OptionSpec{"ice: density", number, "920", "kg/m^3", ">= 1e-6, <= 1e12",

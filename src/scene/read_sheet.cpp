@@ -201,6 +201,37 @@ void read_lattice_source(Options& options, Scene& scene) {
   }
 }
 
+void read_bonds(Options& options, Scene& scene) {
+  Bonds& bonds = scene.bonds;
+  bonds.given = options.given_section("bonds");
+  if (!bonds.given) return;
+  if (!scene.forces.beam) {
+    options.refuse("bonds", "would have no effect: 'forces' does not name beam, which bonds are");
+    bonds.given = false;
+    return;
+  }
+  bonds.gap = options.number("bonds: gap");
+  bonds.in_box = options.given("bonds: box");
+  if (bonds.in_box) {
+    bonds.box = options.numbers<6>("bonds: box");
+    for (const std::size_t k : {0U, 2U, 4U}) {
+      if (bonds.box[k] > bonds.box[k + 1])
+        throw InputError(
+            "bonds: box: must be x0, x1, y0, y1, z0, z1 with x0 <= x1, y0 <= y1, "
+            "z0 <= z1 [m]");
+    }
+  }
+  bonds.young = scene.has_sheet ? options.number("bonds: young", {}, scene.ice.young)
+                                : options.number("bonds: young");
+  if (scene.forces.fracture) {
+    bonds.strength = options.number("bonds: strength");
+    bonds.energy = options.number("bonds: energy");
+    return;
+  }
+  for (const auto* key : {"bonds: strength", "bonds: energy"})
+    options.refuse(key, "would have no effect: 'forces' does not name fracture");
+}
+
 void read_regions_and_cuts(Options& options, Scene& scene) {
   for (const std::string& name : options.names("region")) {
     Region region{name, options.numbers<6>("region: NAME: box", name)};

@@ -43,6 +43,8 @@ PolygonPlan::Rectangle read_rectangle_of_floe(Options& options, Floe& floe,
 bool has_thickness(const OutlineSource& outline, const std::string& outline_key,
                    const std::string& thickness_key);
 void read_regions_and_cuts(Options& options, Scene& scene);
+/// Reads which faces are frozen together, after the lattice's source and the fracture.
+void read_bonds(Options& options, Scene& scene);
 void read_fracture(Options& options, Scene& scene);
 void read_water(Options& options, Scene& scene);
 /// Reads contacts and obstacles.

@@ -187,6 +187,7 @@ Scene read_all(Options& options, const std::string& path) {
     scene.beam.kinematics = options.choice<Kinematics>("beam: kinematics");
   }
   if (scene.forces.fracture) read_fracture(options, scene);
+  read_bonds(options, scene);
   if (scene.forces.gravity) scene.gravity = options.number("gravity");
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   if (scene.forces.contact) read_contact(options, scene);

@@ -16,6 +16,7 @@
 #include "floe/mesh/cuts.h"
 #include "run/expected_cost.h"
 #include "scene/reading.h"
+#include "scene_model/bonds.h"
 #include "scene_model/lattice_command.h"
 #include "scene_model/mesh_file.h"
 #include "scene_model/scene_model.h"
@@ -310,7 +311,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   Lattice lattice = scene.has_sheet ? mesh_sheet(scene, comm, report, fitted, around)
                                     : read_lattice(scene.lattice_file);
   const Timed timed(Event::lattice);
-  if (scene.forces.beam && lattice.beams.size() == 0)
+  if (scene.forces.beam && lattice.beams.size() == 0 && !scene.bonds.given)
     throw InputError(scene.has_sheet
                          ? "sheet: element_size: the sheet has a single cell and no beam"
                          : "forces: beam: '" + scene.lattice_file + "' has no beams");
@@ -325,6 +326,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
     if (lattice.beams.size() == before && !c.may_miss)
       throw InputError("cut: " + c.name + ": crosses no beam; it would have no effect");
   }
+  if (scene.bonds.given) report.bonds = add_bonds(scene, lattice);
   if (scene.has_sheet) (void)reorder(lattice);  // a file keeps its own order
   auto& all = lattice.sets["all"];
   all.resize(static_cast<std::size_t>(lattice.bodies.size()));

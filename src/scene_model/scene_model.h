@@ -11,6 +11,7 @@
 #include "floe/scene.h"
 #include "forces/dead_load.h"
 #include "model/model.h"
+#include "scene_model/bonds.h"
 #include "scene_model/sheet_strength.h"
 #include "scene_model/thickness.h"
 #include "statics/quasistatic.h"
@@ -26,6 +27,7 @@ struct MeshReport {
   std::optional<Calibration> calibration;
   std::optional<StrengthCalibration> strength;
   std::optional<ThicknessReport> thickness;  ///< of a sheet whose thickness varies
+  std::optional<BondReport> bonds;           ///< of a scene with bonds
   std::string outline;  ///< a line on the sheet's outline; empty: the sheet is a rectangle
   std::string cuts;     ///< a remark on cuts on which cells do not end; empty: there are none
   std::function<void()> keep = [] {

@@ -409,6 +409,7 @@ void Simulation::Impl::make_lattice_and_choose_model() {
       (mixed ? "; results differ by rounding from those of one level\n" : "\n"));
   if (!mesh.outline.empty()) say(mesh.outline + "\n");
   if (!mesh.cuts.empty()) say(mesh.cuts + "\n");
+  if (mesh.bonds) say("bonds: " + text_of(*mesh.bonds) + "\n");
   if (mesh.strength) say("strength: " + text_of(*mesh.strength) + "\n");
 }
 

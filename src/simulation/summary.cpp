@@ -359,6 +359,11 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     else if (!scene.sheet.outline.empty())
       json["outline"] = as_json(scene.sheet.outline, scene);
   }
+  if (mesh.bonds) {
+    const auto& [number, area, least_gap, most_gap] = *mesh.bonds;
+    json["bonds"] = {
+        {"number", number}, {"area", area}, {"least_gap", least_gap}, {"most_gap", most_gap}};
+  }
   if (mesh.thickness) {
     const auto& [least, mean, most, deviation] = *mesh.thickness;
     json["thickness"] = {

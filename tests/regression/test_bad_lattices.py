@@ -54,6 +54,8 @@ LATTICE_FILES = {
     "wrong length": (spoil("beams/length", np.full(4, 7.0)), "/beams/length"),
     "factors of shear in the plane, one too few": (spoil("beams/shear_factor_y", np.ones(3)),
                                                    "/beams/shear_factor_y"),
+    "a strength of 0": (spoil("beams/strength", np.array([1, 1, 0, 1.0])), "/beams/strength"),
+    "energies of too few": (spoil("beams/energy", np.ones(3)), "/beams/energy: has 3 rows"),
     "offsets of three numbers": (spoil("beams/offsets", np.ones((4, 3))), "/beams/offsets"),
     "offsets that change a length":
         (spoil("beams/offsets", np.tile([0, 0, 0.1, 0, 0, 0], (4, 1))),

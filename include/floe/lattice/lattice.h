@@ -53,6 +53,8 @@ struct Beams {
   /// Ends of the beam from the centroids of its two bodies, at rest, in world axes [m]; empty:
   /// beams end at the centroids.
   std::vector<std::array<Point3, 2>> offsets;
+  std::vector<double> strength;  ///< factor of the strengths of fracture; empty: 1
+  std::vector<double> energy;    ///< factor of the energies of fracture; empty: 1
   std::int32_t size() const { return static_cast<std::int32_t>(bodies.size()); }
 };
 
@@ -60,6 +62,11 @@ struct Beams {
 /// \param end  0 or 1
 inline Point3 offset(const Beams& beams, std::int32_t m, std::size_t end) {
   return beams.offsets.empty() ? Point3{} : beams.offsets[static_cast<std::size_t>(m)][end];
+}
+
+/// Returns the factor of beam m: 1 if there are none.
+inline double factor(const std::vector<double>& factors, std::int32_t m) {
+  return factors.empty() ? 1.0 : factors[static_cast<std::size_t>(m)];
 }
 
 /// A whole lattice. During set-up every rank holds a copy; partition() distributes it.
