@@ -93,7 +93,8 @@ struct Floe {
   std::size_t first = 0, polygons = 0;  ///< its polygons in the outline of the plan
   double element_size = 2;              ///< [m]
   std::uint64_t seed = 1;
-  std::vector<double> thickness;  ///< of each polygon [m]; empty: that of the sheet
+  std::vector<double> thickness;    ///< of each polygon [m]; empty: that of the sheet
+  double strength = 1, energy = 1;  ///< factors of those of fracture
 };
 
 /// The input of a run.

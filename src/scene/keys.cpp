@@ -104,6 +104,10 @@ constexpr std::array table{
                "extent in z; else that of the sheet or of its field, or that of the file"},
     OptionSpec{"floe: NAME: element_size", number, "(sheet: element_size)", "m", ">= 1e-9, <= 1e9",
                "of its cells, as sheet: element_size"},
+    OptionSpec{"floe: NAME: strength", number, "1", "", ">= 1e-6, <= 1e6",
+               "fracture: its strengths over those of fracture:"},
+    OptionSpec{"floe: NAME: energy", number, "1", "", ">= 1e-6, <= 1e6",
+               "fracture: its energies per area over those of fracture:"},
     OptionSpec{"floe: NAME: seed", integer, "(sheet: seed)", "", ">= 0, <= 9223372036854775807",
                "of its mesh"},
 

@@ -87,6 +87,13 @@ void read_floes(Options& options, Scene& scene) {
     floe.seed = options.given(seed_of_floe, name)
                     ? static_cast<std::uint64_t>(options.integer(seed_of_floe, name))
                     : plan.seed;
+    if (scene.forces.fracture) {
+      floe.strength = options.number("floe: NAME: strength", name);
+      floe.energy = options.number("floe: NAME: energy", name);
+    } else {
+      for (const auto* key : {"floe: NAME: strength", "floe: NAME: energy"})
+        options.refuse_one(key, name, "would have no effect: 'forces' does not name fracture");
+    }
     least = std::min(least, floe.element_size);
     const std::string size_key =
         own_size ? option_label(size_of_floe, name) : "sheet: element_size";

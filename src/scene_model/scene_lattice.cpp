@@ -183,6 +183,22 @@ void add_named_floes(const Scene& scene, const std::vector<std::int32_t>& polygo
     item(sets, polygon[k])->push_back(static_cast<std::int32_t>(k));
 }
 
+/// Gives the beams of floes the factors of their strengths and energies, where these are not all 1.
+void strengthen_floes(const Scene& scene, const std::vector<std::int32_t>& polygon,
+                      Lattice& lattice) {
+  const auto fill = [&](double Floe::*factor, std::vector<double>& column) {
+    const auto is_one = [&](const Floe& floe) { return floe.*factor == 1; };
+    if (std::all_of(scene.floes.begin(), scene.floes.end(), is_one)) return;
+    std::vector<double> of_polygon;
+    for (const Floe& floe : scene.floes)
+      of_polygon.resize(floe.first + floe.polygons, floe.*factor);
+    for (const auto& [i, j] : lattice.beams.bodies)
+      column.push_back(item(of_polygon, item(polygon, i)));
+  };
+  fill(&Floe::strength, lattice.beams.strength);
+  fill(&Floe::energy, lattice.beams.energy);
+}
+
 /// Adds the sets floe_1, floe_2, ... that the scene names: the bodies of the outline's features.
 void add_floes(const Scene& scene, const std::vector<std::int32_t>& polygon, Lattice& lattice) {
   std::map<std::int32_t, std::vector<std::int32_t>*> floes;
@@ -286,6 +302,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
   add_edge_regions(scene, cells, lattice);
   add_floes(scene, polygon, lattice);
   add_named_floes(scene, polygon, lattice);
+  strengthen_floes(scene, polygon, lattice);
   return lattice;
 }
 
