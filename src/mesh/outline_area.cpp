@@ -48,8 +48,9 @@ struct Edge {
   std::array<std::size_t, 2> corners;
   Point2 right;
   double length;
-  double mean = 0;   ///< of the chain's distance to the right of the edge [m]
-  double slope = 0;  ///< how much the chain's right side grows from the first to the last corner [m]
+  double mean = 0;  ///< of the chain's distance to the right of the edge [m]
+  double slope =
+      0;  ///< how much the chain's right side grows from the first to the last corner [m]
 };
 
 /// Mean and slope of a chain beside its edge.
@@ -105,8 +106,7 @@ Moves fitted(const std::vector<Edge>& edges, std::size_t corners) {
   };
   Moves x(corners, Point2{}), r = force, p(corners), z(corners), q(corners);
   const auto precondition = [&] {
-    for (std::size_t k = 0; k < corners; ++k)
-      z[k] = {r[k][0] / inertia[k], r[k][1] / inertia[k]};
+    for (std::size_t k = 0; k < corners; ++k) z[k] = {r[k][0] / inertia[k], r[k][1] / inertia[k]};
   };
   precondition();
   p = z;
@@ -147,7 +147,8 @@ void restore_areas(const std::vector<SimplifiedRing>& rings) {
   bool any = false;
   for (const auto& [given, fewer, area] : rings) {
     auto& corners = corners_of.emplace_back();
-    for (const Point2& p : *fewer) corners.push_back(number.try_emplace(p, number.size()).first->second);
+    for (const Point2& p : *fewer)
+      corners.push_back(number.try_emplace(p, number.size()).first->second);
     any = any || given->size() != fewer->size() || area != signed_area(*fewer);
     each_chain(*given, *fewer, [&](std::size_t k, std::span<const Point2> chain) {
       const EdgeFrame frame(chain.front(), chain.back());

@@ -16,6 +16,7 @@
 
 #include "floe/geometry/polyhedron.h"
 #include "floe/mesh/outline.h"
+#include "mesh/outline_area.h"
 
 namespace floe {
 namespace {
@@ -127,6 +128,8 @@ std::string flaw_of_ring(const Ring& ring) {
 
 /// Why the holes of a polygon are none; empty if they are.
 std::string flaw_of_holes(const RingedPolygon& polygon, const std::string& name) {
+  std::vector<PlanBox> boxes;
+  for (const Ring& ring : polygon) boxes.push_back(box_of({ring}));
   for (std::size_t i = 1; i < polygon.size(); ++i) {
     const std::string hole = name + ", hole " + std::to_string(i);
     if (const std::string at = crossing(polygon.front(), polygon[i]); !at.empty())
@@ -134,6 +137,7 @@ std::string flaw_of_holes(const RingedPolygon& polygon, const std::string& name)
     for (const Point2& p : polygon[i])
       if (where(polygon.front(), p) == outside) return hole + ": lies outside" + place(p);
     for (std::size_t j = 1; j < i; ++j) {
+      if (are_apart(boxes[i], boxes[j])) continue;
       std::string at = crossing(polygon[i], polygon[j]);
       for (const auto& [one, other] : {std::pair{i, j}, std::pair{j, i}})
         for (const Point2& p : polygon[one])
@@ -188,14 +192,15 @@ std::string Outline::flaw() const {
     std::string why = flaw_of_holes(polygons_[k], name_of_ring(*this, k, 0));
     if (!why.empty()) return why;
   }
-  const std::optional<OverlappingPolygons> pair = find_overlap(polygons_);
-  if (!pair) return {};
-  return name_of_ring(*this, pair->first, 0) + " and polygon " + std::to_string(pair->second + 1) +
-         ": overlap" + pair->place;
+  const std::vector<OverlappingPolygons> pair = find_overlaps(polygons_, 0, 1);
+  if (pair.empty()) return {};
+  return name_of_ring(*this, pair.front().first, 0) + " and polygon " +
+         std::to_string(pair.front().second + 1) + ": overlap" + pair.front().place;
 }
 
-std::optional<OverlappingPolygons> find_overlap(const std::vector<RingedPolygon>& given,
-                                                double slack) {
+std::vector<OverlappingPolygons> find_overlaps(const std::vector<RingedPolygon>& given,
+                                               double slack, std::size_t most) {
+  std::vector<OverlappingPolygons> found;
   std::vector<RingedPolygon> polygons = given;
   if (slack > 0)
     for (RingedPolygon& polygon : polygons)
@@ -212,10 +217,11 @@ std::optional<OverlappingPolygons> find_overlap(const std::vector<RingedPolygon>
       const auto [a, b] = std::minmax(order[i], order[j]);
       if (boxes[order[j]].least[0] > boxes[order[i]].most[0]) break;
       if (std::string at = overlap(polygons[a], polygons[b]); !at.empty())
-        return OverlappingPolygons{a, b, std::move(at)};
+        found.push_back({a, b, std::move(at)});
+      if (found.size() == most) return found;
     }
   }
-  return {};
+  return found;
 }
 
 namespace {
@@ -241,59 +247,22 @@ std::size_t farthest(const Ring& ring) {
   return static_cast<std::size_t>(most - ring.begin());
 }
 
-/// Area between a chain of corners and the straight line from its first to its last [m^2].
-double area_beside(const std::vector<Point2>& chain) {
-  const Point2 o = chain.front();
-  const double ex = chain.back()[0] - o[0], ey = chain.back()[1] - o[1], e = std::hypot(ex, ey);
-  const auto local = [&](const Point2& p) {
-    const double x = p[0] - o[0], y = p[1] - o[1];
-    return Point2{(ex * x + ey * y) / e, (ex * y - ey * x) / e};
-  };
-  double sum = 0, part = 0;  // of all lobes, of the one on this side of the line
-  Point2 last{0, 0};
-  for (std::size_t k = 1; k < chain.size(); ++k) {
-    const Point2 next = k + 1 < chain.size() ? local(chain[k]) : Point2{e, 0};
-    if (last[1] * next[1] < 0) {
-      const double s = last[0] + (next[0] - last[0]) * last[1] / (last[1] - next[1]);
-      sum += std::abs(part + (s - last[0]) * last[1] / 2);
-      part = (next[0] - s) * next[1] / 2;
-    } else {
-      part += (next[0] - last[0]) * (last[1] + next[1]) / 2;
-    }
-    last = next;
-  }
-  return sum + std::abs(part);
-}
-
-/// Area between a ring and one of some of its corners, in the same order from the same first [m^2].
-double area_between(const Ring& given, const Ring& fewer) {
-  double sum = 0;
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < fewer.size(); ++i) {
-    std::vector<Point2> chain{fewer[i]};
-    const Point2& end = fewer[(i + 1) % fewer.size()];
-    do {
-      k = (k + 1) % given.size();
-      chain.push_back(given[k]);
-    } while (given[k] != end);
-    if (chain.size() > 2) sum += area_beside(chain);
-  }
-  return sum;
-}
-
-}  // namespace
-
-SimplifiedOutline simplified(const Outline& outline, double tolerance) {
-  if (tolerance == 0) return {outline, 0};
-  SimplifiedOutline result;
+/// Simplifies an outline by CGAL.
+/// \param given  set to its polygons, with corners where they touch and without holes that are
+///   filled; those of the result are some of their corners, in the same order from the same first
+/// \param filled  set to the area of the holes of each polygon that are filled [m^2]
+std::vector<RingedPolygon> taken_out(const Outline& outline, double tolerance,
+                                     std::vector<RingedPolygon>& given,
+                                     std::vector<double>& filled) {
   Triangulation triangulation;
   std::vector<std::vector<Triangulation::Constraint_id>> constraints;
+  filled.assign(outline.polygons().size(), 0.0);
   for (const RingedPolygon& polygon : outline.polygons()) {
     constraints.emplace_back();
     for (const Ring& ring : polygon) {
-      const double area = std::abs(Outline({{ring}}).area());
+      const double area = std::abs(mesh::signed_area(ring));
       if (&ring != &polygon.front() && area < tolerance * tolerance) {
-        result.moved += area;
+        filled[constraints.size() - 1] += area;
         continue;
       }
       std::vector<Kernel::Point_2> points;
@@ -319,18 +288,54 @@ SimplifiedOutline simplified(const Outline& outline, double tolerance) {
     }
     return polygons;
   };
-  const std::vector<RingedPolygon> given = rings();
+  given = rings();
   simplification::simplify(triangulation, simplification::Squared_distance_cost(),
                            simplification::Stop_above_cost_threshold(tolerance * tolerance));
   std::vector<RingedPolygon> polygons = rings();
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    for (std::size_t r = 0; r < given[k].size(); ++r) {
+  for (std::size_t k = 0; k < given.size(); ++k)
+    for (std::size_t r = 0; r < given[k].size(); ++r)
       if (polygons[k][r].size() < 3) polygons[k][r] = given[k][r];
-      result.moved += area_between(given[k][r], polygons[k][r]);
+  return polygons;
+}
+
+/// Takes corners out, and moves the others as the areas are to be kept. \return whether all lies
+/// within `most` of the given outline, and is an outline
+bool simplify(const Outline& outline, double tolerance, double most, Areas areas,
+              SimplifiedOutline& result) {
+  std::vector<RingedPolygon> given;
+  std::vector<double> filled;
+  std::vector<RingedPolygon> polygons = taken_out(outline, tolerance, given, filled);
+  const std::vector<RingedPolygon> before = polygons;
+  std::vector<mesh::SimplifiedRing> rings;
+  for (std::size_t k = 0; k < given.size(); ++k)
+    for (std::size_t r = 0; r < given[k].size(); ++r)
+      rings.push_back({&given[k][r], &polygons[k][r],
+                       mesh::signed_area(given[k][r]) + (r == 0 ? -filled[k] : 0)});
+  if (areas == Areas::kept) mesh::restore_areas(rings);
+  result.moved = 0;
+  for (const double area : filled) result.moved += area;
+  std::size_t next = 0;
+  for (const RingedPolygon& polygon : before) {
+    for (const Ring& ring : polygon) {
+      const mesh::SimplifiedRing& now = rings[next++];
+      result.moved += mesh::area_between(now, ring);
+      if (areas == Areas::kept && mesh::largest_deviation(now, ring) > most) return false;
     }
   }
   result.outline = Outline(std::move(polygons));
-  return result;
+  return areas != Areas::kept || result.outline.flaw().empty();
+}
+
+}  // namespace
+
+SimplifiedOutline simplified(const Outline& outline, double tolerance, Areas areas) {
+  if (tolerance == 0) return {outline, 0};
+  SimplifiedOutline result;
+  constexpr int tries = 10;
+  double least = tolerance;  // fewer corners are taken out where the others would move too far
+  for (int k = 0; k < tries; ++k, least *= 0.75)
+    if (simplify(outline, least, tolerance, areas, result)) return result;
+  return {outline, 0};
 }
 
 }  // namespace floe

@@ -148,52 +148,88 @@ SheetPlan rules_of(const SheetPlan& plan) {
           .tolerance = plan.tolerance};
 }
 
+bool is_convex(const Ring& ring) {
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()], &c = ring[(k + 2) % ring.size()];
+    if ((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0])) return false;
+  }
+  return true;
+}
+
+/// The area of a polygon without its holes over the mean area of cells.
+double cells_in(const RingedPolygon& polygon, double l) {
+  return 2 / (std::numbers::sqrt3 * l * l) * plan_properties(polygon.front()).area;
+}
+
+/// Whether a polygon is about as small as a cell, and may be one.
+bool is_small(const RingedPolygon& polygon, double l) {
+  constexpr double largest = 1.5;  // over the mean area of cells
+  constexpr double longest = 3;    // over l
+  const auto [least, most] = box_of(polygon);
+  return polygon.size() == 1 && std::hypot(most[0] - least[0], most[1] - least[1]) <= longest * l &&
+         cells_in(polygon, l) <= largest && is_convex(polygon.front());
+}
+
+/// The rectangle around a polygon, whose sides are multiples of l, so that floes of about one size
+/// share a relaxed mesh.
+MeshedBox rectangle_around(const RingedPolygon& polygon, const SheetPlan& rules) {
+  const auto [least, most] = box_of(polygon);
+  MeshedBox box{rules, {(least[0] + most[0]) / 2, (least[1] + most[1]) / 2}};
+  const double l = rules.element_size;
+  box.plan.length = (std::ceil((most[0] - least[0]) / l) + 2 * margin) * l;
+  box.plan.width = (std::ceil((most[1] - least[1]) / l) + 2 * margin) * l;
+  return box;
+}
+
+/// Whether rows of cells find room along all edges of a polygon.
+bool has_room(const RingedPolygon& polygon, const SheetPlan& plan) {
+  const MeshedBox box = rectangle_around(polygon, rules_of(plan));
+  const mesh::CutGraph graph = mesh::make_cut_graph(box.plan, edges_of(polygon, box));
+  const mesh::CutGenerators placed = mesh::place_generators(graph, box.plan);
+  return std::none_of(placed.pairs.begin(), placed.pairs.end(),
+                      [](const auto& pairs) { return pairs.empty(); });
+}
+
 /// \param rules  of this polygon
 /// \param own  empty, or the polygon's plan
-MeshedBox box_around(const RingedPolygon& polygon, const SheetPlan& rules,
-                     std::span<const PolygonPlan> own = {}) {
+MeshedBox box_of_plan(const RingedPolygon& polygon, const SheetPlan& rules,
+                      std::span<const PolygonPlan> own) {
   if (!own.empty() && own.front().rectangle) {
     const auto& [length, width, centre, axis] = *own.front().rectangle;
     MeshedBox box{rules, centre, axis, true};
     box.plan.length = length, box.plan.width = width;
     return box;
   }
-  const auto [least, most] = box_of(polygon);
-  MeshedBox box{rules, {(least[0] + most[0]) / 2, (least[1] + most[1]) / 2}};
-  const double l = rules.element_size;
-  if (is_one_cell(polygon, l)) {  // its box is not used
-    box.plan.length = box.plan.width = l;
-    return box;
-  }
-  // Multiples of l, so that floes of about one size share a relaxed mesh.
-  box.plan.length = (std::ceil((most[0] - least[0]) / l) + 2 * margin) * l;
-  box.plan.width = (std::ceil((most[1] - least[1]) / l) + 2 * margin) * l;
+  MeshedBox box = rectangle_around(polygon, rules);
+  if (is_one_cell(polygon, rules))  // its box is not used
+    box.plan.length = box.plan.width = rules.element_size;
   return box;
+}
+
+/// The lengths, element size and seed of a rectangle, by which boxes share a relaxed mesh.
+using MeshKey = std::tuple<double, double, double, std::uint64_t>;
+MeshKey key_of(const SheetPlan& plan) {
+  return {plan.length, plan.width, plan.element_size, plan.seed};
+}
+
+/// Mirrors the generators of a rectangle that others have used already: in x, in y, in both, so
+/// that floes of one size do not all have the same cells.
+void mirror(std::vector<Point2>& generators, int use) {
+  const double x = use % 2 == 0 ? 1 : -1, y = use / 2 % 2 == 0 ? 1 : -1;
+  for (Point2& z : generators) z = {x * z[0], y * z[1]};
 }
 
 }  // namespace
 
-bool is_one_cell(const RingedPolygon& polygon, double l) {
-  constexpr double largest = 1.5;  // over the mean area of cells
-  constexpr double longest = 3;    // over l
-  const auto [least, most] = box_of(polygon);
-  if (polygon.size() != 1 || std::hypot(most[0] - least[0], most[1] - least[1]) > longest * l)
-    return false;
-  const Ring& ring = polygon.front();
-  for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()], &c = ring[(k + 2) % ring.size()];
-    if ((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0])) return false;
-  }
-  return plan_properties(ring).area <= largest * std::numbers::sqrt3 / 2 * l * l;
+bool is_one_cell(const RingedPolygon& polygon, const SheetPlan& plan) {
+  constexpr double most = 6;  // over the mean area of cells
+  if (is_small(polygon, plan.element_size)) return true;
+  return cells_in(polygon, plan.element_size) <= most && polygon.size() == 1 &&
+         is_convex(polygon.front()) && !has_room(polygon, plan);
 }
 
 bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan) {
-  if (is_one_cell(polygon, plan.element_size)) return true;
-  const MeshedBox box = box_around(polygon, rules_of(plan));
-  const mesh::CutGraph graph = mesh::make_cut_graph(box.plan, edges_of(polygon, box));
-  const mesh::CutGenerators placed = mesh::place_generators(graph, box.plan);
-  return std::none_of(placed.pairs.begin(), placed.pairs.end(),
-                      [](const auto& pairs) { return pairs.empty(); });
+  return is_small(polygon, plan.element_size) || has_room(polygon, plan);
 }
 
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan) {
@@ -206,19 +242,17 @@ std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan) {
       own = {&plan.of_polygon[k], 1};
       rules.element_size = own.front().element_size, rules.seed = own.front().seed;
     }
-    boxes.push_back(box_around(plan.outline.polygons()[k], rules, own));
+    boxes.push_back(box_of_plan(plan.outline.polygons()[k], rules, own));
   }
   return boxes;
 }
 
 std::vector<Tessellation> tessellate(const std::vector<MeshedBox>& boxes, MPI_Comm comm,
                                      const std::function<void(int, double)>& on_iteration) {
-  std::map<std::tuple<double, double, double, std::uint64_t>, std::size_t> of_size;
+  std::map<MeshKey, std::size_t> of_size;
   std::vector<Tessellation> cells;
   for (const MeshedBox& box : boxes) {
-    const SheetPlan& plan = box.plan;
-    const auto [same, is_new] =
-        of_size.try_emplace({plan.length, plan.width, plan.element_size, plan.seed}, cells.size());
+    const auto [same, is_new] = of_size.try_emplace(key_of(box.plan), cells.size());
     Tessellation made = is_new ? tessellate(box.plan, comm, on_iteration) : cells[same->second];
     cells.push_back(std::move(made));
   }
@@ -231,6 +265,7 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
   OutlinedCells result;
   result.cells.offset.assign(1, 0);
   result.cuts.resize(cuts.size());
+  std::map<MeshKey, int> uses;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     const RingedPolygon& polygon = plan.outline.polygons()[k];
     const MeshedBox& box = boxes[k];
@@ -240,7 +275,7 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
     std::vector<std::size_t> cut_of_line;
     result.cells.iterations = std::max(result.cells.iterations, relaxed[k].iterations);
     const auto index = static_cast<std::int32_t>(k);
-    if (!box.is_polygon && is_one_cell(polygon, box.plan.element_size)) {
+    if (!box.is_polygon && is_one_cell(polygon, box.plan)) {
       for (std::size_t c = 0; c < cuts.size(); ++c)
         for (const auto& [from, to] : clipped(polygon, cuts[c]))
           result.cuts[c].length += std::hypot(to[0] - from[0], to[1] - from[1]);
@@ -253,6 +288,7 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
         cut_of_line.push_back(c);
       }
     }
+    if (!box.is_polygon) mirror(relaxed[k].generators, uses[key_of(box.plan)]++);
     const FittedCells fitted = fit_to_cuts(box.plan, std::move(relaxed[k]), lines, comm);
     std::size_t ring = 0, first = 0;
     for (std::size_t e = 0; e < edges; ++e) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -160,14 +161,22 @@ OutlineFeatures nested(const std::vector<Ring>& rings) {
   std::vector<std::vector<std::size_t>> around(n);
   std::vector<PlanBox> boxes;
   for (const Ring& ring : rings) boxes.push_back(box_of({ring}));
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      bool within = i != j;
-      for (std::size_t axis = 0; axis < 2; ++axis)
-        within = within && boxes[j].least[axis] <= boxes[i].least[axis] &&
-                 boxes[i].most[axis] <= boxes[j].most[axis];
+  // From left to right, so that only rings that overlap in x are compared.
+  std::vector<std::size_t> order(n), open;
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(boxes[a].least[0], -boxes[a].most[0]) <
+           std::pair(boxes[b].least[0], -boxes[b].most[0]);
+  });
+  for (const std::size_t i : order) {
+    std::erase_if(open, [&](std::size_t j) { return boxes[j].most[0] < boxes[i].least[0]; });
+    for (const std::size_t j : open) {
+      const bool within = boxes[i].most[0] <= boxes[j].most[0] &&
+                          boxes[j].least[1] <= boxes[i].least[1] &&
+                          boxes[i].most[1] <= boxes[j].most[1];
       if (within && contains({rings[j]}, rings[i].front())) around[i].push_back(j);
     }
+    if (rings[i].size() > 2) open.push_back(i);
   }
   OutlineFeatures features;
   std::vector<std::size_t> feature(n);

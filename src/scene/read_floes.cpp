@@ -41,11 +41,12 @@ const Floe& floe_of(const Scene& scene, std::size_t polygon) {
 
 /// Refuses floes that overlap by more than rounding.
 void check_apart(const Scene& scene, const std::vector<RingedPolygon>& polygons) {
-  const auto overlap = find_overlap(polygons, 1e-9 * scene.sheet.element_size);
-  if (!overlap) return;
-  const Floe &a = floe_of(scene, overlap->first), &b = floe_of(scene, overlap->second);
+  const auto overlaps = find_overlaps(polygons, 1e-9 * scene.sheet.element_size, 1);
+  if (overlaps.empty()) return;
+  const OverlappingPolygons& pair = overlaps.front();
+  const Floe &a = floe_of(scene, pair.first), &b = floe_of(scene, pair.second);
   const double tolerance = std::max(a.outline.simplify, b.outline.simplify);
-  throw InputError("floe: " + a.name + " and floe: " + b.name + " overlap" + overlap->place +
+  throw InputError("floe: " + a.name + " and floe: " + b.name + " overlap" + pair.place +
                    (tolerance > 0 ? ", as simplified to " + text_of(tolerance) + " m" : "") +
                    "; they may touch");
 }

@@ -1,6 +1,8 @@
 // Reading of outlines, of the sheet or of floes: the file, its place, its simplification.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "floe/mesh/cuts.h"
 #include "options/option_values.h"
@@ -94,32 +96,50 @@ Outline OutlineReader::chosen(const OutlineFeatures& features, std::int64_t numb
   return Outline(std::move(polygons));
 }
 
-/// Simplifies each polygon by the least of some tolerances with which cells can end on its edges;
-/// all polygons together by half of the element size if they would overlap else.
+/// Simplifies each polygon by the least of some tolerances with which cells can end on its edges.
+/// Polygons that would overlap, since their corners moved, keep these where they are; if they still
+/// would, all are simplified together by half of the element size.
 SimplifiedOutline OutlineReader::simplified_as_needed(const Outline& given, const SheetPlan& plan) {
   const double l = plan.element_size;
   // Over l. A smaller one leaves corners whose cells halve the stable step of the explicit scheme.
   constexpr std::array tolerances{0.4, 0.8};
   SimplifiedOutline result;
-  std::vector<RingedPolygon> polygons;
   source_.simplify = 0, source_.least_simplify = tolerances.back() * l;
-  for (const RingedPolygon& polygon : given.polygons()) {
+  const auto simplify = [&](const RingedPolygon& polygon, Areas areas) {
     SimplifiedOutline one;
-    double tolerance = 0;
-    for (const double t : tolerances) {
-      tolerance = t * l;
-      one = simplified(Outline({polygon}), tolerance);
-      if (can_be_followed(one.outline.polygons().front(), plan)) break;
-    }
-    source_.simplify = std::max(source_.simplify, tolerance);
-    source_.least_simplify = std::min(source_.least_simplify, tolerance);
-    result.moved += one.moved;
-    polygons.push_back(one.outline.polygons().front());
+    const auto found = [&](auto&& serves) {
+      return std::find_if(tolerances.begin(), tolerances.end(), [&](double t) {
+        one = simplified(Outline({polygon}), t * l, areas);
+        return serves(one.outline.polygons().front(), plan);
+      });
+    };
+    auto tolerance = found(can_be_followed);
+    if (tolerance == tolerances.end()) tolerance = found(is_one_cell);
+    if (tolerance == tolerances.end()) --tolerance;
+    source_.simplify = std::max(source_.simplify, *tolerance * l);
+    source_.least_simplify = std::min(source_.least_simplify, *tolerance * l);
+    return one;
+  };
+  std::vector<RingedPolygon> polygons;
+  std::vector<double> moved;
+  const auto take = [&](std::size_t k, Areas areas) {
+    SimplifiedOutline one = simplify(given.polygons()[k], areas);
+    polygons[k] = one.outline.polygons().front(), moved[k] = one.moved;
+  };
+  const std::size_t n = given.polygons().size();
+  polygons.resize(n), moved.resize(n);
+  for (std::size_t k = 0; k < n; ++k) take(k, Areas::kept);
+  const auto overlaps = [&] { return find_overlaps(polygons, 0, n * n); };
+  std::set<std::size_t> shrunk;
+  for (const OverlappingPolygons& pair : overlaps()) shrunk.insert({pair.first, pair.second});
+  for (const std::size_t k : shrunk) take(k, Areas::changed);
+  if (!shrunk.empty() && !overlaps().empty()) {
+    source_.simplify = source_.least_simplify = l / 2;
+    return simplified(given, l / 2);
   }
   result.outline = Outline(std::move(polygons));
-  if (given.polygons().size() == 1 || result.outline.flaw().empty()) return result;
-  source_.simplify = source_.least_simplify = l / 2;
-  return simplified(given, l / 2);
+  for (const double area : moved) result.moved += area;
+  return result;
 }
 
 Outline OutlineReader::read(const SheetPlan& plan, const std::string& size_key, Scene& scene) {

@@ -226,11 +226,13 @@ TEST(Outline, WhetherEdgesCanBeFollowedIsKnownBeforeMeshing) {
 
 TEST(Outline, SmallConvexPolygonsAreOneCell) {
   const Ring small = turned({{0, 0}, {1.4, 0}, {1.5, 0.7}, {0.1, 0.8}}, 20);
-  EXPECT_TRUE(is_one_cell({small}, 1));
-  EXPECT_FALSE(is_one_cell({small}, 0.8));                                   // too large
-  EXPECT_FALSE(is_one_cell({box(0, 3, 0, 0.3)}, 1));                         // too long
-  EXPECT_FALSE(is_one_cell({{{0, 0}, {1, 0}, {0.2, 0.2}, {0, 1}}}, 1));      // not convex
-  EXPECT_FALSE(is_one_cell({box(0, 1, 0, 1), box(0.4, 0.6, 0.4, 0.6)}, 1));  // with a hole
+  const auto is_one = [](const RingedPolygon& polygon, double l) {
+    return is_one_cell(polygon, plan_of(Outline({polygon}), l));
+  };
+  EXPECT_TRUE(is_one({small}, 1));
+  EXPECT_FALSE(is_one({box(0, 2, 0, 1.5)}, 1));                         // too large
+  EXPECT_FALSE(is_one({{{0, 0}, {1, 0}, {0.2, 0.2}, {0, 1}}}, 1));      // not convex
+  EXPECT_FALSE(is_one({box(0, 1, 0, 1), box(0.4, 0.6, 0.4, 0.6)}, 1));  // with a hole
   const SheetPlan plan = plan_of(Outline({{small}, {box(4, 8, 0, 3)}, {turned(small, 90)}}), 1);
   const OutlinedCells made = meshed(plan);
   const Tessellation& t = made.cells;
@@ -241,6 +243,34 @@ TEST(Outline, SmallConvexPolygonsAreOneCell) {
   EXPECT_EQ(polygon(t, 0).size(), 4U);
   EXPECT_EQ(t.sides[0], side_left | side_right | side_bottom | side_top);
   expect_tiles(plan, t);
+}
+
+TEST(Outline, SlenderConvexPolygonsAreOneCell) {
+  const Ring needle{{0, 0}, {6, 0.4}, {6.1, 1.2}};  // rows of cells find no room at its tip
+  const SheetPlan plan = plan_of(Outline({{needle}}), 1);
+  EXPECT_TRUE(is_one_cell({needle}, plan));
+  EXPECT_FALSE(can_be_followed({needle}, plan));
+  const OutlinedCells made = meshed(plan);
+  EXPECT_TRUE(made.unfollowed.empty());
+  ASSERT_EQ(made.cells.generators.size(), 1U);
+  expect_tiles(plan, made.cells);
+  Ring large = needle;
+  for (Point2& p : large) p = {4 * p[0], 4 * p[1]};
+  EXPECT_FALSE(is_one_cell({large}, plan_of(Outline({{large}}), 1)));
+}
+
+TEST(Outline, FloesOfOneSizeHaveCellsOfTheirOwn) {
+  std::vector<RingedPolygon> polygons;
+  for (int k = 0; k < 5; ++k) polygons.push_back({box(20 * k, 20 * k + 10, 0, 7)});
+  const SheetPlan plan = plan_of(Outline(polygons), 1);
+  const OutlinedCells made = meshed(plan);
+  expect_tiles(plan, made.cells);
+  std::vector<std::vector<double>> areas(5);
+  for (std::size_t k = 0; k < made.polygon.size(); ++k)
+    areas[static_cast<std::size_t>(made.polygon[k])].push_back(
+        plan_properties(polygon(made.cells, k)).area);
+  for (int k = 1; k < 4; ++k) EXPECT_NE(areas[0], areas[static_cast<std::size_t>(k)]);
+  EXPECT_EQ(areas[0].size(), areas[4].size());  // the first once more
 }
 
 TEST(Outline, SidesAreThoseOfTheNormals) {

@@ -47,11 +47,11 @@ struct MeshedBox {
   bool is_polygon = false;           ///< whether all of its cells are kept
 };
 /// Whether a polygon is a single cell: convex, of the area of one and a half hexagons of the mean
-/// cell area at most, and nowhere longer than 3 l.
-/// \param l  element size [m]
-bool is_one_cell(const RingedPolygon& polygon, double l);
+/// cell area at most, and nowhere longer than 3 l; or convex, of the area of 6 hexagons at most,
+/// and too slender for rows of cells along its edges. \param plan  element_size and seed are used
+bool is_one_cell(const RingedPolygon& polygon, const SheetPlan& plan);
 
-/// Whether rows of cells find room along all edges of a polygon, or it is a single cell.
+/// Whether rows of cells find room along all edges of a polygon, or it is about as small as a cell.
 /// \param plan  element_size and seed are used
 bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan);
 
