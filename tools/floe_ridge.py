@@ -1,34 +1,41 @@
-"""Ridges of loose blocks: a keel floated up under a lid or a sheet, a sail let fall upon it, both
-carved to shape and settled.
+"""Ridges of loose blocks: keel and sail are poured, carved to shape, put together and let float.
 
 Blocks are boxes with their sides drawn about a mean; floe moves them (explicit steps, contact,
-water). The ridge runs along y, between two walls.
+water). The ridge runs along y, between two walls; x runs across it; z = 0 is the water's level.
+The keel is poured as the sail is, by gravity upon a floor, and then turned upside down: so it is
+packed as blocks are that float up under ice, but in a tenth of the time.
 """
 import subprocess
-import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import floe_lattice as fl
 import floe_program
 import h5py
 import numpy as np
-from floe_program import BadInput
+from scipy.spatial import cKDTree
 
-LID = 6.0  # m; thickness of the box that is the lid
-# Contact of the blocks while they settle: soft, so that steps are long; what it lets overlap is a
-# part of a thousand of a block.
-CONTACT = "contact: {young: %g, friction: %g, restitution: 0.1}\n"
+# Contact is soft while blocks settle, so that steps are long; blocks of 0.3 m overlap by less than
+# a thousandth of their thickness.
 SETTLE = """integrator: explicit
-forces: [%s]
+forces: [{forces}]
 lattice_file: blocks.h5
-water: {density: %g, drag_coefficient: 1, drag_linear: 300, added_mass: 0.5%s}
-%sobstacle:
-%stime: {end: %g}
-limit: {energy_error: 1}
-output: {dir: out, overwrite: true}
-checkpoint: {every: 1e9}
+{water}contact: {{young: {young}, friction: {friction}, restitution: 0.1}}
+obstacle:
+  names: [{names}]
+{walls}time: {{end: {seconds}}}
+limit: {{energy_error: 10}}
+output: {{dir: out, history: {seconds}}}
+checkpoint: {{every: 1e9}}
+{held}"""
+WATER = "water: {{density: {density}, drag_coefficient: 1, drag_linear: 300, added_mass: 0.5}}\n"
+HOLDS = 1.0  # friction while keel and sail come together: frozen flanks are steeper than loose ones
+FREEZE = """forces: [beam]
+lattice_file: blocks.h5
+bonds: {{gap: {gap}, young: {young}, box: [-1e9, 1e9, -1e9, 1e9, {low}, 1e9]}}
+boundary: {{names: [all], all: {{set: all, fix: x y z rx ry rz}}}}
+output: {{dir: out}}
 """
 
 
@@ -62,12 +69,6 @@ class Ridge:
         below = np.where(z >= -self.keel, self.bottom + down * (self.keel + z), 0)
         return np.maximum(0, np.where(z > 0, above, below))
 
-    def section(self, part):
-        """Area of the part's section [m^2]."""
-        depth, flat, angle = ((self.sail, self.crest, self.sail_angle) if part == "sail" else
-                              (self.keel, self.bottom, self.keel_angle))
-        return depth * (flat + depth / np.tan(angle))
-
     def widest(self, part):
         return float(self.width(1e-9 if part == "sail" else 0))
 
@@ -93,10 +94,9 @@ def loose_blocks(ridge, part, random):
     layer, cell = np.divmod(k, across[0] * across[1])
     i, j = np.divmod(cell, across[1])
     room = np.array([width / across[0], ridge.length / across[1]])
-    sign = 1 if part == "sail" else -1
     place = np.column_stack([(i + 0.5) * room[0] - width / 2,
                              (j + 0.5) * room[1] - ridge.length / 2,
-                             sign * (layer + 0.6) * pitch])
+                             (layer + 0.6) * pitch])
     lattice = fl.blocks(size, place, ridge.density)
     lattice.orientation = turned(random, count)
     return lattice, size
@@ -203,52 +203,132 @@ def placed(lattice):
     return lattice.position[body] + np.einsum("vij,vj->vi", turn, s.vertices), body
 
 
+class Failed(Exception):
+    """floe could not move the blocks; the text is what it said."""
+
+
+@dataclass
 class Settling:
-    """Runs of floe in a temporary folder."""
+    """Runs of floe in temporary folders.
 
-    def __init__(self, ridge, young, say):
-        self.ridge, self.young, self.say = ridge, young, say
+    ridge: Ridge; young: of the contact while blocks settle [Pa]; say: takes a line of text.
+    """
+    ridge: Ridge
+    young: float
+    say: object = print
+    steps: list = field(default_factory=list)
 
-    def box(self, name, low, high):
-        return f"  {name}: {{shape: box, box: [{', '.join(f'{x:.9g}' for x in low + high)}]}}\n"
-
-    def obstacles(self, walls):
-        names = ", ".join(walls)
-        return f"  names: [{names}]\n" + "".join(
-            f"  {name}: {{shape: halfspace, point: {list(map(float, point))}, "
-            f"normal: {list(map(float, normal))}, friction: {friction}}}\n"
-            for name, (point, normal, friction) in walls.items())
-
-    def settle(self, lattice, seconds, walls, held=None):
-        """Lets the bodies move; they come to rest where they then are."""
-        ridge = self.ridge
+    def run(self, lattice, scene):
+        """Runs a scene on blocks.h5; calls back with its folder of results."""
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             lattice.write(folder / "blocks.h5")
-            beams = len(lattice.bodies) > 0
-            forces = "gravity, buoyancy, drag, contact" + (", beam" if beams else "")
-            scene = SETTLE % (forces, ridge.water, ", shelter: 0" if False else "",
-                              CONTACT % (self.young, ridge.friction), self.obstacles(walls),
-                              seconds)
-            if held:
-                scene += f"boundary: {{names: [held], held: {{set: {held}, fix: x y z rx ry rz}}}}\n"
-            (folder / "settle.yaml").write_text(scene)
-            done = subprocess.run([floe_program.floe(), "settle.yaml"], cwd=folder,
-                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            (folder / "scene.yaml").write_text(scene)
+            done = subprocess.run([floe_program.floe(), "scene.yaml"], cwd=folder, text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             if done.returncode:
-                raise BadInput("blocks do not settle: " +
-                               " ".join(done.stderr.strip().splitlines()[-1:]))
-            return self.after(lattice, folder / "out")
+                raise Failed(" ".join((done.stderr.strip() or "no word").splitlines()[-1:]))
+            return read(folder / "out/lattice.h5"), last_frame(folder / "out")
 
-    def after(self, lattice, out):
-        last = sorted(p for p in (out / "fields").glob("*.h5") if p.stem.isdigit())[-1]
-        with h5py.File(last) as file:
-            frame = file[list(file)[-1]]
-            move, turn = frame["bodies_displacement"][:], frame["bodies_rotation_vector"][:]
+    def settle(self, what, lattice, seconds, walls, friction, water=True):
+        """Lets the bodies move for some seconds between walls {name: (point, normal, friction)},
+        but the set `sheet`; returns the lattice where they then are, at rest."""
+        self.say(f"{what}: {len(lattice.position)} bodies settle for {seconds:.3g} s")
+        ridge = self.ridge
+        lines = "".join(f"  {name}: {{shape: halfspace, point: {list(map(float, point))}, "
+                        f"normal: {list(map(float, normal))}, friction: {mu}}}\n"
+                        for name, (point, normal, mu) in walls.items())
+        forces = ["gravity", "contact"] + ["beam"] * (len(lattice.bodies) > 0)
+        forces += ["buoyancy", "drag"] * water
+        held = ("boundary: {names: [held], held: {set: sheet, fix: x y z rx ry rz}}\n"
+                if "sheet" in lattice.sets else "")
+        _, frame = self.run(lattice, SETTLE.format(
+            forces=", ".join(forces), water=WATER.format(density=ridge.water) * water,
+            young=self.young, friction=friction, names=", ".join(walls), walls=lines,
+            seconds=seconds, held=held))
+        move, turn = frame
         angle = np.linalg.norm(turn, axis=1)
-        half = np.where(angle > 1e-9, np.sin(angle / 2) / np.maximum(angle, 1e-300), 0.5)
+        half = 0.5 * np.sinc(angle / (2 * np.pi))
         spin = np.column_stack([np.cos(angle / 2), half[:, None] * turn])
-        lattice.position = lattice.position + move
-        lattice.orientation = product(spin, lattice.orientation)
-        lattice.orientation /= np.linalg.norm(lattice.orientation, axis=1)[:, None]
+        free = np.setdiff1d(np.arange(len(move)), lattice.sets.get("sheet", []))
+        lattice.position[free] += move[free]
+        turned = product(spin, lattice.orientation)[free]
+        lattice.orientation[free] = turned / np.linalg.norm(turned, axis=1)[:, None]
         return lattice
+
+    def freeze(self, lattice, depth, gap, young):
+        """The lattice with beams between faces within `gap` [m] down to a depth [m]."""
+        frozen, _ = self.run(lattice, FREEZE.format(gap=gap, young=young, low=-depth))
+        return frozen
+
+
+def last_frame(out):
+    """Displacements and rotation vectors of the last frame, n x 3 each."""
+    last = sorted(p for p in (out / "fields").glob("*.h5") if p.stem.isdigit())[-1]
+    with h5py.File(last) as file:
+        frame = file[sorted(file)[-1]]
+        return frame["bodies_displacement"][:], frame["bodies_rotation"][:]
+
+
+def make(ridge, settling, sheet=None):
+    """Makes the ridge; sheet: a floating lattice that stays above the keel and below the sail, or
+    None. Returns the lattice with the sets keel and sail, and the sides of the blocks n x 3 [m]."""
+    random = np.random.default_rng(ridge.seed)
+    top = bottom = 0.0
+    if sheet is not None:
+        z = placed(sheet)[0][:, 2]
+        top, bottom = z.max(), z.min()
+    shore = {"south": ((0, -ridge.length / 2, 0), (0, 1, 0), 0.0),
+             "north": ((0, ridge.length / 2, 0), (0, -1, 0), 0.0)}
+    parts, sides = {}, {}
+    for part, plane in (("keel", bottom), ("sail", top)):
+        if (ridge.keel + plane if part == "keel" else ridge.sail - plane) <= 0:
+            continue
+        blocks, size = loose_blocks(ridge, part, random)
+        half = ridge.widest(part) / 2
+        walls = {**shore, "west": ((-half, 0, 0), (1, 0, 0), ridge.friction),
+                 "east": ((half, 0, 0), (-1, 0, 0), ridge.friction),
+                 "floor": ((0, 0, 0), (0, 0, 1), ridge.friction)}
+        fall = np.sqrt(2 * blocks.position[:, 2].max() / 9.81)
+        blocks = settling.settle(part, blocks, fall + 2, walls, ridge.friction, water=False)
+        if part == "keel":  # upside down, by half a turn about y
+            blocks.position *= [-1, 1, -1]
+            blocks.orientation = product(np.array([[0.0, 0, 1, 0]]), blocks.orientation)
+        blocks.position[:, 2] += plane
+        z = blocks.position[:, 2]
+        inside = np.abs(blocks.position[:, 0]) <= ridge.width(z) / 2
+        parts[part], sides[part] = picked(blocks, inside), size[inside]
+        parts[part].sets = {part: list(range(int(inside.sum())))}
+    whole = joined(*([sheet] if sheet is not None else []), *parts.values())
+    if sheet is not None:
+        whole.sets["sheet"] = list(range(len(sheet.position)))
+    whole = settling.settle("ridge", whole, 12.0, shore, HOLDS)
+    return whole, np.concatenate(list(sides.values()))
+
+
+def porosity(ridge, lattice, sides, part):
+    """The share of the part's section that is no ice, by points well inside the section; NaN if
+    there is no room for them."""
+    first = len(lattice.position) - len(sides)
+    centre, turn = lattice.position[first:], matrices(lattice.orientation[first:])
+    block = np.mean(ridge.blocks)
+    step = min(ridge.blocks) / 5
+    depth = ridge.sail if part == "sail" else ridge.keel
+    half = ridge.widest(part) / 2
+    x, y, z = np.meshgrid(np.arange(-half, half, step),
+                          np.arange(-ridge.length / 2 + block, ridge.length / 2 - block, step),
+                          np.arange(block / 2, depth - block / 2, step)
+                          * (1 if part == "sail" else -1), indexing="ij")
+    points = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    points = points[np.abs(points[:, 0]) <= ridge.width(points[:, 2]) / 2 - block / 2]
+    if "sheet" in lattice.sets:
+        corners = placed(picked(lattice, lattice.sets["sheet"]))[0][:, 2]
+        points = points[(points[:, 2] < corners.min()) | (points[:, 2] > corners.max())]
+    if not len(points):
+        return np.nan
+    reach = np.linalg.norm(sides, axis=1).max() / 2
+    full = np.zeros(len(points), bool)
+    for found, b in zip(cKDTree(points).query_ball_point(centre, reach), range(len(centre))):
+        local = np.abs((points[found] - centre[b]) @ turn[b])
+        full[np.array(found, int)[np.all(local <= sides[b] / 2, axis=1)]] = True
+    return 1 - full.mean()

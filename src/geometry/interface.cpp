@@ -170,6 +170,15 @@ struct Sums {
 
 }  // namespace
 
+bool is_inside(const Shapes& shapes, std::int32_t body, std::span<const Point3> placed,
+               const Point3& point, double by) {
+  const Placed solid{shapes, body, placed};
+  for (std::int32_t f = solid.first_face(); f < solid.end_face(); ++f) {
+    if (dot(solid.normal(f), point - solid.corner(f, 0)) > by) return false;
+  }
+  return true;
+}
+
 std::optional<Interface> find_interface(const Shapes& shapes, std::int32_t a, std::int32_t b,
                                         std::span<const Point3> placed_a,
                                         std::span<const Point3> placed_b, double reach) {

@@ -34,4 +34,8 @@ std::optional<Interface> find_interface(const Shapes& shapes, std::int32_t a, st
                                         std::span<const Point3> placed_a,
                                         std::span<const Point3> placed_b, double reach);
 
+/// Whether a point is in a convex body, or within `by` of it beyond the plane of a face [m].
+bool is_inside(const Shapes& shapes, std::int32_t body, std::span<const Point3> placed,
+               const Point3& point, double by);
+
 }  // namespace floe

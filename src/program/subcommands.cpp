@@ -28,6 +28,7 @@ constexpr std::array table{
     Subcommand{"render", "pictures and films of a run in space (needs ParaView)"},
     Subcommand{"make_lattice", "writes lattices of one's own: frames, regular sheets, blocks"},
     Subcommand{"make_floes", "makes fields of floes: concentration, sizes, shapes, leads"},
+    Subcommand{"make_ridge", "makes ridges of blocks: sail, keel, frozen to a depth"},
     Subcommand{"strength", "the strength of whole sheets over that of their beams"},
     Subcommand{"ensemble", "runs a scene many times: seeds, and parameters that are varied"},
     Subcommand{"campaign", "all sheets and tests of the paper"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -52,6 +53,15 @@ std::vector<std::array<std::int32_t, 2>> loose_pairs(const Lattice& lattice, dou
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
+}
+
+/// Bodies that beams join to each body, sorted.
+std::vector<std::vector<std::int32_t>> neighbours(const Lattice& lattice) {
+  std::vector<std::vector<std::int32_t>> all(lattice.bodies.position.size());
+  for (const auto& [i, j] : lattice.beams.bodies)
+    item(all, i).push_back(j), item(all, j).push_back(i);
+  for (auto& of_body : all) std::sort(of_body.begin(), of_body.end());
+  return all;
 }
 
 bool is_in(const std::array<double, 6>& box, const Point3& p) {
@@ -117,6 +127,15 @@ BondReport add_bonds(const Scene& scene, Lattice& lattice) {
     return std::span(placed).subspan(
         first, static_cast<std::size_t>(item(shapes.vertex_of, b + 1)) - first);
   };
+  const auto near = neighbours(lattice);
+  const auto is_between = [&](std::int32_t i, std::int32_t j, const Point3& middle) {
+    std::vector<std::int32_t> both;
+    std::set_intersection(item(near, i).begin(), item(near, i).end(), item(near, j).begin(),
+                          item(near, j).end(), std::back_inserter(both));
+    return std::any_of(both.begin(), both.end(), [&](std::int32_t k) {
+      return is_inside(shapes, k, vertices(k), middle, 1e-3 * scene.bonds.gap);
+    });
+  };
   fill_columns(beams, before);
   BondReport report;
   for (const auto& pair : loose_pairs(lattice, scene.bonds.gap)) {
@@ -124,7 +143,7 @@ BondReport add_bonds(const Scene& scene, Lattice& lattice) {
     const std::optional<Interface> face =
         find_interface(shapes, i, j, vertices(i), vertices(j), scene.bonds.gap);
     constexpr double least = 1e-3;
-    if (!face || !is_in(scene.bonds.box, face->centre)) continue;
+    if (!face || !is_in(scene.bonds.box, face->centre) || is_between(i, j, face->centre)) continue;
     const double volume =
         std::min(volume_properties(shapes, i).volume, volume_properties(shapes, j).volume);
     const double along =

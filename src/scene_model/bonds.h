@@ -23,9 +23,10 @@ std::string text_of(const BondReport& report);
 /// Adds a beam for each interface (geometry/interface.h) of two bodies that no beam joins yet, of
 /// at most `gap` between its faces and with its centre in the box. The beam is normal to the
 /// interface, through its centre, and ends at the feet of the bodies' centroids; its section has
-/// the interface's area and second moments. Interfaces smaller than 1e-3 V^(2/3), V the volume of
-/// the smaller body, are none.
-/// \throws InputError if the lattice has no shapes, or if there is no interface
+/// the interface's area and second moments. Interfaces with a third body in between, to which beams
+/// join both, are none (cells of a sheet that almost meet), nor are those smaller than 1e-3
+/// V^(2/3), V the volume of the smaller body. \throws InputError if the lattice has no shapes, or
+/// if there is no interface
 BondReport add_bonds(const Scene& scene, Lattice& lattice);
 
 }  // namespace floe

@@ -106,6 +106,16 @@ TEST(Interfaces, OfAWedgeEndsWhereTheGapIsTheReach) {
   }
 }
 
+TEST(Interfaces, LieInNoThirdBody) {
+  Shapes box;
+  test::append_box(box, 2, 1, 1);
+  const auto corners = placed(box, 0, upright, {1, 0, 0});
+  EXPECT_TRUE(is_inside(box, 0, corners, {1.9, 0.4, -0.4}, 0));
+  EXPECT_FALSE(is_inside(box, 0, corners, {2.1, 0.4, -0.4}, 0.05));
+  EXPECT_TRUE(is_inside(box, 0, corners, {2.1, 0.4, -0.4}, 0.15));
+  EXPECT_FALSE(is_inside(box, 0, corners, {-0.9, 0, 0}, 0.15));
+}
+
 TEST(Interfaces, TurnWithTheBodies) {
   Random random(7);
   for (int k = 0; k < 30; ++k) {
