@@ -89,20 +89,85 @@ void keep_inside(const FittedCells& fitted, const RingedPolygon& polygon, std::i
   }
 }
 
-/// Appends a polygon as a cell.
-void add_cell(const RingedPolygon& polygon, std::int32_t index, OutlinedCells& kept) {
-  Tessellation& all = kept.cells;
-  const Ring& ring = polygon.front();
-  std::uint8_t sides = 0;
+/// The part of a convex polygon on each side of a line: where a p_x + b p_y < c, and the rest. Both
+/// have the same corners on the line.
+std::array<Ring, 2> halves(const Ring& ring, const Point2& normal, double c) {
+  std::array<Ring, 2> parts;
+  const auto height = [&](const Point2& p) { return normal[0] * p[0] + normal[1] * p[1] - c; };
   for (std::size_t k = 0; k < ring.size(); ++k) {
-    const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
-    sides |= side_of({b[1] - a[1], a[0] - b[0]});
+    const Point2 &p = ring[k], &q = ring[(k + 1) % ring.size()];
+    const double hp = height(p), hq = height(q);
+    parts[hp < 0 ? 0 : 1].push_back(p);
+    if ((hp < 0) == (hq < 0)) continue;
+    const double t = hp / (hp - hq);
+    const Point2 on{p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])};
+    parts[0].push_back(on), parts[1].push_back(on);
   }
-  all.generators.push_back(plan_properties(ring).centroid);
-  all.vertices.insert(all.vertices.end(), ring.begin(), ring.end());
-  all.offset.push_back(static_cast<std::int32_t>(all.vertices.size()));
-  all.sides.push_back(sides);
-  kept.polygon.push_back(index);
+  for (Ring& part : parts) {  // a corner on the line
+    part.erase(std::unique(part.begin(), part.end()), part.end());
+    if (part.size() > 1 && part.front() == part.back()) part.pop_back();
+  }
+  return parts;
+}
+
+/// Direction in which a polygon extends most.
+Point2 long_axis(const Ring& ring) {
+  const PlanProperties p = plan_properties(ring);
+  const double angle = std::atan2(2 * p.xy, p.xx - p.yy) / 2;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+/// Cuts a convex polygon into cells of one area, one behind the other along its long axis.
+std::vector<Ring> row_of_cells(const Ring& ring, int number) {
+  const Point2 axis = long_axis(ring);
+  const auto along = [&](const Point2& p) { return axis[0] * p[0] + axis[1] * p[1]; };
+  const double each = plan_properties(ring).area / number;
+  std::vector<Ring> cells;
+  Ring rest = ring;
+  for (int k = 1; k < number; ++k) {
+    double low = along(rest.front()), high = low;
+    for (const Point2& p : rest) low = std::min(low, along(p)), high = std::max(high, along(p));
+    for (int step = 0; step < 60; ++step) {
+      const double middle = (low + high) / 2;
+      const Ring part = halves(rest, axis, middle)[0];
+      (part.size() < 3 || plan_properties(part).area < each ? low : high) = middle;
+    }
+    std::array<Ring, 2> parts = halves(rest, axis, high);
+    cells.push_back(std::move(parts[0]));
+    rest = std::move(parts[1]);
+  }
+  cells.push_back(std::move(rest));
+  return cells;
+}
+
+bool has_edge(const Ring& ring, const Point2& from, const Point2& to) {
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    if (ring[k] == from && ring[(k + 1) % ring.size()] == to) return true;
+  return false;
+}
+
+/// Appends a polygon as cells in a row.
+void add_row(const Ring& ring, int number, std::int32_t index, OutlinedCells& kept) {
+  Tessellation& all = kept.cells;
+  const std::vector<Ring> cells = row_of_cells(ring, number);
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const Ring& cell = cells[k];
+    const auto here = static_cast<std::int32_t>(all.generators.size());
+    std::uint8_t sides = 0;
+    for (std::size_t v = 0; v < cell.size(); ++v) {
+      const Point2 &a = cell[v], &b = cell[(v + 1) % cell.size()];
+      if (k > 0 && has_edge(cells[k - 1], b, a)) continue;
+      if (k + 1 < cells.size() && has_edge(cells[k + 1], b, a))
+        all.facets.push_back({{here, here + 1}, std::hypot(b[0] - a[0], b[1] - a[1])});
+      else
+        sides |= side_of({b[1] - a[1], a[0] - b[0]});
+    }
+    all.generators.push_back(plan_properties(cell).centroid);
+    all.vertices.insert(all.vertices.end(), cell.begin(), cell.end());
+    all.offset.push_back(static_cast<std::int32_t>(all.vertices.size()));
+    all.sides.push_back(sides);
+    kept.polygon.push_back(index);
+  }
 }
 
 /// Sets the measures of quality of the cells (see Tessellation).
@@ -161,15 +226,6 @@ double cells_in(const RingedPolygon& polygon, double l) {
   return 2 / (std::numbers::sqrt3 * l * l) * plan_properties(polygon.front()).area;
 }
 
-/// Whether a polygon is about as small as a cell, and may be one.
-bool is_small(const RingedPolygon& polygon, double l) {
-  constexpr double largest = 1.5;  // over the mean area of cells
-  constexpr double longest = 3;    // over l
-  const auto [least, most] = box_of(polygon);
-  return polygon.size() == 1 && std::hypot(most[0] - least[0], most[1] - least[1]) <= longest * l &&
-         cells_in(polygon, l) <= largest && is_convex(polygon.front());
-}
-
 /// The rectangle around a polygon, whose sides are multiples of l, so that floes of about one size
 /// share a relaxed mesh.
 MeshedBox rectangle_around(const RingedPolygon& polygon, const SheetPlan& rules) {
@@ -201,7 +257,7 @@ MeshedBox box_of_plan(const RingedPolygon& polygon, const SheetPlan& rules,
     return box;
   }
   MeshedBox box = rectangle_around(polygon, rules);
-  if (is_one_cell(polygon, rules))  // its box is not used
+  if (cells_in_a_row(polygon, rules) > 0)  // its box is not used
     box.plan.length = box.plan.width = rules.element_size;
   return box;
 }
@@ -221,15 +277,27 @@ void mirror(std::vector<Point2>& generators, int use) {
 
 }  // namespace
 
-bool is_one_cell(const RingedPolygon& polygon, const SheetPlan& plan) {
-  constexpr double most = 6;  // over the mean area of cells
-  if (is_small(polygon, plan.element_size)) return true;
-  return cells_in(polygon, plan.element_size) <= most && polygon.size() == 1 &&
-         is_convex(polygon.front()) && !has_room(polygon, plan);
+bool is_one_cell(const RingedPolygon& polygon, double l) {
+  constexpr double largest = 1.5;  // over the mean area of cells
+  constexpr double longest = 3;    // over l
+  constexpr std::size_t most_corners = 12;
+  const auto [least, most] = box_of(polygon);
+  return polygon.size() == 1 && polygon.front().size() <= most_corners &&
+         std::hypot(most[0] - least[0], most[1] - least[1]) <= longest * l &&
+         cells_in(polygon, l) <= largest && is_convex(polygon.front());
+}
+
+int cells_in_a_row(const RingedPolygon& polygon, const SheetPlan& plan) {
+  constexpr double most = 20, each = 1.5;  // over the mean area of cells
+  if (is_one_cell(polygon, plan.element_size)) return 1;
+  const double cells = cells_in(polygon, plan.element_size);
+  if (polygon.size() != 1 || cells > most || !is_convex(polygon.front()) || has_room(polygon, plan))
+    return 0;
+  return std::max(1, static_cast<int>(std::lround(cells / each)));
 }
 
 bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan) {
-  return is_small(polygon, plan.element_size) || has_room(polygon, plan);
+  return is_one_cell(polygon, plan.element_size) || has_room(polygon, plan);
 }
 
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan) {
@@ -275,11 +343,12 @@ OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> re
     std::vector<std::size_t> cut_of_line;
     result.cells.iterations = std::max(result.cells.iterations, relaxed[k].iterations);
     const auto index = static_cast<std::int32_t>(k);
-    if (!box.is_polygon && is_one_cell(polygon, box.plan)) {
+    const int in_a_row = box.is_polygon ? 0 : cells_in_a_row(polygon, box.plan);
+    if (in_a_row > 0) {
       for (std::size_t c = 0; c < cuts.size(); ++c)
         for (const auto& [from, to] : clipped(polygon, cuts[c]))
           result.cuts[c].length += std::hypot(to[0] - from[0], to[1] - from[1]);
-      add_cell(polygon, index, result);
+      add_row(polygon.front(), in_a_row, index, result);
       continue;
     }
     for (std::size_t c = 0; c < cuts.size(); ++c) {

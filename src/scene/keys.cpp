@@ -47,10 +47,10 @@ constexpr std::array table{
                "x, y to which the centroid comes", 2},
     OptionSpec{"sheet: outline_turn", number, "0", "degrees", ">= -360, <= 360",
                "turn about the centroid, counter-clockwise"},
-    OptionSpec{"sheet: outline_simplify", number, "(0.4 or 0.8 element_size)", "m", ">= 0, <= 1e9",
-               "corners that lie within this of the edge that takes their place are left out; 0: "
-               "none; by default each polygon the smaller with which cells can end on its "
-               "edges"},
+    OptionSpec{"sheet: outline_simplify", number, "(0.5 or 0.8 element_size)", "m", ">= 0, <= 1e9",
+               "corners that lie within this of the edge that takes their place are left out, the "
+               "area stays; 0: none; by default each polygon the smaller with which cells can end "
+               "on its edges"},
     OptionSpec{"sheet: thickness", number, "1", "m", ">= 1e-9, <= 1e9",
                "extent in z; with thickness_deviation the mean; where the features of the outline "
                "have a property thickness and the scene has no thickness, each floe has its own"},

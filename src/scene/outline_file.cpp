@@ -231,15 +231,16 @@ OutlineFeatures Reader::table(const std::string& text) {
 
 }  // namespace
 
-OutlineFeatures parse_outline(const std::string& text, const std::string& file) {
+OutlineFeatures parse_outline(const std::string& text, const std::string& file,
+                              const std::string& key) {
   const auto first = text.find_first_not_of(" \t\r\n");
   const bool is_json = file.ends_with(".json") || file.ends_with(".geojson") ||
                        (first != std::string::npos && text[first] == '{');
-  Reader reader(file);
+  Reader reader(file, key);
   OutlineFeatures features = is_json ? reader.json(text) : reader.table(text);
   const bool any = std::any_of(features.begin(), features.end(),
                                [](const auto& feature) { return !feature.polygons.empty(); });
-  if (!any) throw InputError("sheet: outline: '" + file + "': has no polygon");
+  if (!any) throw InputError(key + ": '" + file + "': has no polygon");
   return features;
 }
 

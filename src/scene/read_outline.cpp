@@ -101,20 +101,24 @@ Outline OutlineReader::chosen(const OutlineFeatures& features, std::int64_t numb
 /// would, all are simplified together by half of the element size.
 SimplifiedOutline OutlineReader::simplified_as_needed(const Outline& given, const SheetPlan& plan) {
   const double l = plan.element_size;
-  // Over l. A smaller one leaves corners whose cells halve the stable step of the explicit scheme.
-  constexpr std::array tolerances{0.4, 0.8};
+  // Over l. A smaller first one leaves corners whose cells shorten the stable step.
+  constexpr std::array tolerances{0.5, 0.8};
   SimplifiedOutline result;
   source_.simplify = 0, source_.least_simplify = tolerances.back() * l;
   const auto simplify = [&](const RingedPolygon& polygon, Areas areas) {
     SimplifiedOutline one;
+    if (is_one_cell(polygon, l)) {
+      source_.least_simplify = 0;
+      return SimplifiedOutline{Outline({polygon}), 0};
+    }
     const auto found = [&](auto&& serves) {
       return std::find_if(tolerances.begin(), tolerances.end(), [&](double t) {
         one = simplified(Outline({polygon}), t * l, areas);
-        return serves(one.outline.polygons().front(), plan);
+        return serves(one.outline.polygons().front(), plan) != 0;
       });
     };
     auto tolerance = found(can_be_followed);
-    if (tolerance == tolerances.end()) tolerance = found(is_one_cell);
+    if (tolerance == tolerances.end()) tolerance = found(cells_in_a_row);
     if (tolerance == tolerances.end()) --tolerance;
     source_.simplify = std::max(source_.simplify, *tolerance * l);
     source_.least_simplify = std::min(source_.least_simplify, *tolerance * l);
