@@ -148,6 +148,47 @@ std::string flaw_of_holes(const RingedPolygon& polygon, const std::string& name)
   return {};
 }
 
+/// Whether two edges lie on each other over some length, in the same direction: then the ice to
+/// their left does too.
+bool go_together(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
+  const Point2 e{b[0] - a[0], b[1] - a[1]}, f{d[0] - c[0], d[1] - c[1]};
+  if (!(e[0] * f[0] + e[1] * f[1] > 0) || turn(a, b, c) != 0 || turn(a, b, d) != 0) return false;
+  const std::size_t axis = std::abs(e[0]) > std::abs(e[1]) ? 0 : 1;
+  const auto [low, high] = std::minmax(a[axis], b[axis]);
+  const auto [from, to] = std::minmax(c[axis], d[axis]);
+  return std::max(low, from) < std::min(high, to);
+}
+
+/// Whether a point lies in a polygon, by more than rounding.
+bool is_deep_in(const RingedPolygon& polygon, const Point2& p) {
+  const auto [least, most] = box_of(polygon);
+  constexpr double rounding = 1e-9;
+  return where(polygon, p) == inside &&
+         Outline({polygon}).distance(p) > rounding * (most[0] - least[0] + most[1] - least[1]);
+}
+
+/// A place where edges of one polygon say that it overlaps another, though no edges cross and no
+/// corner of the one is inside the other: empty if there is none.
+std::string overlap_of_edges(const RingedPolygon& one, const RingedPolygon& other) {
+  const PlanBox around = box_of(other);
+  std::vector<std::array<Point2, 2>> edges;
+  for (const Ring& ring : other)
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      edges.push_back({ring[k], ring[(k + 1) % ring.size()]});
+  for (const Ring& ring : one) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      if (are_apart(around, box_of({{a, b}}))) continue;
+      const Point2 middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
+      const bool together = std::any_of(edges.begin(), edges.end(), [&](const auto& edge) {
+        return go_together(a, b, edge[0], edge[1]);
+      });
+      if (together || is_deep_in(other, middle)) return place(middle);
+    }
+  }
+  return {};
+}
+
 /// Where two polygons overlap; empty if they do not.
 std::string overlap(const RingedPolygon& a, const RingedPolygon& b) {
   if (are_apart(box_of(a), box_of(b))) return {};
@@ -157,9 +198,8 @@ std::string overlap(const RingedPolygon& a, const RingedPolygon& b) {
   for (const auto& [one, other] : {std::pair{&a, &b}, std::pair{&b, &a}})
     for (const Point2& p : one->front())
       if (where(*other, p) == inside) return place(p);
-  Ring sorted = a.front(), same = b.front();
-  std::sort(sorted.begin(), sorted.end()), std::sort(same.begin(), same.end());
-  return sorted == same ? place(a.front().front()) : "";
+  std::string at = overlap_of_edges(a, b);
+  return at.empty() ? overlap_of_edges(b, a) : at;
 }
 
 /// Moves each edge of a ring to its left, where the ice is, by a distance that is small beside the

@@ -427,6 +427,11 @@ TEST(Outline, Flaws) {
   EXPECT_NE(flaw({{whole, box(20, 21, 1, 2)}}).find("hole 1: lies outside"), std::string::npos);
   EXPECT_NE(flaw({{whole, box(1, 4, 1, 4), box(2, 3, 2, 3)}}).find("hole 2: overlaps hole 1"),
             std::string::npos);
+  EXPECT_NE(flaw({{whole}, {box(9, 12, 0, 10)}}), "");  // of one height: no edges cross
+  EXPECT_NE(flaw({{whole}, {{{5, 0}, {10, 5}, {5, 10}, {0, 5}}}}), "");  // inscribed
+  EXPECT_NE(flaw({{whole}, {whole}}), "");
+  EXPECT_EQ(flaw({{whole, box(2, 8, 2, 8)}, {box(2, 8, 2, 8)}}), "");  // it fills the hole
+  EXPECT_EQ(flaw({{whole}, {{{10, 5}, {14, 3}, {14, 7}}}}), "");       // a corner on an edge
   EXPECT_NE(flaw({{whole}, {box(5, 15, 5, 15)}}).find("polygon 1 and polygon 2: overlap"),
             std::string::npos);
   EXPECT_NE(flaw({{whole}, {box(2, 3, 2, 3)}}).find("overlap"), std::string::npos);
