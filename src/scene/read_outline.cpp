@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "floe/mesh/cuts.h"
@@ -96,9 +97,26 @@ Outline OutlineReader::chosen(const OutlineFeatures& features, std::int64_t numb
   return Outline(std::move(polygons));
 }
 
+/// Whether two polygons have as many corners.
+bool are_alike(const RingedPolygon& a, const RingedPolygon& b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(),
+                    [](const Ring& r, const Ring& s) { return r.size() == s.size(); });
+}
+
+/// The polygon whose corners lie between those of two others.
+RingedPolygon between(const RingedPolygon& a, const RingedPolygon& b, double share) {
+  RingedPolygon result = a;
+  for (std::size_t r = 0; r < a.size(); ++r)
+    for (std::size_t k = 0; k < a[r].size(); ++k)
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        result[r][k][axis] += share * (b[r][k][axis] - a[r][k][axis]);
+  return result;
+}
+
 /// Simplifies each polygon by the least of some tolerances with which cells can end on its edges.
-/// Polygons that would overlap, since their corners moved, keep these where they are; if they still
-/// would, all are simplified together by half of the element size.
+/// Where polygons come to overlap, their corners move less far, by quarters, down to where they
+/// were; if they still overlap, all are simplified together by half of the element size.
 SimplifiedOutline OutlineReader::simplified_as_needed(const Outline& given, const SheetPlan& plan) {
   const double l = plan.element_size;
   // Over l. A smaller first one leaves corners whose cells shorten the stable step.
@@ -124,26 +142,40 @@ SimplifiedOutline OutlineReader::simplified_as_needed(const Outline& given, cons
     source_.least_simplify = std::min(source_.least_simplify, *tolerance * l);
     return one;
   };
-  std::vector<RingedPolygon> polygons;
-  std::vector<double> moved;
-  const auto take = [&](std::size_t k, Areas areas) {
-    SimplifiedOutline one = simplify(given.polygons()[k], areas);
-    polygons[k] = one.outline.polygons().front(), moved[k] = one.moved;
-  };
   const std::size_t n = given.polygons().size();
-  polygons.resize(n), moved.resize(n);
-  for (std::size_t k = 0; k < n; ++k) take(k, Areas::kept);
-  const auto overlaps = [&] { return find_overlaps(polygons, 0, n * n); };
-  std::set<std::size_t> shrunk;
-  for (const OverlappingPolygons& pair : overlaps()) shrunk.insert({pair.first, pair.second});
-  for (const std::size_t k : shrunk) take(k, Areas::changed);
-  if (!shrunk.empty() && !overlaps().empty()) {
-    source_.simplify = source_.least_simplify = l / 2;
-    return simplified(given, l / 2);
+  std::vector<SimplifiedOutline> kept;
+  std::vector<std::optional<SimplifiedOutline>> shrunk(n);  // where corners stay where they are
+  std::vector<RingedPolygon> polygons;
+  std::vector<double> moved, share(n, 1.0);
+  for (const RingedPolygon& polygon : given.polygons()) {
+    kept.push_back(simplify(polygon, Areas::kept));
+    polygons.push_back(kept.back().outline.polygons().front());
+    moved.push_back(kept.back().moved);
   }
-  result.outline = Outline(std::move(polygons));
-  for (const double area : moved) result.moved += area;
-  return result;
+  for (bool changed = true; changed;) {
+    std::set<std::size_t> near;
+    for (const OverlappingPolygons& pair : find_overlaps(polygons, 0, n * n))
+      near.insert({pair.first, pair.second});
+    if (near.empty()) {
+      result.outline = Outline(std::move(polygons));
+      for (const double area : moved) result.moved += area;
+      return result;
+    }
+    changed = false;
+    for (const std::size_t k : near) {
+      if (share[k] == 0) continue;
+      changed = true, share[k] -= 0.25;
+      if (!shrunk[k]) shrunk[k] = simplify(given.polygons()[k], Areas::changed);
+      const RingedPolygon &most = kept[k].outline.polygons().front(),
+                          &least = shrunk[k]->outline.polygons().front();
+      if (!are_alike(most, least)) share[k] = 0;
+      polygons[k] = share[k] == 0 ? least : between(least, most, share[k]);
+      if (share[k] > 0 && !can_be_followed(polygons[k], plan)) share[k] = 0, polygons[k] = least;
+      moved[k] = share[k] * kept[k].moved + (1 - share[k]) * shrunk[k]->moved;
+    }
+  }
+  source_.simplify = source_.least_simplify = l / 2;
+  return simplified(given, l / 2);
 }
 
 Outline OutlineReader::read(const SheetPlan& plan, const std::string& size_key, Scene& scene) {
