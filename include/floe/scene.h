@@ -68,8 +68,33 @@ struct ThicknessField {
   double deviation = 0;                 ///< standard deviation of a random field [m]; 0: none
   std::array<double, 2> correlation{};  ///< its correlation lengths in x and y [m]
   std::uint64_t seed = 1;
-  std::vector<double> of_polygon{};  ///< of each polygon of the outline [m]; empty: not by polygon
+  /// of each polygon of the outline [m], NaN: as the field says; empty: not by polygon
+  std::vector<double> of_polygon{};
   bool varies() const { return !file.empty() || deviation > 0 || !of_polygon.empty(); }
+};
+
+/// Where an outline comes from: as placed, but before it was simplified.
+struct OutlineSource {
+  std::string file;                   ///< empty: a rectangle
+  double simplify = 0;                ///< tolerance [m]; where polygons have their own: the largest
+  double least_simplify = 0;          ///< the least [m]
+  std::vector<std::int32_t> feature;  ///< of each polygon, from 1
+  std::vector<double> thickness;      ///< of each polygon in the file [m]; NaN: none
+  bool has_thickness = false;         ///< whether these are taken
+  std::size_t corners = 0;            ///< of all rings
+  double area = 0;                    ///< [m^2]
+  double moved = 0;                   ///< area between it and the simplified one [m^2]
+};
+
+/// A floe with a section of its own.
+struct Floe {
+  std::string name;
+  OutlineSource outline;
+  std::size_t first = 0, polygons = 0;  ///< its polygons in the outline of the plan
+  double element_size = 2;              ///< [m]
+  std::uint64_t seed = 1;
+  std::vector<double> thickness;    ///< of each polygon [m]; empty: that of the sheet
+  double strength = 1, energy = 1;  ///< factors of those of fracture
 };
 
 /// The input of a run.
@@ -87,18 +112,8 @@ struct Scene {
   bool has_sheet = false;  ///< whether a sheet is meshed; otherwise lattice_file is read
   bool fit_cuts = true;    ///< whether the sheet's cells end on the lines of cuts
   SheetPlan sheet;
-  /// Where the sheet's outline comes from, as placed but before it was simplified.
-  struct {
-    std::string file;           ///< empty: the sheet is a rectangle
-    double simplify = 0;        ///< tolerance [m]; where polygons have their own: the largest
-    double least_simplify = 0;  ///< the least [m]
-    std::vector<std::int32_t> feature;  ///< of each polygon, from 1
-    std::vector<double> thickness;      ///< of each polygon in the file [m]; NaN: none
-    bool has_thickness = false;         ///< whether these are taken
-    std::size_t corners = 0;            ///< of all rings
-    double area = 0;                    ///< [m^2]
-    double moved = 0;                   ///< area between it and the simplified one [m^2]
-  } outline;
+  OutlineSource outline;    ///< of the sheet
+  std::vector<Floe> floes;  ///< whose polygons are the sheet's; empty: the sheet is one
   /// Ice that joins the sheet's left side, strip by strip, and leaves.
   struct {
     bool on = false;
@@ -107,8 +122,8 @@ struct Scene {
     /// Outside this box {x0, x1, y0, y1, z0, z1} pieces leave [m]; none: all stay.
     std::optional<std::array<double, 6>> region;
   } supply;
-  std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
-  double thickness = 1;   ///< of the sheet [m]; the mean of a random field
+  std::string mesh_file;    ///< file of the sheet's relaxed generators; empty: none
+  double thickness = 1;     ///< of the sheet [m]; the mean of a random field
   ThicknessField thickness_field;
   Ice ice;
   double shear_factor = 5.0 / 6.0;
@@ -188,6 +203,9 @@ struct Scene {
   std::vector<std::string> warnings;     ///< about numbers that suggest mistaken units
   std::set<std::string> unused_options;  ///< PETSc's, which no error reports if they are never read
 };
+
+/// Returns the plan area of a floe [m^2].
+double area_of(const Scene& scene, const Floe& floe);
 
 /// Reads the scene from the user's options. Collective.
 /// \param path  path of the scene's file, whose stem is the scene's name

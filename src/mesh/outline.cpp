@@ -7,19 +7,10 @@
 #include <span>
 
 #include "floe/geometry/polyhedron.h"
+#include "mesh/outline_area.h"
 
 namespace floe {
 namespace {
-
-double signed_area(const Ring& ring) {
-  // Relative to a corner: far from the origin the products would lose digits.
-  const Point2 o = ring.empty() ? Point2{} : ring.front();
-  double sum = 0;
-  for (std::size_t k = 1; k + 1 < ring.size(); ++k)
-    sum += (ring[k][0] - o[0]) * (ring[k + 1][1] - o[1]) -
-           (ring[k + 1][0] - o[0]) * (ring[k][1] - o[1]);
-  return sum / 2;
-}
 
 /// Calls visit(a, b) for each edge of a ring.
 template <class Visit>
@@ -47,7 +38,7 @@ Outline::Outline(std::vector<RingedPolygon> polygons) : polygons_(std::move(poly
       ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
       while (ring.size() > 1 && ring.back() == ring.front()) ring.pop_back();
       const bool is_outer = &ring == &polygon.front();
-      if ((signed_area(ring) > 0) != is_outer) std::reverse(ring.begin(), ring.end());
+      if ((mesh::signed_area(ring) > 0) != is_outer) std::reverse(ring.begin(), ring.end());
     }
   }
 }
@@ -62,7 +53,7 @@ std::size_t Outline::corners() const {
 double Outline::area() const {
   double sum = 0;
   for (const RingedPolygon& polygon : polygons_)
-    for (const Ring& ring : polygon) sum += signed_area(ring);
+    for (const Ring& ring : polygon) sum += mesh::signed_area(ring);
   return sum;
 }
 

@@ -16,6 +16,7 @@
 
 #include "floe/geometry/polyhedron.h"
 #include "floe/mesh/outline.h"
+#include "mesh/outline_area.h"
 
 namespace floe {
 namespace {
@@ -127,6 +128,8 @@ std::string flaw_of_ring(const Ring& ring) {
 
 /// Why the holes of a polygon are none; empty if they are.
 std::string flaw_of_holes(const RingedPolygon& polygon, const std::string& name) {
+  std::vector<PlanBox> boxes;
+  for (const Ring& ring : polygon) boxes.push_back(box_of({ring}));
   for (std::size_t i = 1; i < polygon.size(); ++i) {
     const std::string hole = name + ", hole " + std::to_string(i);
     if (const std::string at = crossing(polygon.front(), polygon[i]); !at.empty())
@@ -134,11 +137,53 @@ std::string flaw_of_holes(const RingedPolygon& polygon, const std::string& name)
     for (const Point2& p : polygon[i])
       if (where(polygon.front(), p) == outside) return hole + ": lies outside" + place(p);
     for (std::size_t j = 1; j < i; ++j) {
+      if (are_apart(boxes[i], boxes[j])) continue;
       std::string at = crossing(polygon[i], polygon[j]);
       for (const auto& [one, other] : {std::pair{i, j}, std::pair{j, i}})
         for (const Point2& p : polygon[one])
           if (at.empty() && where(polygon[other], p) == inside) at = place(p);
       if (!at.empty()) return hole + ": overlaps hole " + std::to_string(j) + at;
+    }
+  }
+  return {};
+}
+
+/// Whether two edges lie on each other over some length, in the same direction: then the ice to
+/// their left does too.
+bool go_together(const Point2& a, const Point2& b, const Point2& c, const Point2& d) {
+  const Point2 e{b[0] - a[0], b[1] - a[1]}, f{d[0] - c[0], d[1] - c[1]};
+  if (!(e[0] * f[0] + e[1] * f[1] > 0) || turn(a, b, c) != 0 || turn(a, b, d) != 0) return false;
+  const std::size_t axis = std::abs(e[0]) > std::abs(e[1]) ? 0 : 1;
+  const auto [low, high] = std::minmax(a[axis], b[axis]);
+  const auto [from, to] = std::minmax(c[axis], d[axis]);
+  return std::max(low, from) < std::min(high, to);
+}
+
+/// Whether a point lies in a polygon, by more than rounding.
+bool is_deep_in(const RingedPolygon& polygon, const Point2& p) {
+  const auto [least, most] = box_of(polygon);
+  constexpr double rounding = 1e-9;
+  return where(polygon, p) == inside &&
+         Outline({polygon}).distance(p) > rounding * (most[0] - least[0] + most[1] - least[1]);
+}
+
+/// A place where edges of one polygon say that it overlaps another, though no edges cross and no
+/// corner of the one is inside the other: empty if there is none.
+std::string overlap_of_edges(const RingedPolygon& one, const RingedPolygon& other) {
+  const PlanBox around = box_of(other);
+  std::vector<std::array<Point2, 2>> edges;
+  for (const Ring& ring : other)
+    for (std::size_t k = 0; k < ring.size(); ++k)
+      edges.push_back({ring[k], ring[(k + 1) % ring.size()]});
+  for (const Ring& ring : one) {
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+      const Point2 &a = ring[k], &b = ring[(k + 1) % ring.size()];
+      if (are_apart(around, box_of({{a, b}}))) continue;
+      const Point2 middle{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
+      const bool together = std::any_of(edges.begin(), edges.end(), [&](const auto& edge) {
+        return go_together(a, b, edge[0], edge[1]);
+      });
+      if (together || is_deep_in(other, middle)) return place(middle);
     }
   }
   return {};
@@ -153,9 +198,28 @@ std::string overlap(const RingedPolygon& a, const RingedPolygon& b) {
   for (const auto& [one, other] : {std::pair{&a, &b}, std::pair{&b, &a}})
     for (const Point2& p : one->front())
       if (where(*other, p) == inside) return place(p);
-  Ring sorted = a.front(), same = b.front();
-  std::sort(sorted.begin(), sorted.end()), std::sort(same.begin(), same.end());
-  return sorted == same ? place(a.front().front()) : "";
+  std::string at = overlap_of_edges(a, b);
+  return at.empty() ? overlap_of_edges(b, a) : at;
+}
+
+/// Moves each edge of a ring to its left, where the ice is, by a distance that is small beside the
+/// edges [m].
+Ring moved_inwards(const Ring& ring, double distance) {
+  const std::size_t n = ring.size();
+  const auto normal = [&](std::size_t k) {
+    const Point2 &a = ring[k % n], &b = ring[(k + 1) % n];
+    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    return Point2{(a[1] - b[1]) / length, (b[0] - a[0]) / length};
+  };
+  Ring result;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Point2 before = normal(k + n - 1), after = normal(k);
+    constexpr double sharpest = 0.01;  // a sharper corner moves less far than its edges
+    const double d = distance / std::max(1 + before[0] * after[0] + before[1] * after[1], sharpest);
+    result.push_back(
+        {ring[k][0] + d * (before[0] + after[0]), ring[k][1] + d * (before[1] + after[1])});
+  }
+  return result;
 }
 
 }  // namespace
@@ -168,23 +232,36 @@ std::string Outline::flaw() const {
     std::string why = flaw_of_holes(polygons_[k], name_of_ring(*this, k, 0));
     if (!why.empty()) return why;
   }
+  const std::vector<OverlappingPolygons> pair = find_overlaps(polygons_, 0, 1);
+  if (pair.empty()) return {};
+  return name_of_ring(*this, pair.front().first, 0) + " and polygon " +
+         std::to_string(pair.front().second + 1) + ": overlap" + pair.front().place;
+}
+
+std::vector<OverlappingPolygons> find_overlaps(const std::vector<RingedPolygon>& given,
+                                               double slack, std::size_t most) {
+  std::vector<OverlappingPolygons> found;
+  std::vector<RingedPolygon> polygons = given;
+  if (slack > 0)
+    for (RingedPolygon& polygon : polygons)
+      for (Ring& ring : polygon) ring = moved_inwards(ring, slack / 2);
   // From left to right, so that only polygons that overlap in x are compared.
-  std::vector<std::size_t> order(polygons_.size());
+  std::vector<std::size_t> order(polygons.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   std::vector<PlanBox> boxes;
-  for (const RingedPolygon& polygon : polygons_) boxes.push_back(box_of(polygon));
+  for (const RingedPolygon& polygon : polygons) boxes.push_back(box_of(polygon));
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return boxes[a].least < boxes[b].least; });
   for (std::size_t i = 0; i < order.size(); ++i) {
     for (std::size_t j = i + 1; j < order.size(); ++j) {
       const auto [a, b] = std::minmax(order[i], order[j]);
       if (boxes[order[j]].least[0] > boxes[order[i]].most[0]) break;
-      if (const std::string at = overlap(polygons_[a], polygons_[b]); !at.empty())
-        return name_of_ring(*this, a, 0) + " and polygon " + std::to_string(b + 1) + ": overlap" +
-               at;
+      if (std::string at = overlap(polygons[a], polygons[b]); !at.empty())
+        found.push_back({a, b, std::move(at)});
+      if (found.size() == most) return found;
     }
   }
-  return {};
+  return found;
 }
 
 namespace {
@@ -210,59 +287,22 @@ std::size_t farthest(const Ring& ring) {
   return static_cast<std::size_t>(most - ring.begin());
 }
 
-/// Area between a chain of corners and the straight line from its first to its last [m^2].
-double area_beside(const std::vector<Point2>& chain) {
-  const Point2 o = chain.front();
-  const double ex = chain.back()[0] - o[0], ey = chain.back()[1] - o[1], e = std::hypot(ex, ey);
-  const auto local = [&](const Point2& p) {
-    const double x = p[0] - o[0], y = p[1] - o[1];
-    return Point2{(ex * x + ey * y) / e, (ex * y - ey * x) / e};
-  };
-  double sum = 0, part = 0;  // of all lobes, of the one on this side of the line
-  Point2 last{0, 0};
-  for (std::size_t k = 1; k < chain.size(); ++k) {
-    const Point2 next = k + 1 < chain.size() ? local(chain[k]) : Point2{e, 0};
-    if (last[1] * next[1] < 0) {
-      const double s = last[0] + (next[0] - last[0]) * last[1] / (last[1] - next[1]);
-      sum += std::abs(part + (s - last[0]) * last[1] / 2);
-      part = (next[0] - s) * next[1] / 2;
-    } else {
-      part += (next[0] - last[0]) * (last[1] + next[1]) / 2;
-    }
-    last = next;
-  }
-  return sum + std::abs(part);
-}
-
-/// Area between a ring and one of some of its corners, in the same order from the same first [m^2].
-double area_between(const Ring& given, const Ring& fewer) {
-  double sum = 0;
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < fewer.size(); ++i) {
-    std::vector<Point2> chain{fewer[i]};
-    const Point2& end = fewer[(i + 1) % fewer.size()];
-    do {
-      k = (k + 1) % given.size();
-      chain.push_back(given[k]);
-    } while (given[k] != end);
-    if (chain.size() > 2) sum += area_beside(chain);
-  }
-  return sum;
-}
-
-}  // namespace
-
-SimplifiedOutline simplified(const Outline& outline, double tolerance) {
-  if (tolerance == 0) return {outline, 0};
-  SimplifiedOutline result;
+/// Simplifies an outline by CGAL.
+/// \param given  set to its polygons, with corners where they touch and without holes that are
+///   filled; those of the result are some of their corners, in the same order from the same first
+/// \param filled  set to the area of the holes of each polygon that are filled [m^2]
+std::vector<RingedPolygon> taken_out(const Outline& outline, double tolerance,
+                                     std::vector<RingedPolygon>& given,
+                                     std::vector<double>& filled) {
   Triangulation triangulation;
   std::vector<std::vector<Triangulation::Constraint_id>> constraints;
+  filled.assign(outline.polygons().size(), 0.0);
   for (const RingedPolygon& polygon : outline.polygons()) {
     constraints.emplace_back();
     for (const Ring& ring : polygon) {
-      const double area = std::abs(Outline({{ring}}).area());
+      const double area = std::abs(mesh::signed_area(ring));
       if (&ring != &polygon.front() && area < tolerance * tolerance) {
-        result.moved += area;
+        filled[constraints.size() - 1] += area;
         continue;
       }
       std::vector<Kernel::Point_2> points;
@@ -288,18 +328,54 @@ SimplifiedOutline simplified(const Outline& outline, double tolerance) {
     }
     return polygons;
   };
-  const std::vector<RingedPolygon> given = rings();
+  given = rings();
   simplification::simplify(triangulation, simplification::Squared_distance_cost(),
                            simplification::Stop_above_cost_threshold(tolerance * tolerance));
   std::vector<RingedPolygon> polygons = rings();
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    for (std::size_t r = 0; r < given[k].size(); ++r) {
+  for (std::size_t k = 0; k < given.size(); ++k)
+    for (std::size_t r = 0; r < given[k].size(); ++r)
       if (polygons[k][r].size() < 3) polygons[k][r] = given[k][r];
-      result.moved += area_between(given[k][r], polygons[k][r]);
+  return polygons;
+}
+
+/// Takes corners out, and moves the others as the areas are to be kept. \return whether all lies
+/// within `most` of the given outline, and is an outline
+bool simplify(const Outline& outline, double tolerance, double most, Areas areas,
+              SimplifiedOutline& result) {
+  std::vector<RingedPolygon> given;
+  std::vector<double> filled;
+  std::vector<RingedPolygon> polygons = taken_out(outline, tolerance, given, filled);
+  const std::vector<RingedPolygon> before = polygons;
+  std::vector<mesh::SimplifiedRing> rings;
+  for (std::size_t k = 0; k < given.size(); ++k)
+    for (std::size_t r = 0; r < given[k].size(); ++r)
+      rings.push_back({&given[k][r], &polygons[k][r],
+                       mesh::signed_area(given[k][r]) + (r == 0 ? -filled[k] : 0)});
+  if (areas == Areas::kept) mesh::restore_areas(rings);
+  result.moved = 0;
+  for (const double area : filled) result.moved += area;
+  std::size_t next = 0;
+  for (const RingedPolygon& polygon : before) {
+    for (const Ring& ring : polygon) {
+      const mesh::SimplifiedRing& now = rings[next++];
+      result.moved += mesh::area_between(now, ring);
+      if (areas == Areas::kept && mesh::largest_deviation(now, ring) > most) return false;
     }
   }
   result.outline = Outline(std::move(polygons));
-  return result;
+  return areas != Areas::kept || result.outline.flaw().empty();
+}
+
+}  // namespace
+
+SimplifiedOutline simplified(const Outline& outline, double tolerance, Areas areas) {
+  if (tolerance == 0) return {outline, 0};
+  SimplifiedOutline result;
+  constexpr int tries = 10;
+  double least = tolerance;  // fewer corners are taken out where the others would move too far
+  for (int k = 0; k < tries; ++k, least *= 0.75)
+    if (simplify(outline, least, tolerance, areas, result)) return result;
+  return {outline, 0};
 }
 
 }  // namespace floe

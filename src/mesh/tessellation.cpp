@@ -34,8 +34,14 @@ std::vector<Point2> permuted(const std::vector<Point2>& points,
 }  // namespace
 
 std::int64_t number_of_cells(const SheetPlan& plan) {
-  const double l = plan.element_size;
-  return static_cast<std::int64_t>(std::ceil(2 * plan.area() / (std::numbers::sqrt3 * l * l)));
+  const auto cells = [](double area, double l) {
+    return static_cast<std::int64_t>(std::ceil(2 * area / (std::numbers::sqrt3 * l * l)));
+  };
+  if (plan.of_polygon.empty()) return cells(plan.area(), plan.element_size);
+  std::int64_t sum = 0;
+  for (std::size_t k = 0; k < plan.of_polygon.size(); ++k)
+    sum += cells(Outline({plan.outline.polygons()[k]}).area(), plan.of_polygon[k].element_size);
+  return sum;
 }
 
 Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,

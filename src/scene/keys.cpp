@@ -51,10 +51,10 @@ constexpr std::array table{
                "x, y to which the centroid comes", 2},
     OptionSpec{"sheet: outline_turn", number, "0", "degrees", ">= -360, <= 360",
                "turn about the centroid, counter-clockwise"},
-    OptionSpec{"sheet: outline_simplify", number, "(0.4 or 0.8 element_size)", "m", ">= 0, <= 1e9",
-               "corners that lie within this of the edge that takes their place are left out; 0: "
-               "none; by default each polygon the smaller with which cells can end on its "
-               "edges"},
+    OptionSpec{"sheet: outline_simplify", number, "(0.5 or 0.8 element_size)", "m", ">= 0, <= 1e9",
+               "corners that lie within this of the edge that takes their place are left out, the "
+               "area stays; 0: none; by default each polygon the smaller with which cells can end "
+               "on its edges"},
     OptionSpec{"sheet: thickness", number, "1", "m", ">= 1e-9, <= 1e9",
                "extent in z; with thickness_deviation the mean; where the features of the outline "
                "have a property thickness and the scene has no thickness, each floe has its own"},
@@ -93,6 +93,37 @@ constexpr std::array table{
     OptionSpec{"supply: region", numbers, "(all ice stays)", "m", ">= -1e9, <= 1e9",
                "x0, x1, y0, y1, z0, z1: pieces wholly outside are taken out when a strip is due",
                6},
+
+    OptionSpec{
+        "floe: names", names, "(none)", "", "",
+        "floes in place of one sheet: one section each; sheet: gives what they have in common. "
+        "They may touch; each is a set of its name"},
+    OptionSpec{"floe: NAME: length", number, "(required)", "m", ">= 1e-9, <= 1e9",
+               "a rectangle: its extent in x before it turns"},
+    OptionSpec{"floe: NAME: width", number, "(length)", "m", ">= 1e-9, <= 1e9",
+               "its extent in y before it turns"},
+    OptionSpec{"floe: NAME: outline", text, "(none: the rectangle)", "", "",
+               "file of its outline, as sheet: outline"},
+    OptionSpec{"floe: NAME: outline_feature", integer, "0", "", ">= 0, <= 2000000",
+               "number of the one feature of the file that is taken, from 1; 0: all"},
+    OptionSpec{"floe: NAME: outline_scale", number, "1", "m", ">= 1e-12, <= 1e12",
+               "length of one unit of the file's coordinates"},
+    OptionSpec{"floe: NAME: outline_simplify", number, "(as of sheet)", "m", ">= 0, <= 1e9",
+               "tolerance of its simplification, as sheet: outline_simplify"},
+    OptionSpec{"floe: NAME: place", numbers, "(0 0; as in the file)", "m", ">= -1e9, <= 1e9",
+               "x, y of its centroid", 2},
+    OptionSpec{"floe: NAME: turn", number, "0", "degrees", ">= -360, <= 360",
+               "turn about the centroid, counter-clockwise"},
+    OptionSpec{"floe: NAME: thickness", number, "(sheet: thickness)", "m", ">= 1e-9, <= 1e9",
+               "extent in z; else that of the sheet or of its field, or that of the file"},
+    OptionSpec{"floe: NAME: element_size", number, "(sheet: element_size)", "m", ">= 1e-9, <= 1e9",
+               "of its cells, as sheet: element_size"},
+    OptionSpec{"floe: NAME: strength", number, "1", "", ">= 1e-6, <= 1e6",
+               "fracture: its strengths over those of fracture:"},
+    OptionSpec{"floe: NAME: energy", number, "1", "", ">= 1e-6, <= 1e6",
+               "fracture: its energies per area over those of fracture:"},
+    OptionSpec{"floe: NAME: seed", integer, "(sheet: seed)", "", ">= 0, <= 9223372036854775807",
+               "of its mesh"},
 
     OptionSpec{"region: names", names, "(none)", "", "",
                "further sets of bodies: one section each"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -19,14 +20,14 @@ constexpr std::size_t most_corners = 2'000'000;
 
 class Reader {
  public:
-  explicit Reader(const std::string& file) : file_(file) {}
+  Reader(const std::string& file, const std::string& key) : file_(file), key_(key) {}
 
   OutlineFeatures json(const std::string& text);
   OutlineFeatures table(const std::string& text);
 
  private:
   [[noreturn]] void refuse(const std::string& why) const {
-    throw InputError("sheet: outline: '" + file_ + "': " + why);
+    throw InputError(key_ + ": '" + file_ + "': " + why);
   }
   const Json& member(const Json& object, const char* name, const std::string& where) const;
   std::string type_of(const Json& object, const std::string& where) const;
@@ -39,7 +40,7 @@ class Reader {
       refuse("has more than " + std::to_string(most_corners) + " corners");
   }
 
-  const std::string& file_;
+  const std::string &file_, &key_;
   std::size_t corners_ = 0;
 };
 
@@ -160,14 +161,22 @@ OutlineFeatures nested(const std::vector<Ring>& rings) {
   std::vector<std::vector<std::size_t>> around(n);
   std::vector<PlanBox> boxes;
   for (const Ring& ring : rings) boxes.push_back(box_of({ring}));
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      bool within = i != j;
-      for (std::size_t axis = 0; axis < 2; ++axis)
-        within = within && boxes[j].least[axis] <= boxes[i].least[axis] &&
-                 boxes[i].most[axis] <= boxes[j].most[axis];
+  // From left to right, so that only rings that overlap in x are compared.
+  std::vector<std::size_t> order(n), open;
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(boxes[a].least[0], -boxes[a].most[0]) <
+           std::pair(boxes[b].least[0], -boxes[b].most[0]);
+  });
+  for (const std::size_t i : order) {
+    std::erase_if(open, [&](std::size_t j) { return boxes[j].most[0] < boxes[i].least[0]; });
+    for (const std::size_t j : open) {
+      const bool within = boxes[i].most[0] <= boxes[j].most[0] &&
+                          boxes[j].least[1] <= boxes[i].least[1] &&
+                          boxes[i].most[1] <= boxes[j].most[1];
       if (within && contains({rings[j]}, rings[i].front())) around[i].push_back(j);
     }
+    if (rings[i].size() > 2) open.push_back(i);
   }
   OutlineFeatures features;
   std::vector<std::size_t> feature(n);
@@ -222,15 +231,16 @@ OutlineFeatures Reader::table(const std::string& text) {
 
 }  // namespace
 
-OutlineFeatures parse_outline(const std::string& text, const std::string& file) {
+OutlineFeatures parse_outline(const std::string& text, const std::string& file,
+                              const std::string& key) {
   const auto first = text.find_first_not_of(" \t\r\n");
   const bool is_json = file.ends_with(".json") || file.ends_with(".geojson") ||
                        (first != std::string::npos && text[first] == '{');
-  Reader reader(file);
+  Reader reader(file, key);
   OutlineFeatures features = is_json ? reader.json(text) : reader.table(text);
   const bool any = std::any_of(features.begin(), features.end(),
                                [](const auto& feature) { return !feature.polygons.empty(); });
-  if (!any) throw InputError("sheet: outline: '" + file + "': has no polygon");
+  if (!any) throw InputError(key + ": '" + file + "': has no polygon");
   return features;
 }
 

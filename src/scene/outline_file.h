@@ -23,8 +23,9 @@ using OutlineFeatures = std::vector<OutlineFeature>;
 /// rings inside others are holes, and each outer ring is a feature.
 /// \param file  name of the file, for messages; by .json and .geojson it is GeoJSON, whatever it
 /// holds
-/// \throws InputError with one line that says what is wrong, beginning with "sheet: outline:
-/// 'FILE'"
-OutlineFeatures parse_outline(const std::string& text, const std::string& file);
+/// \param key  that names the file, for messages
+/// \throws InputError with one line that says what is wrong, beginning with "KEY: 'FILE'"
+OutlineFeatures parse_outline(const std::string& text, const std::string& file,
+                              const std::string& key = "sheet: outline");
 
 }  // namespace floe

@@ -10,34 +10,52 @@
 namespace floe {
 namespace {
 
-constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top", "all"};
+/// Sets the thickness of the polygons of the outline: one if it is the same for all, else that of
+/// each and their mean.
+void set_thickness(Scene& scene, const std::vector<double>& of_polygon) {
+  const auto [least, most] = std::minmax_element(of_polygon.begin(), of_polygon.end());
+  if (*least == *most) {
+    scene.thickness = *least;
+    return;
+  }
+  double volume = 0;
+  for (std::size_t k = 0; k < of_polygon.size(); ++k)
+    volume += of_polygon[k] * Outline({scene.sheet.outline.polygons()[k]}).area();
+  scene.thickness = volume / scene.sheet.outline.area();
+  scene.thickness_field.of_polygon = of_polygon;
+}
 
 /// Takes the thickness of each floe from the file of the outline. \return whether it has any
-bool take_thickness_of_floes(Scene& scene) {
-  const std::vector<double>& thickness = scene.outline.thickness;
-  const auto refuse = [&](std::size_t k, const std::string& why) {
-    throw InputError("sheet: outline: '" + scene.outline.file + "': feature " +
-                     std::to_string(scene.outline.feature[k]) + " has " + why +
-                     "; 'sheet: thickness' would take the place of those of the file");
-  };
-  const auto has_none = [](double h) { return std::isnan(h); };
-  if (std::all_of(thickness.begin(), thickness.end(), has_none)) return false;
-  double volume = 0;
-  for (std::size_t k = 0; k < thickness.size(); ++k) {
-    const double h = thickness[k];
-    if (has_none(h)) refuse(k, "no number \"thickness\" among its properties, others have");
-    if (!(h >= 1e-9 && h <= 1e9))
-      refuse(k, "the thickness " + text_of(h) + ", must be >= 1e-9, <= 1e9 [m]");
-    volume += h * Outline({scene.sheet.outline.polygons()[k]}).area();
-  }
+bool take_thickness_of_file(Scene& scene) {
+  if (!has_thickness(scene.outline, "sheet: outline", "sheet: thickness")) return false;
   scene.outline.has_thickness = true;
-  const auto [least, most] = std::minmax_element(thickness.begin(), thickness.end());
-  scene.thickness = *least == *most ? *least : volume / scene.sheet.outline.area();
-  if (*least != *most) scene.thickness_field.of_polygon = thickness;
+  set_thickness(scene, scene.outline.thickness);
   return true;
 }
 
-void read_thickness(Options& options, Scene& scene) {
+/// Whether each floe has its own thickness.
+bool all_have_thickness(const std::vector<Floe>& floes) {
+  return !floes.empty() && std::none_of(floes.begin(), floes.end(),
+                                        [](const Floe& f) { return f.thickness.empty(); });
+}
+
+/// Takes the thickness of floes that have their own; the others have that of the sheet.
+void take_thickness_of_floes(Scene& scene) {
+  const bool varies = scene.thickness_field.varies();
+  std::vector<double> of_polygon;
+  for (const Floe& floe : scene.floes) {
+    of_polygon.insert(of_polygon.end(), floe.thickness.begin(), floe.thickness.end());
+    if (floe.thickness.empty())
+      of_polygon.resize(floe.first + floe.polygons, varies ? NAN : scene.thickness);
+  }
+  if (varies)
+    scene.thickness_field.of_polygon = std::move(of_polygon);
+  else
+    set_thickness(scene, of_polygon);
+}
+
+/// Reads the thickness of the sheet, one or a field.
+void read_thickness_of_sheet(Options& options, Scene& scene) {
   ThicknessField& field = scene.thickness_field;
   const bool random = options.given("sheet: thickness_deviation");
   const bool by_scene =
@@ -47,7 +65,7 @@ void read_thickness(Options& options, Scene& scene) {
     scene.inputs.emplace_back("sheet: thickness_file", field.file);
     for (const auto* key : {"sheet: thickness", "sheet: thickness_deviation"})
       options.refuse(key, "would have no effect: 'sheet: thickness_file' says it");
-  } else if (by_scene || !take_thickness_of_floes(scene)) {
+  } else if (by_scene || !scene.floes.empty() || !take_thickness_of_file(scene)) {
     scene.thickness = options.number("sheet: thickness");
     if (random) field.deviation = options.number("sheet: thickness_deviation");
   }
@@ -62,7 +80,20 @@ void read_thickness(Options& options, Scene& scene) {
   }
 }
 
-void read_sheet(Options& options, Scene& scene) {
+void read_thickness(Options& options, Scene& scene) {
+  if (all_have_thickness(scene.floes)) {
+    for (const auto* key :
+         {"sheet: thickness", "sheet: thickness_file", "sheet: thickness_deviation",
+          "sheet: thickness_correlation", "sheet: thickness_seed"})
+      options.refuse(key, "would have no effect: each floe has its own");
+  } else {
+    read_thickness_of_sheet(options, scene);
+  }
+  if (!scene.floes.empty()) take_thickness_of_floes(scene);
+}
+
+/// Reads the plan of one sheet.
+void read_plan(Options& options, Scene& scene) {
   SheetPlan& plan = scene.sheet;
   plan.element_size = options.number("sheet: element_size");
   const bool has_outline = read_outline(options, scene);
@@ -71,6 +102,16 @@ void read_sheet(Options& options, Scene& scene) {
     plan.width = options.number("sheet: width", {}, plan.length);
   }
   plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
+  const double shorter = std::min(plan.length, plan.width);
+  if (plan.element_size > shorter && !has_outline)
+    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
+                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
+                     text_of(shorter) + " [m]");
+}
+
+void read_sheet(Options& options, Scene& scene) {
+  SheetPlan& plan = scene.sheet;
+  options.names("floe").empty() ? read_plan(options, scene) : read_floes(options, scene);
   plan.relaxation = options.choice<Relaxation>("sheet: relaxation");
   plan.iterations = static_cast<int>(options.integer("sheet: iterations"));
   plan.tolerance = options.number("sheet: tolerance");
@@ -81,15 +122,10 @@ void read_sheet(Options& options, Scene& scene) {
   read_thickness(options, scene);
   scene.limit.memory = options.number("limit: memory", {}, 0.0);
 
-  const double shorter = std::min(plan.length, plan.width);
-  if (plan.element_size > shorter && !has_outline)
-    throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
-                     (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
-                     text_of(shorter) + " [m]");
   constexpr double most_bodies = 1e8;  // indices of beams and facets have 32 bits
   double bodies = 0;
   for (const MeshedBox& box : meshed_boxes(plan))
-    bodies += (box.plan.length / plan.element_size) * (box.plan.width / plan.element_size);
+    bodies += (box.plan.length / box.plan.element_size) * (box.plan.width / box.plan.element_size);
   if (bodies > most_bodies)
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " would make about " +
                      text_of(bodies) + " bodies, at most " + text_of(most_bodies) +
@@ -116,17 +152,38 @@ void read_ice(Options& options, Scene& scene) {
 
 }  // namespace
 
+bool has_thickness(const OutlineSource& outline, const std::string& outline_key,
+                   const std::string& thickness_key) {
+  const std::vector<double>& thickness = outline.thickness;
+  const auto refuse = [&](std::size_t k, const std::string& why) {
+    throw InputError(outline_key + ": '" + outline.file + "': feature " +
+                     std::to_string(outline.feature[k]) + " has " + why + "; '" + thickness_key +
+                     "' would take the place of those of the file");
+  };
+  const auto has_none = [](double h) { return std::isnan(h); };
+  if (std::all_of(thickness.begin(), thickness.end(), has_none)) return false;
+  for (std::size_t k = 0; k < thickness.size(); ++k) {
+    const double h = thickness[k];
+    if (has_none(h)) refuse(k, "no number \"thickness\" among its properties, others have");
+    if (!(h >= 1e-9 && h <= 1e9))
+      refuse(k, "the thickness " + text_of(h) + ", must be >= 1e-9, <= 1e9 [m]");
+  }
+  return true;
+}
+
 void read_lattice_source(Options& options, Scene& scene) {
-  scene.has_sheet = options.given_section("sheet");
+  scene.has_sheet = options.given_section("sheet") || !options.names("floe").empty();
   const bool has_file = options.given("lattice_file");
   if (scene.has_sheet && options.on_command_line("lattice_file") &&
-      !options.section_on_command_line("sheet")) {
-    options.refuse("sheet", "'lattice_file' of the command line takes its place");
+      !options.section_on_command_line("sheet") && !options.section_on_command_line("floe")) {
+    for (const auto* section : {"sheet", "floe"})
+      options.refuse(section, "'lattice_file' of the command line takes its place");
     scene.has_sheet = false;
   }
   if (scene.has_sheet && has_file)
-    throw InputError(
-        "lattice_file: a scene has either 'sheet' or 'lattice_file', this one has both");
+    throw InputError(std::string("lattice_file: a scene has either '") +
+                     (options.given_section("sheet") ? "sheet" : "floe") +
+                     "' or 'lattice_file', this one has both");
   if (!scene.has_sheet && !has_file)
     throw InputError("sheet: a scene needs either 'sheet' or 'lattice_file', this one has neither");
   if (scene.has_sheet) {
@@ -190,6 +247,9 @@ void read_regions_and_cuts(Options& options, Scene& scene) {
     const auto last = scene.has_sheet ? sheet_sets.begin() : sheet_sets.end() - 1;
     if (std::find(last, sheet_sets.end(), name) != sheet_sets.end())
       throw InputError("region: names: '" + name + "' is the name of a set that there is already");
+    for (const Floe& floe : scene.floes)
+      if (floe.name == name)
+        throw InputError("region: names: '" + name + "' is the name of a floe");
     scene.regions.push_back(region);
   }
   const bool sheet_changed =

@@ -15,6 +15,7 @@ void check_company(const Scene& scene) {
   if (!scene.has_sheet) refuse("lattice_file", "strips of a sheet join");
   if (scene.integrator != Integrator::explicit_) refuse("integrator", "it must be explicit");
   if (!scene.forces.beam) refuse("forces", "beam must be among them");
+  if (!scene.floes.empty()) refuse("floe: names", "the sheet must be a rectangle");
   if (!scene.sheet.outline.empty()) refuse("sheet: outline", "the sheet must be a rectangle");
   if (scene.thickness_field.varies())
     refuse(

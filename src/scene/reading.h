@@ -3,12 +3,18 @@
 /// values in the scene. All throw InputError alike on all ranks.
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 
 #include "floe/options/options.h"
 #include "floe/scene.h"
 
 namespace floe {
+
+/// Sets that every sheet has; the last one, every lattice.
+inline constexpr std::array<std::string_view, 5> sheet_sets{"left", "right", "bottom", "top",
+                                                            "all"};
 
 /// Formats a number with at most six digits.
 std::string text_of(double value);
@@ -23,6 +29,22 @@ void read_lattice_source(Options& options, Scene& scene);
 /// Reads the outline of a sheet whose element size is known, and refuses keys that have no effect
 /// with it or without it. \return whether there is one. Collective.
 bool read_outline(Options& options, Scene& scene);
+/// Reads the plan of floes that have sections of their own: where they are, how large their cells
+/// are, how thick they are. Collective.
+void read_floes(Options& options, Scene& scene);
+/// Reads the outline of a floe whose name, element size and seed are known. Collective.
+/// \param size_key  of its element size, for messages
+Outline read_outline_of_floe(Options& options, Floe& floe, const std::string& size_key,
+                             Scene& scene);
+/// Reads the place of a rectangular floe.
+PolygonPlan::Rectangle read_rectangle_of_floe(Options& options, Floe& floe,
+                                              const std::string& size_key);
+/// Whether the file of an outline gives the thickness of its floes.
+/// \throws InputError if it gives that of some only, or one that is out of range
+/// \param outline_key  of the file
+/// \param thickness_key  that takes their place
+bool has_thickness(const OutlineSource& outline, const std::string& outline_key,
+                   const std::string& thickness_key);
 void read_regions_and_cuts(Options& options, Scene& scene);
 /// Reads which faces are frozen together, after the lattice's source and the fracture.
 void read_bonds(Options& options, Scene& scene);

@@ -161,14 +161,17 @@ void check_floats(const Scene& scene) {
                      density_question(scene));
 }
 
-/// Checks that nothing asks for the one thickness of a sheet whose thickness varies.
-void check_thickness(const Scene& scene) {
-  if (!scene.thickness_field.varies()) return;
+/// Checks that nothing asks for one sheet where there are floes, or for the one thickness of a
+/// sheet whose thickness varies.
+void check_one_sheet(const Scene& scene) {
+  if (!scene.thickness_field.varies() && scene.floes.empty()) return;
   const char* asks = scene.report.tension || scene.report.bending        ? "report"
                      : scene.forces.fracture && scene.fracture.calibrate ? "fracture: calibrate"
                      : scene.forces.fracture && scene.fracture.flexural_strength > 0
                          ? "fracture: flexural_strength"
                          : nullptr;
+  if (asks != nullptr && !scene.floes.empty())
+    throw InputError(std::string(asks) + ": is for one sheet, and the scene has 'floe: names'");
   if (asks != nullptr)
     throw InputError(std::string(asks) + ": is for sheets of one thickness, and '" +
                      (scene.outline.has_thickness          ? "sheet: outline"
@@ -217,7 +220,7 @@ Scene read_all(Options& options, const std::string& path) {
   read_supply(options, scene);
   read_report(options, scene);
   read_output(options, scene);
-  check_thickness(scene);
+  check_one_sheet(scene);
   scene.check_only = options.flag("check");
   // Options that concern only this part of the run are read after this, so that options.yaml
   // repeats the whole run and no more.

@@ -21,6 +21,7 @@ constexpr std::array units{Unit{"Pa", "GPa", 1e9},       Unit{"Pa", "MPa", 1e6},
 
 /// Asks about an outline that is small, or so far away that coordinates lose digits.
 void look_at_outline(const Scene& scene, std::vector<std::string>& lines) {
+  if (!scene.floes.empty()) return;  // each has its place, in metres
   const auto [least, most] = scene.sheet.outline.box();
   const double size = std::max(most[0] - least[0], most[1] - least[1]);
   const double away = std::max(std::abs(least[0] + most[0]), std::abs(least[1] + most[1])) / 2;
@@ -62,8 +63,13 @@ std::vector<std::string> unusual_numbers(const Scene& scene) {
     } else {
       look_at_outline(scene, lines);
     }
-    look(scene.outline.has_thickness ? "sheet: outline: thickness" : "sheet: thickness",
-         scene.thickness, "m", 1e-3, 100);
+    const auto by_sheet = [](const Floe& floe) { return floe.thickness.empty(); };
+    for (const Floe& floe : scene.floes)
+      if (!by_sheet(floe))
+        look("floe: " + floe.name + ": thickness", floe.thickness.front(), "m", 1e-3, 100);
+    if (scene.floes.empty() || std::any_of(scene.floes.begin(), scene.floes.end(), by_sheet))
+      look(scene.outline.has_thickness ? "sheet: outline: thickness" : "sheet: thickness",
+           scene.thickness, "m", 1e-3, 100);
     look("ice: density", scene.ice.density, "kg/m^3", 100, 2000);
     if (scene.forces.beam) look("ice: young", scene.ice.young, "Pa", 1e6, 1e11);
   }

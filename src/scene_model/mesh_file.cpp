@@ -1,6 +1,7 @@
 #include "scene_model/mesh_file.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -18,6 +19,24 @@ namespace floe {
 namespace {
 
 using Entry = std::pair<const char*, double>;
+
+/// A number that tells plans of polygons apart (FNV-1a of their bits).
+std::uint64_t identity(const std::vector<PolygonPlan>& plans) {
+  std::uint64_t hash = 14695981039346656037U;
+  const auto add = [&hash](std::uint64_t word) {
+    for (int byte = 0; byte < 8; ++byte)
+      hash = (hash ^ (word >> (8 * byte) & 0xffU)) * 1099511628211U;
+  };
+  for (const PolygonPlan& plan : plans) {
+    add(std::bit_cast<std::uint64_t>(plan.element_size)), add(plan.seed);
+    add(plan.rectangle ? 1 : 0);
+    if (!plan.rectangle) continue;
+    const auto& [length, width, centre, axis] = *plan.rectangle;
+    for (const double x : {length, width, centre[0], centre[1], axis[0], axis[1]})
+      add(std::bit_cast<std::uint64_t>(x));
+  }
+  return hash;
+}
 
 /// Values on which a mesh depends. Numbers of 64 bits are stored in two halves, since a double
 /// holds 53 bits.
@@ -39,6 +58,11 @@ std::vector<Entry> identity(const SheetPlan& plan) {
     const std::uint64_t outline = plan.outline.identity();
     entries.push_back({"outline", low(outline)});
     entries.push_back({"outline_high", high(outline)});
+  }
+  if (!plan.of_polygon.empty()) {
+    const std::uint64_t floes = identity(plan.of_polygon);
+    entries.push_back({"floes", low(floes)});
+    entries.push_back({"floes_high", high(floes)});
   }
   return entries;
 }

@@ -56,24 +56,39 @@ std::string remark_on(const std::vector<FittedCut>& cuts, const Scene& scene) {
          ": the cells do not end on " + (apart.size() > 1 ? "them" : "it") + " everywhere (" +
          text_of(followed) + " of " + text_of(length) +
          " m of all cuts), but the cuts follow the cells: they are short, or near each other or "
-         "the outline, for sheet: element_size: " +
-         text_of(scene.sheet.element_size);
+         "the outline, for " +
+         (scene.floes.empty() ? "sheet: element_size: " : "cells of ") +
+         text_of(scene.sheet.element_size) + (scene.floes.empty() ? "" : " m");
+}
+
+/// The floe that has a polygon of the outline; none: the sheet has it.
+const Floe* floe_of(const Scene& scene, std::size_t polygon) {
+  const auto found = std::find_if(scene.floes.begin(), scene.floes.end(), [&](const Floe& floe) {
+    return polygon < floe.first + floe.polygons;
+  });
+  return found == scene.floes.end() ? nullptr : &*found;
 }
 
 [[noreturn]] void refuse(const UnfollowedEdge& edge, std::size_t others, const Scene& scene) {
   const auto& [from, to] = edge.line;
-  const Outline& outline = scene.sheet.outline;
+  const Floe* floe = floe_of(scene, edge.polygon);
+  const OutlineSource& source = floe == nullptr ? scene.outline : floe->outline;
+  const auto& polygons = scene.sheet.outline.polygons();
+  const std::size_t first = floe == nullptr ? 0 : floe->first,
+                    n = floe == nullptr ? polygons.size() : floe->polygons;
+  const Outline outline({polygons.begin() + static_cast<std::ptrdiff_t>(first),
+                         polygons.begin() + static_cast<std::ptrdiff_t>(first + n)});
+  const std::string section = floe == nullptr ? "sheet: " : "floe: " + floe->name + ": ";
+  const double l = scene.sheet.size_of(static_cast<std::int32_t>(edge.polygon));
   throw InputError(
-      "sheet: outline: '" + scene.outline.file +
-      "': " + name_of_ring(outline, edge.polygon, edge.ring) +
-      ": no cells of sheet: "
-      "element_size: " +
-      text_of(scene.sheet.element_size) + " can end on edge " + std::to_string(edge.edge + 1) +
-      " of " + std::to_string(outline.polygons()[edge.polygon][edge.ring].size()) + ", from (" +
-      text_of(from[0]) + ", " + text_of(from[1]) + ") to (" + text_of(to[0]) + ", " +
-      text_of(to[1]) + ")" + (others > 0 ? " and " + std::to_string(others) + " more" : "") +
-      ": raise sheet: outline_simplify (now " + text_of(scene.outline.simplify) +
-      ") or lower sheet: element_size");
+      section + "outline: '" + source.file +
+      "': " + name_of_ring(outline, edge.polygon - first, edge.ring) + ": no cells of " + section +
+      "element_size: " + text_of(l) + " can end on edge " + std::to_string(edge.edge + 1) + " of " +
+      std::to_string(polygons[edge.polygon][edge.ring].size()) + ", from (" + text_of(from[0]) +
+      ", " + text_of(from[1]) + ") to (" + text_of(to[0]) + ", " + text_of(to[1]) + ")" +
+      (others > 0 ? " and " + std::to_string(others) + " more" : "") + ": raise " + section +
+      "outline_simplify (now " + text_of(source.simplify) + ") or lower " + section +
+      "element_size");
 }
 
 /// Makes cells end on the outline, if there is one, and on the scene's cuts. \return what became of
@@ -160,6 +175,32 @@ void add_edge_regions(const Scene& scene, const Tessellation& cells, Lattice& la
   }
 }
 
+/// Adds the sets of the floes that have sections.
+void add_named_floes(const Scene& scene, const std::vector<std::int32_t>& polygon,
+                     Lattice& lattice) {
+  std::vector<std::vector<std::int32_t>*> sets;
+  for (const Floe& floe : scene.floes)
+    sets.resize(floe.first + floe.polygons, &lattice.sets[floe.name]);
+  for (std::size_t k = 0; k < polygon.size() && !sets.empty(); ++k)
+    item(sets, polygon[k])->push_back(static_cast<std::int32_t>(k));
+}
+
+/// Gives the beams of floes the factors of their strengths and energies, where these are not all 1.
+void strengthen_floes(const Scene& scene, const std::vector<std::int32_t>& polygon,
+                      Lattice& lattice) {
+  const auto fill = [&](double Floe::*factor, std::vector<double>& column) {
+    const auto is_one = [&](const Floe& floe) { return floe.*factor == 1; };
+    if (std::all_of(scene.floes.begin(), scene.floes.end(), is_one)) return;
+    std::vector<double> of_polygon;
+    for (const Floe& floe : scene.floes)
+      of_polygon.resize(floe.first + floe.polygons, floe.*factor);
+    for (const auto& [i, j] : lattice.beams.bodies)
+      column.push_back(item(of_polygon, item(polygon, i)));
+  };
+  fill(&Floe::strength, lattice.beams.strength);
+  fill(&Floe::energy, lattice.beams.energy);
+}
+
 /// Adds the sets floe_1, floe_2, ... that the scene names: the bodies of the outline's features.
 void add_floes(const Scene& scene, const std::vector<std::int32_t>& polygon, Lattice& lattice) {
   std::map<std::int32_t, std::vector<std::int32_t>*> floes;
@@ -192,20 +233,39 @@ bool finds_strength(const Scene& scene) {
          (scene.fracture.calibrate || scene.fracture.flexural_strength > 0);
 }
 
+/// Describes what simplification did to an outline; empty if nothing.
+std::string simplification(const OutlineSource& source) {
+  const double least = source.least_simplify, most = source.simplify;
+  if (most == 0) return {};
+  return " (simplified to " + (least < most ? text_of(least) + " to " : "") + text_of(most) +
+         " m from " + std::to_string(source.corners) + " corners, " + text_of(source.area) +
+         " m^2; " + text_of(100 * source.moved / source.area) + " % of the area moved)";
+}
+
+/// Describes the floes that have sections, the first ones one by one.
+std::string floes_text(const Scene& scene) {
+  constexpr std::size_t most = 6;
+  const std::size_t n = scene.floes.size();
+  std::string text = "floes: " + std::to_string(n);
+  for (std::size_t k = 0; k < std::min(n, most); ++k) {
+    const Floe& floe = scene.floes[k];
+    text += (k == 0 ? ": " : "; ") + floe.name + " " + text_of(area_of(scene, floe)) +
+            " m^2, element_size " + text_of(floe.element_size) + " m" +
+            simplification(floe.outline);
+  }
+  return text + (n > most ? "; and " + std::to_string(n - most) + " more" : "");
+}
+
 /// Describes the sheet's outline; empty if it is a rectangle.
 std::string outline_text(const Scene& scene) {
   const Outline& outline = scene.sheet.outline;
   if (outline.empty()) return {};
+  if (!scene.floes.empty()) return floes_text(scene);
   const std::size_t polygons = outline.polygons().size();
   std::string text = "outline: " + std::to_string(polygons) + " polygon" +
                      (polygons == 1 ? "" : "s") + ", " + std::to_string(outline.corners()) +
                      " corners, " + text_of(outline.area()) + " m^2";
-  const double least = scene.outline.least_simplify, most = scene.outline.simplify;
-  if (most > 0)
-    text += " (simplified to " + (least < most ? text_of(least) + " to " : "") + text_of(most) +
-            " m from " + std::to_string(scene.outline.corners) + " corners, " +
-            text_of(scene.outline.area) + " m^2; " +
-            text_of(100 * scene.outline.moved / scene.outline.area) + " % of the area moved)";
+  text += simplification(scene.outline);
   if (scene.outline.has_thickness) text += ", each of its own thickness";
   return text;
 }
@@ -264,6 +324,8 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
   Lattice lattice = make_sheet(cells, section, thickness);
   add_edge_regions(scene, cells, lattice);
   add_floes(scene, polygon, lattice);
+  add_named_floes(scene, polygon, lattice);
+  strengthen_floes(scene, polygon, lattice);
   return lattice;
 }
 

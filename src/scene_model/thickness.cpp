@@ -186,13 +186,16 @@ std::vector<double> thickness_of_cells(const Scene& scene, const Tessellation& c
   std::vector<double> all;
   const ThicknessField& field = scene.thickness_field;
   if (!field.varies()) return all;
-  if (!field.of_polygon.empty()) {
+  const bool is_field = !field.file.empty() || field.deviation > 0;
+  if (!field.of_polygon.empty() && !is_field) {
     for (const std::int32_t k : polygon_of) all.push_back(item(field.of_polygon, k));
     return all;
   }
   const auto fill = [&](const auto& source) {
-    for (std::size_t k = 0; k < cells.generators.size(); ++k)
-      all.push_back(source.at(plan_properties(polygon(cells, k)).centroid));
+    for (std::size_t k = 0; k < cells.generators.size(); ++k) {
+      const double own = field.of_polygon.empty() ? NAN : item(field.of_polygon, polygon_of[k]);
+      all.push_back(std::isnan(own) ? source.at(plan_properties(polygon(cells, k)).centroid) : own);
+    }
   };
   field.file.empty() ? fill(RandomField(scene.thickness, field)) : fill(read_grid(field.file));
   return all;

@@ -218,6 +218,26 @@ Json as_json(const Outline& outline, const Scene& scene) {
           {"thickness_of_file", scene.outline.has_thickness}};
 }
 
+/// Describes the floes that have sections, by their names.
+Json floes_as_json(const Scene& scene) {
+  Json json;
+  for (const Floe& floe : scene.floes) {
+    Json one = {{"area", area_of(scene, floe)},
+                {"polygons", floe.polygons},
+                {"element_size", floe.element_size},
+                {"seed", floe.seed}};
+    if (!floe.outline.file.empty()) {
+      one["file"] = floe.outline.file;
+      one["area_of_file"] = floe.outline.area;
+      one["corners_of_file"] = floe.outline.corners;
+      one["simplified_to"] = {floe.outline.least_simplify, floe.outline.simplify};
+      one["area_moved"] = floe.outline.moved;
+    }
+    json[floe.name] = std::move(one);
+  }
+  return json;
+}
+
 /// Adds where a path ended, and its limit points.
 void add_path(const PathResult& path, Json& json, std::string& text) {
   Json points = Json::array();
@@ -340,12 +360,15 @@ Summary summarise(const Scene& scene, const ModelChoice& choice, const Model<Spa
     if (result.path) add_path(*result.path, json, text);
   }
   if (scene.has_sheet) {
-    json["seed"] = scene.sheet.seed;
+    if (scene.floes.empty()) json["seed"] = scene.sheet.seed;
     json["cvt_energy_ratio"] = mesh.energy_ratio;
     json["cvt_largest_move"] = mesh.largest_move;
     json["cvt_iterations"] = mesh.iterations;
     json["degenerate_facets"] = mesh.degenerate;
-    if (!scene.sheet.outline.empty()) json["outline"] = as_json(scene.sheet.outline, scene);
+    if (!scene.floes.empty())
+      json["floes"] = floes_as_json(scene);
+    else if (!scene.sheet.outline.empty())
+      json["outline"] = as_json(scene.sheet.outline, scene);
   }
   if (mesh.bonds) {
     const auto& [number, area, least_gap, most_gap] = *mesh.bonds;

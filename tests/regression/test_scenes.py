@@ -37,6 +37,7 @@ EXPECTED = {
     "floes_collide.yaml": contact.check_floes_collide,
     "floe_in_waves.yaml": moving.check_floe_in_waves,
     "real_floe.yaml": contact.check_real_floe,
+    "touching_floes.yaml": contact.check_touching_floes,
     "floe_field.yaml": contact.check_floe_field,
     "rubble_pile.yaml": contact.check_rubble_pile,
     "verify/stopping.yaml": contact.check_stopping,

@@ -25,6 +25,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
 import fuzz_files  # noqa: E402
+import fuzz_outlines  # noqa: E402
 import fuzz_words  # noqa: E402
 from fuzz_keys import read_keys  # noqa: E402
 from fuzz_rules import is_help, run_case  # noqa: E402
@@ -32,7 +33,7 @@ from fuzz_scenes import LATTICES, Scenes, bound, scene_of, write_scene  # noqa: 
 
 # One case of each, again and again.
 KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text",
-         "mesh")
+         "mesh", "outline")
 TMPFS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 LATTICE_SCENES = {
@@ -152,6 +153,11 @@ class Case:
         self.put_scene(MESH_SCENE, ["-ts_max_steps", "5"])
         self.files["m.h5"] = self.damage("m.h5", chance)
         self.damaged = "m.h5"
+
+    def make_outline(self, chance):
+        scene, name, data = fuzz_outlines.case(chance)
+        self.put_scene(scene, ["-ts_max_steps", "3", "-limit_memory", "1"])
+        self.files[name] = data
 
     def make_checkpoint(self, chance):
         self.tree = self.base.folder / "c"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -201,7 +202,10 @@ TEST(Outline, RealFloes) {
     const auto [outline, moved] = simplified(floe, l / 2);
     EXPECT_GT(moved, 0);
     EXPECT_LT(moved / floe.area(), 0.1);
-    EXPECT_LE(std::abs(outline.area() - floe.area()), moved * (1 + 1e-12));
+    EXPECT_NEAR(outline.area() / floe.area(), 1, 1e-12);
+    const SimplifiedOutline shrunk = simplified(floe, l / 2, Areas::changed);
+    EXPECT_LT(shrunk.outline.area(), 0.99 * floe.area());  // most corners of a floe stick out
+    EXPECT_LT(moved, 0.7 * shrunk.moved);
     EXPECT_LT(outline.corners(), floe.corners());
     for (const Ring& ring : floe.polygons().front())
       for (const Point2& p : ring) EXPECT_LE(outline.distance(p), l / 2 * (1 + 1e-12));
@@ -229,6 +233,7 @@ TEST(Outline, SmallConvexPolygonsAreOneCell) {
   EXPECT_TRUE(is_one_cell({small}, 1));
   EXPECT_FALSE(is_one_cell({small}, 0.8));                                   // too large
   EXPECT_FALSE(is_one_cell({box(0, 3, 0, 0.3)}, 1));                         // too long
+  EXPECT_FALSE(is_one_cell({circle(0.6, 13)}, 1));                           // of too many corners
   EXPECT_FALSE(is_one_cell({{{0, 0}, {1, 0}, {0.2, 0.2}, {0, 1}}}, 1));      // not convex
   EXPECT_FALSE(is_one_cell({box(0, 1, 0, 1), box(0.4, 0.6, 0.4, 0.6)}, 1));  // with a hole
   const SheetPlan plan = plan_of(Outline({{small}, {box(4, 8, 0, 3)}, {turned(small, 90)}}), 1);
@@ -241,6 +246,44 @@ TEST(Outline, SmallConvexPolygonsAreOneCell) {
   EXPECT_EQ(polygon(t, 0).size(), 4U);
   EXPECT_EQ(t.sides[0], side_left | side_right | side_bottom | side_top);
   expect_tiles(plan, t);
+}
+
+TEST(Outline, SlenderConvexPolygonsAreCellsInARow) {
+  const Ring needle{{0, 0}, {6, 0.4}, {6.1, 1.2}};  // rows of cells find no room at its tip
+  for (const auto& [scale, number] : {std::pair{0.7, 1}, {1.0, 2}, {2.0, 7}}) {
+    SCOPED_TRACE(scale);
+    Ring ring = turned(needle, 50 * scale);
+    for (Point2& p : ring) p = {scale * p[0], scale * p[1]};
+    const SheetPlan plan = plan_of(Outline({{ring}}), 1);
+    EXPECT_FALSE(can_be_followed({ring}, plan));
+    EXPECT_EQ(cells_in_a_row({ring}, plan), number);
+    const OutlinedCells made = meshed(plan);
+    EXPECT_TRUE(made.unfollowed.empty());
+    ASSERT_EQ(made.cells.generators.size(), static_cast<std::size_t>(number));
+    EXPECT_EQ(made.cells.facets.size(), static_cast<std::size_t>(number) - 1);
+    expect_tiles(plan, made.cells);
+    for (std::size_t k = 0; k < made.cells.generators.size(); ++k)
+      EXPECT_NEAR(plan_properties(polygon(made.cells, k)).area / plan.outline.area(), 1.0 / number,
+                  1e-9);
+  }
+  Ring large = needle;
+  for (Point2& p : large) p = {4 * p[0], 4 * p[1]};
+  EXPECT_EQ(cells_in_a_row({large}, plan_of(Outline({{large}}), 1)), 0);
+  EXPECT_EQ(cells_in_a_row({box(0, 4, 0, 4)}, plan_of(Outline({{box(0, 4, 0, 4)}}), 1)), 0);
+}
+
+TEST(Outline, FloesOfOneSizeHaveCellsOfTheirOwn) {
+  std::vector<RingedPolygon> polygons;
+  for (int k = 0; k < 5; ++k) polygons.push_back({box(20 * k, 20 * k + 10, 0, 7)});
+  const SheetPlan plan = plan_of(Outline(polygons), 1);
+  const OutlinedCells made = meshed(plan);
+  expect_tiles(plan, made.cells);
+  std::vector<std::vector<double>> areas(5);
+  for (std::size_t k = 0; k < made.polygon.size(); ++k)
+    areas[static_cast<std::size_t>(made.polygon[k])].push_back(
+        plan_properties(polygon(made.cells, k)).area);
+  for (int k = 1; k < 4; ++k) EXPECT_NE(areas[0], areas[static_cast<std::size_t>(k)]);
+  EXPECT_EQ(areas[0].size(), areas[4].size());  // the first once more
 }
 
 TEST(Outline, SidesAreThoseOfTheNormals) {
@@ -291,14 +334,71 @@ TEST(Outline, SimplificationKeepsWithinItsToleranceAndFillsSmallHoles) {
   Ring rough = box(0, 10, 0, 10);
   rough.insert(rough.begin() + 1, {{2, 0}, {3, 0.2}, {4, 0}});
   const Outline given({{rough, box(7, 7.5, 7, 7.5)}});
+  const auto [changed, without] = simplified(given, 0.6, Areas::changed);
+  EXPECT_EQ(changed.corners(), 4U);
+  EXPECT_NEAR(changed.area(), 100, 1e-12);
+  EXPECT_NEAR(without, 0.2 + 0.25, 1e-12);
   const auto [outline, moved] = simplified(given, 0.6);
   EXPECT_EQ(outline.corners(), 4U);
-  EXPECT_NEAR(outline.area(), 100, 1e-12);
-  EXPECT_NEAR(moved, 0.2 + 0.25, 1e-12);
+  EXPECT_NEAR(outline.area(), 100 - 0.2 - 0.25, 1e-12);
+  EXPECT_GT(moved, 0.45);
+  EXPECT_LT(moved, 0.9);
   const auto [same, none] = simplified(given, 0);
   EXPECT_EQ(same.identity(), given.identity());
   EXPECT_EQ(none, 0);
   EXPECT_EQ(simplified(given, 0.1).outline.corners(), 11U);
+}
+
+TEST(Outline, SimplificationKeepsTheAreaOfPolygonsWithHoles) {
+  std::mt19937 chance(3);
+  const auto rough = [&](double radius, int corners) {
+    Ring ring = circle(radius, corners);
+    for (Point2& p : ring) {
+      const double r = 1 + 0.02 * (static_cast<double>(chance()) / 4294967296.0 - 0.5);
+      p = {r * p[0], r * p[1]};
+    }
+    return ring;
+  };
+  const Outline given({{rough(12, 400), rough(6, 150)}});
+  ASSERT_EQ(given.flaw(), "");
+  const auto [outline, moved] = simplified(given, 0.5);
+  EXPECT_LT(outline.corners(), 50U);
+  EXPECT_EQ(outline.flaw(), "");
+  const auto area = [](const Outline& o, std::size_t ring) {
+    return Outline({{o.polygons().front()[ring]}}).area();
+  };
+  for (const std::size_t ring : {0U, 1U})
+    EXPECT_NEAR(area(outline, ring) / area(given, ring), 1, 1e-12);
+  for (const Ring& ring : given.polygons().front())
+    for (const Point2& p : ring) EXPECT_LE(outline.distance(p), 0.5 * (1 + 1e-12));
+}
+
+TEST(Outline, SimplifiedTogetherPolygonsThatTouchStillDo) {
+  // The border between them is a zigzag with a bulge.
+  Ring border;
+  for (int k = 0; k <= 40; ++k)
+    border.push_back({0.25 * k, 0.2 * (k % 2) + 0.3 * std::sin(0.1 * k)});
+  Ring below{{0, -5}, {10, -5}}, above{{10, 6}, {0, 6}};
+  below.insert(below.end(), border.rbegin(), border.rend());
+  above.insert(above.end(), border.begin(), border.end());
+  const Outline given({{below}, {above}});
+  ASSERT_EQ(given.flaw(), "");
+  const auto [outline, moved] = simplified(given, 0.6);
+  EXPECT_LT(outline.corners(), 16U);
+  EXPECT_EQ(outline.flaw(), "");
+  double both = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double area = Outline({outline.polygons()[k]}).area();
+    EXPECT_NEAR(area / Outline({given.polygons()[k]}).area(), 1, 1e-10);
+    both += area;
+  }
+  // No gap has opened: every corner of the border that is left is one of both.
+  const Ring &one = outline.polygons()[0].front(), &other = outline.polygons()[1].front();
+  const auto shared = std::count_if(one.begin(), one.end(), [&](const Point2& p) {
+    return std::find(other.begin(), other.end(), p) != other.end();
+  });
+  EXPECT_GE(shared, 2);
+  EXPECT_EQ(static_cast<std::size_t>(shared) + 2, one.size());
 }
 
 TEST(Outline, SimplificationKeepsPolygonsApart) {
@@ -327,6 +427,11 @@ TEST(Outline, Flaws) {
   EXPECT_NE(flaw({{whole, box(20, 21, 1, 2)}}).find("hole 1: lies outside"), std::string::npos);
   EXPECT_NE(flaw({{whole, box(1, 4, 1, 4), box(2, 3, 2, 3)}}).find("hole 2: overlaps hole 1"),
             std::string::npos);
+  EXPECT_NE(flaw({{whole}, {box(9, 12, 0, 10)}}), "");  // of one height: no edges cross
+  EXPECT_NE(flaw({{whole}, {{{5, 0}, {10, 5}, {5, 10}, {0, 5}}}}), "");  // inscribed
+  EXPECT_NE(flaw({{whole}, {whole}}), "");
+  EXPECT_EQ(flaw({{whole, box(2, 8, 2, 8)}, {box(2, 8, 2, 8)}}), "");  // it fills the hole
+  EXPECT_EQ(flaw({{whole}, {{{10, 5}, {14, 3}, {14, 7}}}}), "");       // a corner on an edge
   EXPECT_NE(flaw({{whole}, {box(5, 15, 5, 15)}}).find("polygon 1 and polygon 2: overlap"),
             std::string::npos);
   EXPECT_NE(flaw({{whole}, {box(2, 3, 2, 3)}}).find("overlap"), std::string::npos);

@@ -38,25 +38,35 @@ struct FittedCells {
 FittedCells fit_to_cuts(const SheetPlan& plan, Tessellation cells, std::span<const CutLine> lines,
                         MPI_Comm comm);
 
-/// A rectangle that is meshed first: that of a polygon of the outline with a margin.
+/// A rectangle that is meshed first: that of a polygon of the outline with a margin, or the polygon
+/// itself.
 struct MeshedBox {
   SheetPlan plan;  ///< rectangular
   std::array<double, 2> centre{};
+  std::array<double, 2> axis{1, 0};  ///< direction of its length
+  bool is_polygon = false;           ///< whether all of its cells are kept
 };
-/// Whether a polygon is a single cell: convex, of the area of one and a half hexagons of the mean
-/// cell area at most, and nowhere longer than 3 l.
-/// \param l  element size [m]
+/// Whether a polygon is a single cell as it is: convex, of 12 corners at most, of the area of one
+/// and a half hexagons of the mean cell area at most, and nowhere longer than 3 l. \param l element
+/// size [m]
 bool is_one_cell(const RingedPolygon& polygon, double l);
+
+/// Number of cells, one behind the other, of a polygon in which rows of cells along its edges find
+/// no room: one and a half hexagons each, 1 if it is a single cell. 0: rows find room, or it is not
+/// convex, or larger than 20 hexagons.
+/// \param plan  element_size and seed are used
+int cells_in_a_row(const RingedPolygon& polygon, const SheetPlan& plan);
 
 /// Whether rows of cells find room along all edges of a polygon, or it is a single cell.
 /// \param plan  element_size and seed are used
 bool can_be_followed(const RingedPolygon& polygon, const SheetPlan& plan);
 
 /// Returns the rectangles of a sheet, one per polygon of its outline, whose sides are multiples of
-/// the element size; that of a plan without outline is the plan.
+/// the element size; that of a plan without outline is the plan, and that of a polygon with
+/// PolygonPlan::rectangle is this.
 std::vector<MeshedBox> meshed_boxes(const SheetPlan& plan);
 
-/// Meshes these rectangles, those of one size once. Collective.
+/// Meshes these rectangles, those of one size, element size and seed once. Collective.
 /// \param on_iteration  as of tessellate()
 std::vector<Tessellation> tessellate(const std::vector<MeshedBox>& boxes, MPI_Comm comm,
                                      const std::function<void(int, double)>& on_iteration = {});
@@ -75,9 +85,9 @@ struct OutlinedCells {
 };
 
 /// Changes the cells of the rectangles so that they end on the edges of the outline, polygon by
-/// polygon, and keeps those inside; polygons that are single cells are taken as they are. Lines of
-/// cuts are followed inside the polygons, as by fit_to_cuts. Collective; the same bits for any
-/// number of ranks. \param relaxed  cells of the meshed_boxes()
+/// polygon, and keeps those inside; convex polygons that are small or slender are cells in a row.
+/// Lines of cuts are followed inside the other polygons, as by fit_to_cuts. Collective; the same
+/// bits for any number of ranks. \param relaxed  cells of the meshed_boxes()
 OutlinedCells fit_to_outline(const SheetPlan& plan, std::vector<Tessellation> relaxed,
                              std::span<const CutLine> lines, MPI_Comm comm);
 

@@ -60,6 +60,16 @@ bool contains(const RingedPolygon& polygon, const std::array<double, 2>& p);
 /// Returns the parts of a line inside a polygon.
 std::vector<CutLine> clipped(const RingedPolygon& polygon, const CutLine& line);
 
+/// Two polygons that overlap.
+struct OverlappingPolygons {
+  std::size_t first = 0, second = 0;
+  std::string place;  ///< " near (X, Y)"
+};
+/// Returns pairs of polygons that overlap by more than `slack` [m].
+/// \param most  pairs are enough
+std::vector<OverlappingPolygons> find_overlaps(const std::vector<RingedPolygon>& polygons,
+                                               double slack, std::size_t most);
+
 /// Names a ring of a polygon: "polygon 2", "polygon 2, hole 1"; just "the polygon" if there is one.
 std::string name_of_ring(const Outline& outline, std::size_t polygon, std::size_t ring);
 
@@ -69,11 +79,18 @@ struct SimplifiedOutline {
   double moved = 0;  ///< area between the given and the simplified outline [m^2]
 };
 
+/// Whether the corners that are left move so that areas stay what they were, or stay where they
+/// are.
+enum class Areas { kept, changed };
+
 /// Takes corners out of an outline, the least first, as long as all those taken out lie within
 /// `tolerance` of the edge that takes their place; no edges come to cross (Dyken, Daehlen &
-/// Sevaldrud 2009, by CGAL). Holes of an area below the tolerance's square are filled.
+/// Sevaldrud 2009, by CGAL). Holes of an area below the tolerance's square are filled. The corners
+/// that are left then move so that every polygon keeps its area, and every edge lies in the middle
+/// of what it replaces (mesh::restore_areas); fewer are taken out where this would move more than
+/// the tolerance, or make edges cross.
 /// \param outline  without flaw
 /// \param tolerance  [m]; 0: the outline stays
-SimplifiedOutline simplified(const Outline& outline, double tolerance);
+SimplifiedOutline simplified(const Outline& outline, double tolerance, Areas areas = Areas::kept);
 
 }  // namespace floe

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "floe/mesh/outline.h"
@@ -21,6 +22,19 @@ enum class Relaxation {
   quasi_newton,  ///< L-BFGS on the CVT energy (Liu et al. 2009): far fewer evaluations
 };
 
+/// How a polygon of an outline is meshed, where polygons differ.
+struct PolygonPlan {
+  /// A rectangle that is meshed as a sheet by itself, then turned and moved to its place.
+  struct Rectangle {
+    double length = 0, width = 0;      ///< [m]
+    std::array<double, 2> centre{};    ///< [m]
+    std::array<double, 2> axis{1, 0};  ///< direction of its length, a unit vector
+  };
+  double element_size = 2;
+  std::uint64_t seed = 1;
+  std::optional<Rectangle> rectangle{};  ///< if the polygon is one
+};
+
 /// The plan of a sheet and the parameters of its mesh. Lengths in m.
 struct SheetPlan {
   double length = 40;       ///< extent in x, of a rectangle centred on the origin or of `outline`
@@ -32,7 +46,14 @@ struct SheetPlan {
   int iterations = 150;  ///< limit of sweeps, or of evaluations (a line search is finished)
   double tolerance = 0;  ///< stop when no generator moves by more than this times l (0: never)
   Outline outline{};     ///< the sheet; empty: the rectangle
+  /// of each polygon of the outline; empty: all have element_size and seed
+  std::vector<PolygonPlan> of_polygon{};
 
+  /// Element size in a polygon of the outline [m].
+  double size_of(std::int32_t polygon) const {
+    return of_polygon.empty() ? element_size
+                              : of_polygon[static_cast<std::size_t>(polygon)].element_size;
+  }
   double area() const { return outline.empty() ? length * width : outline.area(); }  ///< [m^2]
 };
 

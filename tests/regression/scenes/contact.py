@@ -51,7 +51,8 @@ def check_real_floe(test, run):
     output = run()
     outline = output.summary["outline"]
     test.assertEqual((outline["corners_of_file"], outline["corners"]), (98, 12))
-    test.assertAlmostEqual(outline["area_moved"] / outline["area_of_file"], 0.025, delta=1e-3)
+    test.assertAlmostEqual(outline["area"] / outline["area_of_file"], 1, delta=1e-12)
+    test.assertAlmostEqual(outline["area_moved"] / outline["area_of_file"], 0.014, delta=1e-3)
     with h5py.File(output.folder / "lattice.h5") as file:
         mass = file["bodies/mass"][:]
     test.assertAlmostEqual(mass.sum() / (460 * outline["area"]), 1, delta=1e-12)
@@ -96,6 +97,32 @@ def check_floe_field(test, run):
     test.assertAlmostEqual((kinetic - energy["kinetic"]) / lost, 1, delta=0.01)
     test.assertTrue(1e5 < output.summary["peak_force"]["leg"][0] < 3e5)
     test.assertGreater(output.summary["contacts"], 0)
+
+
+def check_touching_floes(test, run):
+    output = run()
+    floes = output.summary["floes"]
+    test.assertEqual([floes[name]["area"] for name in ("west", "lead", "east")], [120, 48, 120])
+    with h5py.File(output.folder / "lattice.h5") as file:
+        mass = file["bodies/mass"][:]
+    sets = output.sets
+    rows = output.history("beams_broken")
+    test.assertGreater(rows[-1], 50)
+    # The thick floes are whole: each has moved as one body.
+    times, u = output.times, {}
+    for name in ("west", "east"):
+        u[name] = output.field("bodies_displacement", times[-1])[sets[name]][:, 0]
+        test.assertLess(np.ptp(u[name]), 0.02)
+    # The eastern one is pushed along, the western one comes on more slowly.
+    test.assertGreater(u["east"].mean(), 0.01)
+    test.assertLess(u["west"].mean(), 0.95 * 0.5 * times[-1])
+    lead = output.field("bodies_displacement", times[-1])[sets["lead"]]
+    test.assertGreater(np.ptp(lead[:, 0]), 0.02)
+    test.assertGreater(output.history("fragments")[-1], 10)
+    test.assertLess(output.history("fragments")[-1], len(sets["lead"]) + 3)
+    kinetic = output.history("energy_kinetic")[0]
+    test.assertAlmostEqual(kinetic / (0.125 * mass[sets["west"]].sum()), 1, delta=1e-9)
+    test.assertLess(abs(last_row(output)["energy_balance_error"]), 0.01 * kinetic)
 
 
 def check_rubble_pile(test, run):
