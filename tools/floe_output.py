@@ -153,6 +153,10 @@ class Output(Lattice):
             raise BadInput(f"{self.folder} has no frame yet")
         _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
         with reading(path), h5py.File(path) as file:
+            if "mesh" in file[group].attrs:
+                raise BadInput(f"{path}: since ice has joined or left (supply), the frame at "
+                               f"{file[group].attrs['time']:g} s is of other bodies than "
+                               "lattice.h5; ParaView shows it by fields.xmf")
             return file[group][name][:]
 
     def has_field(self, name, time):

@@ -121,6 +121,11 @@ struct Scene {
     double length = std::numeric_limits<double>::infinity();  ///< of all ice, with the sheet [m]
     /// Outside this box {x0, x1, y0, y1, z0, z1} pieces leave [m]; none: all stay.
     std::optional<std::array<double, 6>> region;
+    /// Whether the far edge has dashpots and a spring in place of a prescribed motion.
+    bool absorbs = false;
+    Point3 velocity{};  ///< with absorbs: of the ice behind [m/s]
+    Ramp ramp;          ///< of that velocity
+    double spring = 0;  ///< with absorbs: length of ice of the spring's stiffness [m]; 0: none
   } supply;
   std::string mesh_file;    ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;     ///< of the sheet [m]; the mean of a random field

@@ -291,7 +291,9 @@ void DynamicRun<Space>::change_ice() {
   const std::int32_t bodies = model_.part().global_bodies;
   if (supply.can_join()) {
     const IceNow rest = ice_now();
-    divide([&] { return supply.join(rest); });
+    edge_ = edge_motion();
+    const double strain = edge_ ? edge_->strain : 0;
+    divide([&] { return supply.join(rest, strain); });
     add_to(ice_.joined, [&](std::int32_t body) { return body >= bodies; });
     take(ice_.joined, 1);
   }
@@ -313,6 +315,15 @@ std::vector<double> DynamicRun<Space>::places_of_edge(double time) const {
 /// it, with the velocities of the last half step.
 template <class Space>
 void DynamicRun<Space>::begin_joined() {
+  for (std::size_t b = 0; edge_ && b < static_cast<std::size_t>(model_.part().local); ++b) {
+    double* record = state_.record(b);
+    for (std::size_t k = 0; k < 2; ++k) {
+      record[Space::displacement + k] = edge_->shift[k];
+      record[Space::velocity + k] = edge_->speed[k];
+    }
+    record[Space::displacement] += edge_->strain * (edge_->x - model_.part().bodies.position[b].x);
+  }
+  if (options_.supply->free_edge) return;
   const std::vector<double> now = places_of_edge(time_), last = places_of_edge(time_ - dt_);
   for (std::size_t b = 0; b < static_cast<std::size_t>(model_.part().local); ++b) {
     double* record = state_.record(b);
@@ -322,6 +333,38 @@ void DynamicRun<Space>::begin_joined() {
       record[Space::velocity + k] = (now[at] - last[at]) / dt_;
     }
   }
+}
+
+/// Sums are over bodies in global order, whatever the ranks. Collective.
+template <class Space>
+auto DynamicRun<Space>::edge_motion() const -> std::optional<EdgeMotion> {
+  if (!options_.supply->free_edge) return {};
+  constexpr std::size_t width = 6;
+  const Part& part = model_.part();
+  const std::vector<std::int32_t> bodies = options_.supply->free_edge->bodies();
+  std::vector<double> mine;
+  for (const std::int32_t body : bodies) {
+    const std::int32_t local = part.local_index(body);
+    if (local < 0 || local >= part.owned) continue;
+    const auto b = static_cast<std::size_t>(local);
+    const Vec3<double> u = displacement(state_, b), v = velocity(state_, b);
+    mine.insert(mine.end(),
+                {static_cast<double>(body), part.bodies.position[b].x, u.x, u.y, v.x, v.y});
+  }
+  const std::vector<double> all = all_gathered(mine, part.comm);
+  std::vector<std::array<double, width>> rows(all.size() / width);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    std::copy_n(&all[k * width], width, rows[k].begin());
+  std::sort(rows.begin(), rows.end());
+  EdgeMotion edge;
+  const double share = 1 / static_cast<double>(rows.size());
+  for (const auto& [body, x, ux, uy, vx, vy] : rows) {
+    edge.x += share * x;
+    edge.shift[0] += share * ux, edge.shift[1] += share * uy;
+    edge.speed[0] += share * vx, edge.speed[1] += share * vy;
+  }
+  edge.strain = options_.supply->free_edge->strain();
+  return edge;
 }
 
 /// Gathers the places of all bodies and the broken beams. Collective.

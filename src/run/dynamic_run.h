@@ -207,6 +207,13 @@ class DynamicRun : public Run {
   void change_ice();
   void divide(const std::function<Renumbering()>& work);
   void follow_division();
+  /// Means over the bodies of the far edge, with which ice joins.
+  struct EdgeMotion {
+    double x = 0;  ///< at rest [m]
+    std::array<double, 2> shift{}, speed{};
+    double strain = 0;
+  };
+  std::optional<EdgeMotion> edge_motion() const;
   void begin_joined();
   std::vector<double> places_of_edge(double time) const;
   IceNow ice_now() const;
@@ -240,6 +247,7 @@ class DynamicRun : public Run {
   // Steps of looks at the balance. A checkpoint of a step is made before the look after it.
   std::int64_t next_look_ = std::numeric_limits<std::int64_t>::max(), looked_ = -1;
   IceAccount ice_;
+  std::optional<EdgeMotion> edge_;  ///< with which the next ice joins
   bool ice_has_changed_ = false;
   std::string_view what_;
   std::string type_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,12 +23,20 @@ struct IceNow {
   std::vector<std::int32_t> broken;  ///< beams, sorted
 };
 
+/// The far edge of a sheet whose motion is not prescribed.
+struct FreeEdge {
+  std::function<std::vector<std::int32_t>()> bodies;  ///< at the edge
+  /// Strain of the ice by the mean pressure on the edge, > 0 if compressed.
+  std::function<double()> strain;
+};
+
 /// Settings of a run in which ice joins and leaves. Functions are collective, and what they decide
 /// is the same on all ranks.
 struct SupplyOptions {
   std::int64_t every = 50;  ///< steps between looks
   /// The motion of the far edge, with which ice joins.
   Boundary edge;
+  std::optional<FreeEdge> free_edge;  ///< given: ice joins with what the edge does indeed
   /// Whether the far edge has come so far by a time [s] that ice is to join.
   std::function<bool(double time)> is_due;
   /// Bodies that are to leave, sorted.
@@ -36,8 +45,8 @@ struct SupplyOptions {
   std::function<Renumbering(const IceNow&, const std::vector<std::int32_t>& gone)> leave;
   /// Whether there is more ice.
   std::function<bool()> can_join;
-  /// Divides the model anew with the next strip, whose bodies come last.
-  std::function<Renumbering(const IceNow&)> join;
+  /// Divides the model anew with the next strip, whose bodies come last and are compressed so.
+  std::function<Renumbering(const IceNow&, double strain)> join;
   /// Counts the look at which ice was due.
   std::function<void()> end_look;
   /// Saves the names of the bodies, or loads them and divides the model so.

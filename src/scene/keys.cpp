@@ -90,6 +90,17 @@ constexpr std::array table{
         "boundary on left has come so much nearer; sheet: length is a whole number of them"},
     OptionSpec{"supply: length", number, "(without end)", "m", ">= 1e-9, <= 1e12",
                "extent in x of all ice, with the sheet"},
+    OptionSpec{"supply: edge", choice, "prescribed", "", "prescribed | absorbing",
+               "far edge: moved by the boundary on left; or dashpots that take waves up, relative "
+               "to the ice behind"},
+    OptionSpec{"supply: velocity", numbers, "(required)", "m/s", ">= -1e6, <= 1e6",
+               "absorbing: of the ice behind the far edge", 3},
+    OptionSpec{"supply: ramp", number, "0", "s", ">= 0, <= 1e12",
+               "absorbing: that velocity rises linearly over this time"},
+    OptionSpec{
+        "supply: spring", number, "0", "m", ">= 0, <= 1e12",
+        "absorbing: a spring as stiff as so much ice holds the edge to the ice behind, or it "
+        "lags under a mean load; 0: none"},
     OptionSpec{"supply: region", numbers, "(all ice stays)", "m", ">= -1e9, <= 1e9",
                "x0, x1, y0, y1, z0, z1: pieces wholly outside are taken out when a strip is due",
                6},

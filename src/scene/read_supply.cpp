@@ -1,6 +1,8 @@
 // Reading of ice without end.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "reading.h"
 
@@ -34,17 +36,48 @@ void check_company(const Scene& scene) {
 
 /// Refuses boundaries that ice cannot join or leave. \throws InputError
 void check_boundaries(const Scene& scene) {
+  if (scene.supply.absorbs) {
+    if (!(scene.supply.velocity.x > 0))
+      throw InputError("supply: velocity: " + text_of(scene.supply.velocity.x) +
+                       " along x must be > 0 [m/s], towards the sheet");
+    if (scene.supply.velocity.z != 0)
+      throw InputError("supply: velocity: " + text_of(scene.supply.velocity.z) +
+                       " along z must be 0 [m/s]");
+  }
   const auto is_edge = [](const Boundary& b) { return b.set == "left" && b.fixed[0]; };
   const auto edge = std::find_if(scene.boundaries.begin(), scene.boundaries.end(), is_edge);
-  if (edge == scene.boundaries.end() || !edge->velocity || !(edge->velocity->x > 0))
+  const bool has_edge = edge != scene.boundaries.end() && edge->velocity && edge->velocity->x > 0;
+  if (!scene.supply.absorbs && !has_edge)
     throw InputError(
         "supply: needs a boundary with 'set: left', x among 'fix' and a velocity along +x, by "
         "which "
         "the far edge brings the ice");
+  // Strips join level and side by side: the edge to which they join must be so too.
+  const bool in_space = scene.forces.gravity || scene.forces.buoyancy || scene.forces.contact;
+  std::array<bool, 6> held{};
+  for (const Boundary& b : scene.boundaries) {
+    for (std::size_t k = 0; k < held.size(); ++k)
+      held[k] = held[k] || (b.set == "left" && b.fixed[k]);
+  }
+  std::string missing;
+  for (std::size_t k = scene.supply.absorbs ? 2 : 1; k < held.size(); ++k) {
+    const bool is_out_of_plane = k >= 2 && k <= 4;
+    if (!held[k] && (in_space || !is_out_of_plane) && !(scene.supply.absorbs && !in_space))
+      missing += " " + std::string(component_names[k]);
+  }
+  if (!missing.empty())
+    throw InputError(
+        "supply: the far edge must be held level: of the boundaries with 'set: left' "
+        "none has in 'fix':" +
+        missing);
   for (const Boundary& b : scene.boundaries) {
     if (b.set != "left" && b.set != "bottom" && b.set != "top")
       throw InputError("boundary: " + b.name + ": set: '" + b.set +
                        "' does not go with 'supply', must be left, bottom or top");
+    if (b.set == "left" && scene.supply.absorbs && (b.fixed[0] || b.fixed[1]))
+      throw InputError("boundary: " + b.name +
+                       ": fix: x and y of 'set: left' do not go with 'supply: edge' absorbing, "
+                       "which moves it");
     if (b.angular_velocity != Point3{})
       throw InputError("boundary: " + b.name +
                        ": angular_velocity does not go with 'supply': strips join without turning");
@@ -60,6 +93,16 @@ void read_supply(Options& options, Scene& scene) {
   supply.strip = options.number("supply: strip");
   if (options.given("supply: length")) supply.length = options.number("supply: length");
   if (options.given("supply: region")) supply.region = options.numbers<6>("supply: region");
+  enum class Edge { prescribed, absorbing };
+  supply.absorbs = options.choice<Edge>("supply: edge") == Edge::absorbing;
+  if (supply.absorbs) {
+    supply.velocity = options.vector("supply: velocity");
+    supply.ramp.seconds = options.number("supply: ramp");
+    supply.spring = options.number("supply: spring");
+  } else {
+    for (const auto* key : {"supply: velocity", "supply: ramp", "supply: spring"})
+      options.refuse(key, "would have no effect: 'supply: edge' is prescribed, by a boundary");
+  }
   check_company(scene);
   check_boundaries(scene);
   const double least = 8 * scene.sheet.element_size;

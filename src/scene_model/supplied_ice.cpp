@@ -27,7 +27,7 @@ std::int32_t strips_in(double length, double strip) {
 
 SuppliedIce::SuppliedIce(const Scene& scene, MPI_Comm comm)
     : scene_(scene),
-      edge_(*far_edge(scene)),
+      edge_(far_edge(scene)),
       strips_(plan_of_strip(scene), comm),
       each_(strips_.cells_of_each()),
       next_(strips_in(scene.sheet.length, scene.supply.strip)) {
@@ -64,13 +64,19 @@ Tessellation SuppliedIce::cells() {
   for (std::size_t b = 0; b < names_.size(); ++b)
     item(index[names_[b] / each_], names_[b] % each_) = static_cast<std::int32_t>(b);
   cells.offset.assign(1, 0);
+  edge_areas_.clear();
+  double whole = 0;
   for (const std::int32_t k : strips) {
     const StripCells& strip = strips_.strip(k);
     const double x = middle(k);
     const std::vector<std::int32_t>& own = index[k];
     std::vector<std::uint8_t> sides = strip.sides;
+    std::vector<double> open(static_cast<std::size_t>(each_), 0.0);  // width towards the next
     for (const Facet& facet : strip.to_next) {
-      if (k + 1 == next_) item(sides, facet.cells[0]) |= side_left;
+      if (k + 1 != next_) break;
+      item(sides, facet.cells[0]) |= side_left;
+      item(open, facet.cells[0]) += facet.width;
+      whole += facet.width;
     }
     for (std::int32_t c = 0; c < each_; ++c) {
       if (item(own, c) < 0) continue;
@@ -79,6 +85,7 @@ Tessellation SuppliedIce::cells() {
       cells.offset.push_back(static_cast<std::int32_t>(cells.vertices.size()));
       cells.generators.push_back({x, 0});
       cells.sides.push_back(item(sides, c));
+      if (item(open, c) > 0) edge_areas_.push_back({item(own, c), item(open, c)});
     }
     const auto join = [&](const std::vector<Facet>& facets, const std::vector<std::int32_t>& to) {
       for (const auto& [pair, width] : facets) {
@@ -92,6 +99,8 @@ Tessellation SuppliedIce::cells() {
   }
   std::sort(cells.facets.begin(), cells.facets.end(),
             [](const Facet& a, const Facet& b) { return a.cells < b.cells; });
+  // The edge winds; together its parts have the area of the sheet's section.
+  for (EdgeArea& edge : edge_areas_) edge.area *= scene_.sheet.width * scene_.thickness / whole;
   strips_.forget(strips);
   return cells;
 }
@@ -170,7 +179,8 @@ SuppliedIce::Change SuppliedIce::leave(const std::vector<std::int32_t>& gone) {
   });
 }
 
-SuppliedIce::Change SuppliedIce::join() {
+SuppliedIce::Change SuppliedIce::join(double strain) {
+  offset_ += strain * scene_.supply.strip;
   return changed([&] {
     for (std::int32_t c = 0; c < each_; ++c) names_.push_back(next_ * each_ + c);
     ++next_;
@@ -183,16 +193,23 @@ void SuppliedIce::persist(Archive& archive) {
   archive.common("names", names);
   archive.common("next_strip", next, 1);
   archive.common("looks", looks_);
+  archive.common("offset", offset_);
   if (!archive.loading()) return;
   names_.clear();
   for (const double name : names) names_.push_back(static_cast<std::int32_t>(name));
   next_ = static_cast<std::int32_t>(next);
 }
 
-const Boundary* far_edge(const Scene& scene) {
-  const auto found = std::find_if(scene.boundaries.begin(), scene.boundaries.end(),
-                                  [](const Boundary& b) { return b.set == "left" && b.fixed[0]; });
-  return found == scene.boundaries.end() ? nullptr : &*found;
+Boundary far_edge(const Scene& scene) {
+  if (scene.supply.absorbs) {
+    Boundary behind;
+    behind.fixed = {true, true, false, false, false, false};
+    behind.velocity = scene.supply.velocity;
+    behind.ramp = scene.supply.ramp;
+    return behind;
+  }
+  return *std::find_if(scene.boundaries.begin(), scene.boundaries.end(),
+                       [](const Boundary& b) { return b.set == "left" && b.fixed[0]; });
 }
 
 }  // namespace floe

@@ -10,6 +10,7 @@
 
 #include "floe/mesh/strips.h"
 #include "floe/scene.h"
+#include "forces/far_edge.h"
 #include "lattice/archive.h"
 #include "lattice/renumbering.h"
 #include "run/supply.h"
@@ -45,8 +46,16 @@ class SuppliedIce {
     Renumbering indices;
   };
   Change leave(const std::vector<std::int32_t>& gone);
-  Change join();
-  /// The motion of the far edge.
+  /// \param strain  by which the ice that joins is compressed
+  Change join(double strain);
+  /// Bodies at the far edge of the last lattice, sorted, and their parts of its area.
+  const std::vector<EdgeArea>& edge_areas() const { return edge_areas_; }
+  /// By which the far edge is ahead of the motion of the ice behind, since strips have joined
+  /// compressed [m].
+  double offset() const { return offset_; }
+  /// The strip of the far edge.
+  std::int32_t last_strip() const { return next_ - 1; }
+  /// The motion of the far edge, or of the ice behind it.
   const Boundary& edge() const { return edge_; }
 
   /// Saves or loads the bodies that exist. Collective.
@@ -65,11 +74,13 @@ class SuppliedIce {
   std::int32_t each_;       ///< cells of a strip
   std::int32_t next_ = 0;   ///< the strip that joins next
   std::int64_t looks_ = 0;  ///< how often ice was due
+  double offset_ = 0;       ///< [m]
+  std::vector<EdgeArea> edge_areas_;
   std::vector<std::int32_t> names_;
   std::vector<std::array<std::int32_t, 2>> beams_;  ///< of the present lattice
 };
 
-/// The boundary that moves the far edge of a scene's sheet; null if there is none.
-const Boundary* far_edge(const Scene& scene);
+/// The motion of the far edge of a scene's sheet, or of the ice behind it.
+Boundary far_edge(const Scene& scene);
 
 }  // namespace floe

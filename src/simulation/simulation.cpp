@@ -1,6 +1,7 @@
 // A scene's run, from the lock of its folder to its summary.
 #include "floe/simulation.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "files/run_log.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "floe/beams/moduli.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"
 #include "floe/session/session.h"
@@ -57,6 +59,15 @@ Vec3<double> strips_of(const Scene& scene, const Lattice& lattice) {
   Vec3<double> sum{};
   for (const Point3& place : places) sum = sum + place;
   return way_to_nearest(scene.obstacles, (1.0 / static_cast<double>(places.size())) * sum);
+}
+
+/// Returns the moduli of a sheet's lattice; of a regular one where all bodies lie on its sides.
+LatticeModuli moduli_of(const Scene& scene, const Lattice& lattice) {
+  const LatticeRatios ratios = lattice_ratios(lattice, scene.beam.shear);
+  if (std::isfinite(ratios.irregularity))
+    return lattice_moduli(ratios, scene.ice.poisson, scene.beam.shear);
+  return lattice_moduli(scene.sheet.element_size, scene.thickness, scene.ice, scene.shear_factor,
+                        scene.beam.shear, scene.torsion);
 }
 
 /// Refuses a folder with files of another run, which would be cut back.
@@ -127,6 +138,7 @@ class RunningIn final : public Running {
     if (!output_) open(columns);
   }
   void equip(const Lattice& lattice);
+  void add_far_edge();
   void divide(const std::vector<std::int32_t>& owner);
   BalanceOptions balance();
   std::optional<SupplyOptions> supply();
@@ -151,6 +163,11 @@ class RunningIn final : public Running {
   /// The lattice once more, for moves of bodies between ranks; empty where none can move.
   Lattice whole_;
   PackedLattice packed_whole_;
+  LatticeModuli moduli_ = setting_.scene.supply.absorbs
+                              ? moduli_of(setting_.scene, setting_.lattice)
+                              : LatticeModuli{};             ///< over that of the ice
+  double young_ = moduli_.young * setting_.scene.ice.young;  ///< of the sheet [Pa]
+  const FarEdge<Space>* far_edge_ = nullptr;
   std::int64_t mesh_frame_ = 0;  ///< first frame of the mesh of the present bodies, on a restart
   std::vector<std::int32_t> owner_;  ///< of the bodies since ice has joined or left last
   std::vector<PlacedLoad> loads_;
@@ -201,7 +218,27 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
 template <class Space>
 void RunningIn<Space>::equip(const Lattice& lattice) {
   add_forces(scene_, loads_, *model_, &lattice);
+  add_far_edge();
   add_contact(scene_, lattice, *model_);
+}
+
+/// Adds the ice behind the far edge, with impedances of the sheet's own lattice (model.md, "Ice
+/// without end").
+template <class Space>
+void RunningIn<Space>::add_far_edge() {
+  if (!scene_.supply.absorbs) return;
+  const SuppliedIce& ice = *setting_.mesh.ice;
+  const LatticeModuli& m = moduli_;
+  const double density = scene_.ice.density * (1 + scene_.added_mass);
+  const FarIce behind{.motion = ice.edge(),
+                      .normal = std::sqrt(density * young_ / (1 - m.poisson * m.poisson)),
+                      .tangential = std::sqrt(density * m.shear * scene_.ice.young),
+                      .spring = scene_.supply.spring > 0 ? young_ / scene_.supply.spring : 0,
+                      .offset = ice.offset(),
+                      .strip = ice.last_strip()};
+  auto edge = make_far_edge<Space>(model_->part(), ice.edge_areas(), behind);
+  far_edge_ = edge.get();
+  model_->add_force(std::move(edge));
 }
 
 /// Settings of moves of bodies between ranks. Where there can be some, the lattice is kept.
@@ -247,7 +284,18 @@ std::optional<SupplyOptions> RunningIn<Space>::supply() {
     return change(ice.leave(gone), now);
   };
   options.can_join = [&ice] { return ice.can_join(); };
-  options.join = [this, &ice](const IceNow& now) { return change(ice.join(), now); };
+  options.join = [this, &ice](const IceNow& now, double strain) {
+    return change(ice.join(strain), now);
+  };
+  if (scene_.supply.absorbs)
+    options.free_edge = {.bodies =
+                             [&ice] {
+                               std::vector<std::int32_t> bodies;
+                               for (const EdgeArea& edge : ice.edge_areas())
+                                 bodies.push_back(edge.body);
+                               return bodies;
+                             },
+                         .strain = [this] { return far_edge_->mean_pressure() / young_; }};
   options.end_look = [&ice] { ice.end_look(); };
   options.persist = [this](Archive& archive) { persist_ice(archive); };
   return options;

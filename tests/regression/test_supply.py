@@ -26,7 +26,7 @@ contact: {young: 1e7, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
 obstacle:
   names: [slope]
   slope: {shape: halfspace, point: [12.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
-boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [8, 0, 0], ramp: 0.2}}
+boundary: {names: [push], push: {set: left, fix: x y z rx ry rz, velocity: [8, 0, 0], ramp: 0.2}}
 time: {end: 5, dt: 5e-4}
 output: {history: 0.101, fields: 0.37}
 checkpoint: {every: 1000}
@@ -37,10 +37,38 @@ forces: [beam, gravity, buoyancy]
 ice: {young: 4e7}
 sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
 supply: {strip: 12, length: 48}
-boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [8, 0, 0]}}
+boundary: {names: [push], push: {set: left, fix: x y z rx ry rz, velocity: [8, 0, 0]}}
 initial: {names: [moving], moving: {set: all, velocity: [8, 0, 0]}}
 time: {end: 5, dt: 5e-4}
 output: {history: 0.1, fields: 1}
+"""
+# The ice behind begins to move at 0.4 m/s, confined as a wide sheet is: a wave of half that speed
+# runs to the right side, comes back from it with the whole, and leaves by the far edge.
+WAVE = """integrator: explicit
+forces: [beam]
+sheet: {length: 240, width: 12, thickness: 0.5, element_size: 1.5, iterations: 40}
+supply: {strip: 12, edge: absorbing, velocity: [0.4, 0, 0], ramp: 0.02}
+boundary: {names: [below, above], below: {set: bottom, fix: y}, above: {set: top, fix: y}}
+time: {end: 0.4}
+output: {history: 0.001}
+"""
+# Still water holds the sheet back, so that the far edge bears a mean load.
+LOADED = """integrator: explicit
+forces: [beam, gravity, buoyancy, drag]
+ice: {young: 4e8}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+supply: {strip: 12, edge: absorbing, velocity: [8, 0, 0], spring: 60}
+water: {drag_linear: 200}
+boundary:
+  names: [below, above, level]
+  below: {set: bottom, fix: y}
+  above: {set: top, fix: y}
+  level: {set: left, fix: z rx ry rz}
+initial: {names: [moving], moving: {set: all, velocity: [8, 0, 0]}}
+beam: {damping_ratio: 0.1}
+time: {end: 4, dt: 5e-4}
+output: {history: 0.01}
+checkpoint: {every: 1000}
 """
 
 
@@ -106,6 +134,49 @@ class Account(SupplyTest):
                                                                   changes)])) + 1e-9 * scale)
 
 
+class AbsorbingEdge(SupplyTest):
+    def test_no_wave_comes_back(self):
+        """Less than 3 % of the amplitude, with the wave's own front and the moduli of the
+        lattice."""
+        (self.folder / "wave.yaml").write_text(WAVE)
+        rows = rows_of(self.run_whole(dir="a", scene="wave.yaml"))
+        time, force = rows["time"], rows["far_edge_force_x"]
+        way = 240 / np.sqrt(4e9 / 920)  # some 0.115 s; lattices are a little slower
+        sent = np.mean(force[(time > 0.04) & (time < 1.5 * way)])
+        impedance = sent / (0.2 * 12 * 0.5)
+        self.assertAlmostEqual(impedance / np.sqrt(920 * 4e9), 1, delta=0.12)
+        back = force[time > 2 * way + 0.06]
+        self.assertGreater(len(back), 50)
+        self.assertLess(np.sqrt(np.mean(back ** 2)), 0.03 * sent)
+        self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                        1e-9 * np.max(rows["energy_kinetic"]))
+
+    def test_ice_joins_under_a_mean_load(self):
+        """Each strip carries the mean load from its first step on: the far edge's force goes on,
+        and a spring keeps the edge from lagging."""
+        (self.folder / "loaded.yaml").write_text(LOADED)
+        rows = rows_of(self.run_whole(dir="a", scene="loaded.yaml"))
+        time, force = rows["time"], rows["far_edge_force_x"]
+        joins = np.flatnonzero(np.diff(rows["bodies"]))
+        self.assertEqual(len(joins), 2)
+        for at in joins:
+            before, after = np.mean(force[at - 5:at + 1]), force[at + 1]
+            self.assertLess(abs(after - before), 0.1 * before)
+        # The strip's own drag is the only one that it brings: the load grows with the sheet.
+        steady = [np.mean(force[joins[0] - 20:joins[0]]), np.mean(force[joins[1] - 20:joins[1]])]
+        self.assertAlmostEqual(steady[1] / steady[0], 36 / 24, delta=0.1)
+        pressure, volume = steady[0] / 3, 12 * 3
+        mass = rows["mass_supplied"][joins[0] + 1]
+        strain_energy = rows["energy_strain"][joins[0] + 1] - rows["energy_strain"][joins[0]]
+        # Less where the sides confine it, more by the lattice's modulus and by the wave's own.
+        expected = pressure ** 2 / (2 * 4e8) * volume
+        self.assertTrue(0.5 * expected < strain_energy < 2 * expected, strain_energy / expected)
+        speed = rows["momentum_supplied_x"][joins[0] + 1] / mass
+        self.assertAlmostEqual(speed, 8, delta=0.1)
+        self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                        1e-6 * np.max(rows["energy_kinetic"]))
+
+
 class Restarts(SupplyTest):
     def same_end(self, a, b):
         rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
@@ -124,16 +195,12 @@ class Restarts(SupplyTest):
             resume = ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
         return self.go_on(dir=dir, ranks=ranks)
 
-    def test_at_twenty_times(self):
-        """Those of changes and those beside them among others."""
+    def test_near_changes(self):
+        """Of ice that breaks: at the steps of changes and beside them."""
         a = self.run_whole(dir="a")
         changes = rows_of(a)["time"][1:][np.diff(rows_of(a)["bodies"]) != 0]
         near = [50 * round(float(t) / 5e-4 / 50) for t in changes]
-        steps = {step + d for step in near for d in (-50, 0, 1)}
-        random.seed(5)
-        while len(steps) < 20:
-            steps.add(random.randrange(1, 10000))
-        self.same_end(a, self.stopped(sorted(steps), "b"))
+        self.same_end(a, self.stopped(sorted(step + d for step in near for d in (-50, 0, 1)), "b"))
 
     def test_on_two_ranks(self):
         """The same states as on one; restarts bit for bit."""
@@ -150,6 +217,19 @@ class Restarts(SupplyTest):
         three = self.stopped((3050,), "c", ranks=1)  # and on another number
         np.testing.assert_array_equal(contents(three / "checkpoint.h5")["bodies/records"],
                                       one["bodies/records"])
+
+
+    def test_of_an_absorbing_edge_at_twenty_times(self):
+        (self.folder / "scene.yaml").write_text(LOADED)
+        a = self.run_whole(dir="a")
+        random.seed(5)
+        steps = {2999, 3000, 3001, 3050}  # the first change among them
+        while len(steps) < 20:
+            steps.add(random.randrange(1, 8000))
+        self.same_end(a, self.stopped(sorted(steps), "b"))
+        two = self.run_whole(dir="c", ranks=2)
+        np.testing.assert_array_equal(contents(a / "checkpoint.h5")["bodies/records"],
+                                      contents(two / "checkpoint.h5")["bodies/records"])
 
 
 class Files(SupplyTest):
@@ -191,9 +271,24 @@ class Files(SupplyTest):
         self.assertAlmostEqual(summary["supply"]["mass_removed"] / rows["mass_removed"][-1], 1, 9)
 
 
+class Length(SupplyTest):
+    def test_memory_goes_with_the_window(self):
+        """Four times the ice takes no more memory: what comes leaves."""
+        sizes, present, supplied = [], [], []
+        for end in ("5", "20"):
+            folder = self.run_whole("-time_end", end, "-output_fields", "100", dir=end)
+            summary = json.loads((folder / "summary.json").read_text())
+            sizes.append(summary["peak_memory_mb"])
+            present.append(summary["supply"]["bodies"])
+            supplied.append(summary["supply"]["bodies_supplied"])
+        self.assertGreater(supplied[1], 4 * supplied[0])
+        self.assertLess(present[1], 1.5 * present[0])
+        self.assertLess(sizes[1] - sizes[0], 4)
+
+
 class Refused(SupplyTest):
-    def says(self, *words):
-        said = self.finish(self.begin(*words, dir="bad"), 2)
+    def says(self, *words, **how):
+        said = self.finish(self.begin(*words, dir="bad", **how), 2)
         self.assertEqual(said.count("\n"), 1, said)
         return said
 
@@ -208,8 +303,13 @@ class Refused(SupplyTest):
                 (("-beam_calibrate", "isotropic", "-beam_shear", "one_point"), "beam"),
                 (("-boundary_push_velocity", "-1 0 0"), "a velocity along +x"),
                 (("-boundary_push_set", "right"), "'set: left'"),
-                (("-ts_type", "rk"), "supply: -ts_type rk")):
+                (("-supply_spring", "10"), "supply: spring: would have no effect"),
+                (("-supply_edge", "absorbing"), "supply: velocity: "),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0"),
+                 "boundary: push: fix: x and y of 'set: left' do not go with"),
+                (("-boundary_push_fix", "x y rz"), "'set: left' none has in 'fix': z rx ry")):
             self.assertIn(expected, self.says(*words))
+        self.assertIn("supply: -ts_type rk", self.says("-ts_type", "rk", scene="calm.yaml"))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,127 @@
+#include "forces/far_edge.h"
+
+#include <algorithm>
+
+#include "base/collectives.h"
+#include "floe/base/item.h"
+
+namespace floe {
+namespace {
+
+template <class Space>
+class Dashpots final : public FarEdge<Space>,
+                       public DoesWork<Space>,
+                       public LimitsStep<Space>,
+                       public Commits<Space>,
+                       public Persists {
+ public:
+  Dashpots(const Part& part, const std::vector<EdgeArea>& areas, const FarIce& ice)
+      : part_(part), ice_(ice) {
+    for (const EdgeArea& edge : areas) {
+      whole_ += edge.area;
+      const std::int32_t local = part.local_index(edge.body);
+      if (local < 0 || local >= part.owned) continue;
+      bodies_.push_back(local);
+      areas_.push_back(edge.area);
+    }
+    forces_.resize(bodies_.size());
+    impulses_.resize(bodies_.size());
+  }
+
+  std::string_view name() const override { return "far_edge"; }
+  Roles<Space> roles() override {
+    return {.work = this, .step = this, .commits = this, .persists = this};
+  }
+
+  void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
+    const std::array<double, 6> place = ice_.motion.value(state.time),
+                                rate = ice_.motion.rate(state.velocity_time);
+    power_ = 0;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const auto b = static_cast<std::size_t>(bodies_[k]);
+      const Vec3<double> u = displacement(state, b), v = velocity(state, b);
+      const Vec3<double> force =
+          areas_[k] *
+          Vec3<double>{ice_.normal * (rate[0] - v.x) + ice_.spring * (place[0] + ice_.offset - u.x),
+                       ice_.tangential * (rate[1] - v.y), 0};
+      forces_[k] = force;
+      power_ += dot(force, v);
+      floe::add(wrenches, b, force, {});
+    }
+  }
+
+  double stiffness_bound(std::int32_t body) const override {
+    const auto at = std::find(bodies_.begin(), bodies_.end(), body);
+    return at == bodies_.end() ? 0 : ice_.spring * item(areas_, at - bodies_.begin());
+  }
+
+  void powers(std::span<double> out) const override { out.front() = power_; }
+  LaterPowers later_powers() const override { return LaterPowers::at_once; }
+  void powers_with(const State<Space>& state, std::span<double> out) const override {
+    out.front() = 0;
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+      out.front() += dot(forces_[k], velocity(state, static_cast<std::size_t>(bodies_[k])));
+  }
+
+  void commit(const State<Space>&, double dt) override {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) impulses_[k] += dt * forces_[k].x;
+    time_ += dt;
+  }
+
+  void report(const State<Space>&, std::span<const double> works, Columns& columns) const override {
+    columns.add("energy_external", works.front());
+    Vec3<double> sum{};
+    for (const Vec3<double>& force : forces_) sum = sum + force;
+    columns.add("far_edge_force_x", sum.x);
+    columns.add("far_edge_force_y", sum.y);
+  }
+
+  void persist(Archive& archive) override {
+    std::int64_t strip = ice_.strip;
+    archive.common("strip", strip);
+    archive.common("time", time_, not_negative);
+    archive.rows("impulse", bodies_, impulses_, 1);
+    if (strip == ice_.strip) return;
+    time_ = 0;  // of an edge that is no more
+    std::fill(impulses_.begin(), impulses_.end(), 0.0);
+  }
+
+  double mean_pressure() const override {
+    std::vector<double> mine;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      mine.push_back(item(part_.global, bodies_[k]));
+      mine.push_back(impulses_[k]);
+    }
+    const std::vector<double> all = all_gathered(mine, part_.comm);
+    std::vector<std::array<double, 2>> in_order(all.size() / 2);
+    for (std::size_t k = 0; k < in_order.size(); ++k) in_order[k] = {all[2 * k], all[2 * k + 1]};
+    std::sort(in_order.begin(), in_order.end());
+    double sum = 0;
+    for (const auto& [body, impulse] : in_order) sum += impulse;
+    return time_ > 0 ? sum / (time_ * whole_) : 0;
+  }
+
+ private:
+  const Part& part_;
+  FarIce ice_;
+  double whole_ = 0;                  ///< area of the edge [m^2]
+  std::vector<std::int32_t> bodies_;  ///< owned ones at the edge
+  std::vector<double> areas_, impulses_;
+  std::vector<Vec3<double>> forces_;  ///< in the last evaluation
+  double power_ = 0, time_ = 0;
+};
+
+}  // namespace
+
+template <class Space>
+std::unique_ptr<FarEdge<Space>> make_far_edge(const Part& part, const std::vector<EdgeArea>& areas,
+                                              const FarIce& ice) {
+  return std::make_unique<Dashpots<Space>>(part, areas, ice);
+}
+
+template std::unique_ptr<FarEdge<Spatial>> make_far_edge(const Part&, const std::vector<EdgeArea>&,
+                                                         const FarIce&);
+template std::unique_ptr<FarEdge<Planar>> make_far_edge(const Part&, const std::vector<EdgeArea>&,
+                                                        const FarIce&);
+
+}  // namespace floe
