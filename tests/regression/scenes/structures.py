@@ -36,6 +36,19 @@ def check_ice_slope(test, run):
     expect_ledger(test, output, 1e-3)
 
 
+def check_endless_slope(test, run):
+    """Ten times as fast, so that a strip joins soon."""
+    output = run("-time_end", "4.7", "-boundary_push_velocity", "5,0,0", "-water_current", "5,0,0")
+    supply = output.summary["supply"]
+    test.assertEqual(supply["bodies"] + supply["bodies_removed"],
+                     len(output.position) + supply["bodies_supplied"])
+    test.assertEqual(supply["bodies_supplied"], len(output.position) / 5)
+    test.assertAlmostEqual(supply["momentum_supplied_x"] / supply["mass_supplied"], 5, 9)
+    test.assertAlmostEqual(supply["mass_supplied"] / (20 * 10 * 0.5 * 920), 1, delta=0.03)
+    test.assertGreater(output.summary["beams_broken"], 50)
+    expect_ledger(test, output, 1e-3)
+
+
 def check_ice_cone(test, run):
     output = run("-time_end", "2")
     test.assertGreater(output.summary["beams_broken"], 10)
