@@ -145,10 +145,12 @@ void PairList::end_step() {
     for (Pair& pair : pairs_) pair.newly_eligible = false;
   }
   newly_eligible_ = stress_free_ = false;
+  settled_ = eligibility_.known();
 }
 
 void PairList::restore(const Solids& solids, std::span<const BodyPair> released,
                        std::size_t known) {
+  settled_ = known;
   for (const BodyPair& pair : released.first(known)) eligibility_.release(pair);
   eligibility_.update(solids);
   for (const BodyPair& pair : released.subspan(known)) eligibility_.release(pair);

@@ -49,6 +49,9 @@ class PairList {
   void release(BodyPair pair);
   /// Ends a step: pairs that were newly eligible have their first overlap now.
   void end_step();
+  /// Returns the number of released pairs that the list knew at the end of the last step: those
+  /// after them have had no first overlap yet, even if they have been evaluated.
+  std::size_t settled() const { return settled_; }
   /// Empties the list, for the build after a restart.
   /// \param released  pairs whose beam broke, in the order of release()
   /// \param known     number of these that the last build knew
@@ -75,7 +78,8 @@ class PairList {
   Periods periods_;
   double reach_ = 0;  ///< largest gap of a listed pair [m]
   bool changed_ = true;
-  bool stress_free_;             ///< overlaps before the end of the step are stress-free
+  bool stress_free_;  ///< overlaps before the end of the step are stress-free
+  std::size_t settled_ = 0;
   bool newly_eligible_ = false;  ///< listed pairs may be newly eligible
 };
 

@@ -355,7 +355,7 @@ void DistributedContact::persist(Archive& archive) {
   archive.renumber_bodies(worn, WearCut::numbers, {2});
   if (archive.loading()) contacts_.restore_wear(crushed, worn, here_);
   archive.common("released", released);
-  auto known = static_cast<std::int64_t>(contacts_.list().eligibility().known());
+  auto known = static_cast<std::int64_t>(contacts_.list().settled());
   archive.common("known", known);
   if (archive.renumbers() && archive.loading()) {
     const auto end = released.begin() + 2 * static_cast<std::ptrdiff_t>(known);

@@ -382,6 +382,27 @@ class Breaking(RestartTest):
 
 
 class Contact(RestartTest):
+    def test_stopped_in_steps_in_which_beams_break(self):
+        """Bodies whose beam broke in the last step before a stop have evaluated their first
+        overlap, but not kept it: where they go on it is their first once more."""
+        stops = [k / 400 for k in (*range(290, 352, 4), 360, 383)]
+        summary = self.check_parts("""integrator: explicit
+forces: [beam, fracture, gravity, buoyancy, drag, contact]
+ice: {young: 4e7}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+beam: {damping_ratio: 0.1}
+fracture: {tensile_strength: 1e5, shear_strength: 1e5, energy: 15}
+water: {drag_coefficient: 1, drag_linear: 200, current: [4, 0, 0]}
+contact: {young: 1e7, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
+obstacle:
+  names: [slope]
+  slope: {shape: halfspace, point: [12.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
+boundary: {names: [push], push: {set: left, fix: x y z rx ry rz, velocity: [8, 0, 0], ramp: 0.2}}
+time: {end: 0.2, dt: 5e-4}
+checkpoint: {every: 1000}
+""", stops)
+        self.assertGreater(summary["beams_broken"], 60)
+
     def test_a_sheet_near_a_wall(self):
         """The step gets shorter when the run finds the wall near, not when a restart looks
         again."""
