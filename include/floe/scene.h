@@ -127,8 +127,8 @@ struct Scene {
     Ramp ramp;          ///< of that velocity
     double spring = 0;  ///< with absorbs: length of ice of the spring's stiffness [m]; 0: none
   } supply;
-  std::string mesh_file;    ///< file of the sheet's relaxed generators; empty: none
-  double thickness = 1;     ///< of the sheet [m]; the mean of a random field
+  std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
+  double thickness = 1;   ///< of the sheet [m]; the mean of a random field
   ThicknessField thickness_field;
   Ice ice;
   double shear_factor = 5.0 / 6.0;
