@@ -97,9 +97,9 @@ def picture(found, path):
             axis.errorbar(x, y, band, fmt=markers[k % 8], markersize=4, capsize=2, linewidth=1,
                           color=colours[k % 10], label=label or None)
     for which, column, ax in (("x", 1, axis.xaxis), ("y", 2, axis.yaxis)):
-        if which in found.log:
+        values = [value for one in found.series for value in one[column]]
+        if which in found.log and values:
             axis.set(**{f"{which}scale": "log"})
-            values = [value for one in found.series for value in one[column]]
             ticks = [m * 10.0**e for e in range(-6, 9) for m in (1, 2, 5)]
             ticks = [t for t in ticks if 0.7 * min(values) <= t <= 1.4 * max(values)]
             ax.set_ticks(ticks, [f"{t:g}" for t in ticks])
