@@ -1,9 +1,11 @@
 #include "contact/pair_list.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "contact/broad_phase.h"
+#include "geometry/separation.h"
 
 namespace floe {
 
@@ -62,21 +64,47 @@ void PairList::list_bodies(const Search& search) {
   }
 }
 
+namespace {
+
+/// Height of a body's centroid above the plane of an obstacle that it is highest above [m].
+double height_above(std::span<const HalfSpace> planes, const Placed& obstacle,
+                    const Vec3<double>& apart) {
+  const Vec3<double> x = obstacle.axes.to_local(apart);
+  double height = std::numeric_limits<double>::lowest();
+  for (const HalfSpace& h : planes) height = std::max(height, dot(h.normal, x) - h.offset);
+  return height;
+}
+
+constexpr double near = 0.25;  // of the reach
+
+}  // namespace
+
+bool PairList::is_near(const Solids& solids, std::int32_t body, const Placed& place,
+                       std::int32_t obstacle, double time) const {
+  const Placed other = place_of(solids.obstacle(obstacle), time, time);
+  const Vec3<double> x = other.axes.to_local(periods_.nearest(place.x - other.x));
+  const auto planes = solids.planes(obstacle);
+  return std::none_of(planes.begin(), planes.end(), [&](const HalfSpace& h) {
+    const Vec3<double> along = place.axes.to_local(other.axes.to_world(h.normal));
+    const double lowest = lowest_along(solids.vertex_lists(body), along);
+    return dot(h.normal, x) - h.offset + lowest > near * reach_;
+  });
+}
+
 void PairList::list_obstacles(const Search& search) {
   const Solids& solids = search.solids;
+  may_become_near_.clear();
   for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
     const std::int32_t index = obstacle_index(k);
     const Placed obstacle = place_of(solids.obstacle(index), search.time, search.time);
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {
       if (!search.is_here(b)) continue;
       const Placed& body = item(search.bodies, b);
-      const Vec3<double> x = obstacle.axes.to_local(periods_.nearest(body.x - obstacle.x));
-      const auto beyond = [&](const HalfSpace& h) {
-        return dot(h.normal, x) - h.offset > solids.radius(b) + reach_;
-      };
-      const auto planes = solids.planes(index);
-      if (std::none_of(planes.begin(), planes.end(), beyond))
-        list(search, {b, index}, body, obstacle);
+      const double height =
+          height_above(solids.planes(index), obstacle, periods_.nearest(body.x - obstacle.x));
+      // Both may travel by half of the reach before the next build.
+      if (height <= solids.radius(b) + (1 + near) * reach_) may_become_near_.push_back({b, index});
+      if (height <= solids.radius(b) + reach_) list(search, {b, index}, body, obstacle);
     }
   }
 }

@@ -49,6 +49,14 @@ class PairList {
   void release(BodyPair pair);
   /// Ends a step: pairs that were newly eligible have their first overlap now.
   void end_step();
+  /// Whether a body is near an obstacle at a time [s]: all its vertices are less than a quarter of
+  /// the reach beyond each plane of the obstacle. It depends on the state alone, not on when the
+  /// list was made. \param place  of the body, without motion
+  bool is_near(const Solids& solids, std::int32_t body, const Placed& place, std::int32_t obstacle,
+               double time) const;
+  /// Returns the bodies with a wrench here, each with an obstacle, that may become near before the
+  /// next build.
+  std::span<const BodyPair> may_become_near() const { return may_become_near_; }
   /// Returns the number of released pairs that the list knew at the end of the last step: those
   /// after them have had no first overlap yet, even if they have been evaluated.
   std::size_t settled() const { return settled_; }
@@ -74,6 +82,7 @@ class PairList {
 
   Eligibility eligibility_;
   std::vector<Pair> pairs_, taken_on_;
+  std::vector<BodyPair> may_become_near_;
   std::vector<std::int32_t> involved_;
   Periods periods_;
   double reach_ = 0;  ///< largest gap of a listed pair [m]

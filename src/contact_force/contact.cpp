@@ -111,6 +111,7 @@ class DistributedContact final : public Contact,
     balance_.evaluate(contacts_, mine_);
     if (contacts_.damps()) add_dashpots(state, wrenches);
     power_ = power_with(state);
+    if (!possible_ && obstacle_near_) possible_ = anywhere(is_near_obstacle(state));
     if (!possible_ && near_) possible_ = anywhere(contacts_.touching() > 0);
     const std::vector<std::int32_t>& local = halo_.local();
     for (std::size_t k = 0; k < local.size(); ++k) {
@@ -205,6 +206,7 @@ class DistributedContact final : public Contact,
   }
   ContactPower power_with(const State<Spatial>& state) const;
   void build(const State<Spatial>& state);
+  bool is_near_obstacle(const State<Spatial>& state) const;
   void wear_bodies();
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
   void accelerate(const Wrenches<Spatial>& others);
@@ -227,11 +229,12 @@ class DistributedContact final : public Contact,
   ContactRates rates_;
   int steps_per_touch_;
   /// Whether the stable step allows for contacts: with more than one piece or without beams (which
-  /// would keep the step short), and once a body overlaps an obstacle or another. When a list is
-  /// made has no say in it, since that depends on the ranks.
+  /// would keep the step short), and once a body is near an obstacle or overlaps another. When a
+  /// list is made has no say in it, since that depends on the ranks.
   bool possible_;
-  bool near_ = false;  ///< pairs are listed, on some rank
-  double dt_ = 0;      ///< last step [s]
+  bool near_ = false;           ///< pairs are listed, on some rank
+  bool obstacle_near_ = false;  ///< a body may become near an obstacle, on some rank
+  double dt_ = 0;               ///< last step [s]
   std::string overlap_at_start_;
   bool overlap_told_ = false;
   ContactRemarks remarks_;
@@ -243,12 +246,26 @@ void DistributedContact::build(const State<Spatial>& state) {
   const PairList& list = contacts_.list();
   possible_ = possible_ || pieces() > 1;
   if (!possible_) near_ = anywhere(list.size() > 0);
+  if (!possible_) obstacle_near_ = anywhere(!list.may_become_near().empty());
   balance_.plan(contacts_);
   halo_.choose(list.involved());
   bodies_.resize(list.involved().size());
   mine_.resize(bodies_.size());
   accelerations_.resize(bodies_.size());
   expiry_.start(state, part_.owned);
+}
+
+/// Whether a body of this rank is near an obstacle.
+bool DistributedContact::is_near_obstacle(const State<Spatial>& state) const {
+  const PairList& list = contacts_.list();
+  const auto pairs = list.may_become_near();
+  return std::any_of(pairs.begin(), pairs.end(), [&](const BodyPair& pair) {
+    const auto local = static_cast<std::size_t>(part_.local_index(pair[0]));
+    const auto& [w, x, y, z] = part_.bodies.orientation[local];
+    const Placed place{.x = part_.bodies.position[local] + displacement(state, local),
+                       .axes = triad(product(rotation(state, local), Quat<double>{w, x, y, z}))};
+    return list.is_near(contacts_.solids(), pair[0], place, pair[1], state.time);
+  });
 }
 
 /// Wears bodies off by what contacts that parted in this step have crushed. Collective.

@@ -178,6 +178,20 @@ SimplifiedOutline OutlineReader::simplified_as_needed(const Outline& given, cons
   return simplified(given, l / 2);
 }
 
+/// Length of all edges [m].
+double perimeter(const Outline& outline) {
+  double length = 0;
+  for (const RingedPolygon& polygon : outline.polygons()) {
+    for (const auto& ring : polygon) {
+      for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Point2 &from = ring[k], &to = ring[(k + 1) % ring.size()];
+        length += std::hypot(to[0] - from[0], to[1] - from[1]);
+      }
+    }
+  }
+  return length;
+}
+
 Outline OutlineReader::read(const SheetPlan& plan, const std::string& size_key, Scene& scene) {
   source_.file = options_.text(keys_.file, name_);
   const std::string key = label(keys_.file);
@@ -207,6 +221,12 @@ Outline OutlineReader::read(const SheetPlan& plan, const std::string& size_key, 
     refuse("is " + text_of(length) + " m x " + text_of(width) + " m, smaller than " + size_key +
            ": " + text_of(plan.element_size) + " [m]; coordinates are metres times " +
            label(keys_.scale) + ": " + text_of(scale));
+  constexpr double most_bodies = 1e8;
+  const double l = plan.element_size;
+  if (const double bodies = std::max(source_.area / (l * l), perimeter(at_place) / l);
+      bodies > most_bodies)
+    refuse("would make about " + text_of(bodies) + " bodies with " + size_key + ": " + text_of(l) +
+           ", at most " + text_of(most_bodies) + " are possible");
   constexpr double farthest = 1e9;
   for (const double x : {least[0], least[1], most[0], most[1]})
     if (!(std::abs(x) <= farthest)) refuse("reaches farther than 1e+09 m from the origin");
