@@ -100,8 +100,11 @@ def picture(found, path):
         values = [value for one in found.series for value in one[column]]
         if which in found.log and values:
             axis.set(**{f"{which}scale": "log"})
-            ticks = [m * 10.0**e for e in range(-6, 9) for m in (1, 2, 5)]
-            ticks = [t for t in ticks if 0.7 * min(values) <= t <= 1.4 * max(values)]
+            for mantissas in ((1, 2, 5), (1, 1.5, 2, 3, 4, 5, 7), (1, 1.2, 1.4, 1.7, 2, 2.5)):
+                ticks = [m * 10.0**e for e in range(-6, 9) for m in mantissas]
+                ticks = [t for t in ticks if 0.7 * min(values) <= t <= 1.4 * max(values)]
+                if len(ticks) > 2:
+                    break
             ax.set_ticks(ticks, [f"{t:g}" for t in ticks])
             ax.set_minor_locator(matplotlib.ticker.NullLocator())
     axis.set(xlabel=found.x, ylabel=found.y)
