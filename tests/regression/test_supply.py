@@ -12,6 +12,7 @@ import unittest
 import h5py
 import numpy as np
 
+from launch import FULL
 from test_restart import RestartTest, contents
 
 SCENE = """integrator: explicit
@@ -201,6 +202,13 @@ class Restarts(SupplyTest):
         changes = rows_of(a)["time"][1:][np.diff(rows_of(a)["bodies"]) != 0]
         near = [50 * round(float(t) / 5e-4 / 50) for t in changes]
         self.same_end(a, self.stopped(sorted(step + d for step in near for d in (-50, 0, 1)), "b"))
+
+    def test_at_twenty_times(self):
+        """Of ice that breaks, at random; in the short form at six."""
+        a = self.run_whole(dir="a")
+        last = json.loads((a / "summary.json").read_text())["steps"]
+        stops = random.Random(11).sample(range(1, last), 20 if FULL else 6)
+        self.same_end(a, self.stopped(sorted(stops), "b"))
 
     def test_on_two_ranks(self):
         """The same states as on one; restarts bit for bit."""
