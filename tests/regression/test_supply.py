@@ -157,7 +157,7 @@ class AbsorbingEdge(SupplyTest):
         and a spring keeps the edge from lagging."""
         (self.folder / "loaded.yaml").write_text(LOADED)
         rows = rows_of(self.run_whole(dir="a", scene="loaded.yaml"))
-        time, force = rows["time"], rows["far_edge_force_x"]
+        force = rows["far_edge_force_x"]
         joins = np.flatnonzero(np.diff(rows["bodies"]))
         self.assertEqual(len(joins), 2)
         for at in joins:
