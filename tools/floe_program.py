@@ -116,6 +116,17 @@ def count(text):
 count.__name__ = "whole number"
 
 
+def between(low, high, kind=float):
+    """An argparse type: a number from low to high."""
+    def read(text):
+        number = kind(text)
+        if not low <= number <= high:
+            raise argparse.ArgumentTypeError(f"{text} is not within {low:g} to {high:g}")
+        return number
+    read.__name__ = "whole number" if kind is int else "number"
+    return read
+
+
 def numbers(kind, least):
     """An argparse type: numbers of at least `least`, separated by commas."""
     def read(text):

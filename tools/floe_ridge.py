@@ -7,15 +7,13 @@ packed as blocks are that float up under ice, but in a tenth of the time.
 """
 import subprocess
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import floe_lattice as fl
 import floe_program
-import h5py
 import numpy as np
-from floe_lattice import matrices, product, read
-from floe_output import frames_of
+from floe_lattice import matrices, product
 from scipy.spatial import cKDTree
 
 # Contact is soft while blocks settle, so that steps are long; blocks of 0.3 m overlap by less than
@@ -147,9 +145,12 @@ def joined(*parts):
                          np.concatenate([s.corners + v for s, v in zip(shapes, vertex)]),
                          offsets("corner_of", corner), offsets("face_of", face),
                          offsets("vertex_of", vertex)))
-    if any(p.offsets is not None for p in parts):
-        together.offsets = np.concatenate([np.zeros((len(p.bodies), 6)) if p.offsets is None
-                                           else p.offsets for p in parts])
+    for name, without in (("offsets", np.zeros(6)), ("image", np.zeros(3)), ("strength", 1.0),
+                          ("energy", 1.0)):
+        if any(getattr(p, name) is not None for p in parts):
+            setattr(together, name, np.concatenate(
+                [np.tile(without, (len(p.bodies),) + (1,) * np.ndim(without))
+                 if getattr(p, name) is None else getattr(p, name) for p in parts]))
     for part, start in zip(parts, first):
         for name, members in part.sets.items():
             together.sets.setdefault(name, []).extend(int(m) + int(start) for m in members)
@@ -177,10 +178,9 @@ class Settling:
     ridge: Ridge
     young: float
     say: object = print
-    steps: list = field(default_factory=list)
 
-    def run(self, lattice, scene):
-        """Runs a scene on blocks.h5; calls back with its folder of results."""
+    def run(self, lattice, scene, result):
+        """Runs a scene on blocks.h5; what `result` makes of its folder of results."""
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             lattice.write(folder / "blocks.h5")
@@ -189,7 +189,7 @@ class Settling:
                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             if done.returncode:
                 raise Failed(" ".join((done.stderr.strip() or "no word").splitlines()[-1:]))
-            return read(folder / "out/lattice.h5"), last_frame(folder / "out")
+            return result(folder / "out")
 
     def settle(self, what, lattice, seconds, walls, friction, water=True):
         """Lets the bodies move for some seconds between walls {name: (point, normal, friction)},
@@ -203,31 +203,15 @@ class Settling:
         forces += ["buoyancy", "drag"] * water
         held = ("boundary: {names: [held], held: {set: sheet, fix: x y z rx ry rz}}\n"
                 if "sheet" in lattice.sets else "")
-        _, frame = self.run(lattice, SETTLE.format(
+        return self.run(lattice, SETTLE.format(
             forces=", ".join(forces), water=WATER.format(density=ridge.water) * water,
             young=self.young, friction=friction, names=", ".join(walls), walls=lines,
-            seconds=seconds, held=held))
-        move, turn = frame
-        angle = np.linalg.norm(turn, axis=1)
-        half = 0.5 * np.sinc(angle / (2 * np.pi))
-        spin = np.column_stack([np.cos(angle / 2), half[:, None] * turn])
-        free = np.setdiff1d(np.arange(len(move)), lattice.sets.get("sheet", []))
-        lattice.position[free] += move[free]
-        turned = product(spin, lattice.orientation)[free]
-        lattice.orientation[free] = turned / np.linalg.norm(turned, axis=1)[:, None]
-        return lattice
+            seconds=seconds, held=held), fl.settled)
 
     def freeze(self, lattice, depth, gap, young):
         """The lattice with beams between faces within `gap` [m] down to a depth [m]."""
-        frozen, _ = self.run(lattice, FREEZE.format(gap=gap, young=young, low=-depth))
-        return frozen
-
-
-def last_frame(out):
-    """Displacements and rotation vectors of the last frame, n x 3 each."""
-    _, path, group = frames_of(out)[-1]
-    with h5py.File(path) as file:
-        return file[group]["bodies_displacement"][:], file[group]["bodies_rotation"][:]
+        return self.run(lattice, FREEZE.format(gap=gap, young=young, low=-depth),
+                        lambda out: fl.read(out / "lattice.h5"))
 
 
 def make(ridge, settling, sheet=None):

@@ -1,7 +1,6 @@
 #include "contact/pair_list.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "contact/broad_phase.h"
@@ -65,18 +64,7 @@ void PairList::list_bodies(const Search& search) {
 }
 
 namespace {
-
-/// Height of a body's centroid above the plane of an obstacle that it is highest above [m].
-double height_above(std::span<const HalfSpace> planes, const Placed& obstacle,
-                    const Vec3<double>& apart) {
-  const Vec3<double> x = obstacle.axes.to_local(apart);
-  double height = std::numeric_limits<double>::lowest();
-  for (const HalfSpace& h : planes) height = std::max(height, dot(h.normal, x) - h.offset);
-  return height;
-}
-
 constexpr double near = 0.25;  // of the reach
-
 }  // namespace
 
 bool PairList::is_near(const Solids& solids, std::int32_t body, const Placed& place,
@@ -100,11 +88,17 @@ void PairList::list_obstacles(const Search& search) {
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {
       if (!search.is_here(b)) continue;
       const Placed& body = item(search.bodies, b);
-      const double height =
-          height_above(solids.planes(index), obstacle, periods_.nearest(body.x - obstacle.x));
+      const Vec3<double> x = obstacle.axes.to_local(periods_.nearest(body.x - obstacle.x));
+      const auto planes = solids.planes(index);
+      const auto is_within = [&](double reach) {
+        return std::none_of(planes.begin(), planes.end(), [&](const HalfSpace& h) {
+          return dot(h.normal, x) - h.offset > solids.radius(b) + reach;
+        });
+      };
       // Both may travel by half of the reach before the next build.
-      if (height <= solids.radius(b) + (1 + near) * reach_) may_become_near_.push_back({b, index});
-      if (height <= solids.radius(b) + reach_) list(search, {b, index}, body, obstacle);
+      if (!is_within((1 + near) * reach_)) continue;
+      may_become_near_.push_back({b, index});
+      if (is_within(reach_)) list(search, {b, index}, body, obstacle);
     }
   }
 }
