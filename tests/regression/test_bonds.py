@@ -1,16 +1,13 @@
 #!/usr/bin/python3
 """Bonds: beams between faces that are frozen together, against lattices with these beams written
 out, closed forms, sheets without the crack that froze; ranks, restarts, refusals."""
-import json
 import sys
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-import launch
-from launch import FolderTest
-from test_thickness import last_frame
+from scene_runs import SceneTest, last_frame
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 import floe_lattice as fl  # noqa: E402
@@ -64,16 +61,7 @@ def heap():
     return fl.blocks(np.tile(size, (len(places), 1)), places)
 
 
-class Bonds(FolderTest):
-    def run_scene(self, text, *words, ranks=1, name="scene", code=0):
-        (self.folder / f"{name}.yaml").write_text(text)
-        done = launch.run(f"{name}.yaml", *words, ranks=ranks, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
-
-    def summary(self, name="scene"):
-        return json.loads((self.folder / f"out/{name}/summary.json").read_text())
-
+class Bonds(SceneTest):
     def row(self, elements=5, shift=None):
         """Blocks in a row along x; `shift` moves every second one across."""
         row = fl.strip(float(elements), elements, SECTION)
@@ -130,7 +118,7 @@ class Bonds(FolderTest):
         for strength, energy in ((1, 1), (0.3, 1), (0.3, 0.5)):
             self.run_scene(APART + f"bonds: {{gap: 0.001, young: 1e9, strength: {strength}, "
                            f"energy: {energy}}}\noutput: {{history: 0.0025}}\n")
-            rows = np.genfromtxt(self.folder / "out/scene/history.csv", delimiter=",", names=True)
+            rows = self.rows()
             force = np.abs(rows["right_force_x"]).max()
             step = 8e-3 * 0.0025 * 1e9 * 0.5
             self.assertAlmostEqual(force, strength * 4e5 * 0.5, delta=step)
@@ -155,9 +143,7 @@ class Bonds(FolderTest):
         self.run_scene(SHEET + CUT + "bonds: {gap: 1e-6, young: 1e6}\n", name="soft")
         pull = {}
         for name in ("whole", "frozen", "soft"):
-            rows = np.genfromtxt(self.folder / f"out/{name}/history.csv", delimiter=",",
-                                 names=True)
-            pull[name] = np.atleast_1d(rows["right_force_x"])[-1]
+            pull[name] = np.atleast_1d(self.rows(name)["right_force_x"])[-1]
         self.assertAlmostEqual(pull["frozen"] / pull["whole"], 1, delta=0.01)
         self.assertLess(pull["soft"], 0.1 * pull["whole"])
         wide = self.run_scene(SHEET + CUT + "bonds: {gap: 0.1}\n", name="wide")
@@ -169,21 +155,10 @@ class Bonds(FolderTest):
 
     def test_a_heap_on_ranks_and_after_restarts(self):
         heap().write(self.folder / "heap.h5")
-        self.run_scene(HEAP, name="one")
-        self.run_scene(HEAP, name="two", ranks=2)
-        one = last_frame(self.folder / "out/one")
-        for key, values in last_frame(self.folder / "out/two").items():
-            np.testing.assert_array_equal(values, one[key], key)
-        rows = np.genfromtxt(self.folder / "out/one/history.csv", delimiter=",", names=True)
-        self.assertGreater(rows["beams_broken"][-1], 3)
-        bonds = self.summary("one")["bonds"]["number"]
-        self.assertLess(rows["beams_broken"][-1], bonds)
-        steps = self.summary("one")["steps"]
-        self.run_scene(HEAP, "-ts_max_steps", str(steps // 2), name="part")
-        done = launch.run("-checkpoint_restart", "out/part/checkpoint.h5", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for key, values in last_frame(self.folder / "out/part").items():
-            np.testing.assert_array_equal(values, one[key], key)
+        self.same_on_ranks_and_after_a_restart(HEAP)
+        broken = self.rows("one")["beams_broken"][-1]
+        self.assertGreater(broken, 3)
+        self.assertLess(broken, self.summary("one")["bonds"]["number"])
 
     def test_refusals(self):
         self.loose(self.row()).write(self.folder / "row.h5")

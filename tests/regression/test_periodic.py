@@ -1,14 +1,12 @@
 #!/usr/bin/python3
 """Models that repeat themselves: what happens across the ends is what happens in the middle."""
-import json
 import sys
 import unittest
 
 import numpy as np
 
-import launch
-from launch import REPOSITORY, FolderTest
-from test_thickness import last_frame
+from launch import REPOSITORY
+from scene_runs import SceneTest, last_frame
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
@@ -59,16 +57,7 @@ def heap(shift=(0, 0), period=(5, 4), count=60):
     return lattice
 
 
-class Periodic(FolderTest):
-    def run_scene(self, text, *words, ranks=1, name="scene", code=0):
-        (self.folder / f"{name}.yaml").write_text(text)
-        done = launch.run(f"{name}.yaml", *words, ranks=ranks, cwd=self.folder)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
-
-    def rows(self, name):
-        return np.genfromtxt(self.folder / f"out/{name}/history.csv", delimiter=",", names=True)
-
+class Periodic(SceneTest):
     def test_two_blocks_meet_across_the_end(self):
         """As two that meet in the middle, to rounding; momentum stays."""
         scene = HEAP.replace("gravity, contact", "contact").replace("-1, 0]", "0, 0]")
@@ -94,17 +83,7 @@ class Periodic(FolderTest):
     def test_a_heap_is_the_same_wherever_its_ends_are(self):
         """On ranks and after a restart bit for bit; with other ends until round-off has grown."""
         heap().write(self.folder / "heap.h5")
-        self.run_scene(HEAP, name="one")
-        self.run_scene(HEAP, name="two", ranks=2)
-        one = last_frame(self.folder / "out/one")
-        for key, values in last_frame(self.folder / "out/two").items():
-            np.testing.assert_array_equal(values, one[key], key)
-        steps = json.loads((self.folder / "out/one/summary.json").read_text())["steps"]
-        self.run_scene(HEAP, "-ts_max_steps", str(steps // 2), name="part")
-        done = launch.run("-checkpoint_restart", "out/part/checkpoint.h5", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for key, values in last_frame(self.folder / "out/part").items():
-            np.testing.assert_array_equal(values, one[key], key)
+        one = self.same_on_ranks_and_after_a_restart(HEAP)
         heap(shift=(2.3, 1.7)).write(self.folder / "heap.h5")
         self.run_scene(HEAP, name="moved")
         moved = last_frame(self.folder / "out/moved")
@@ -139,7 +118,7 @@ class Periodic(FolderTest):
         self.assertLess(abs(dips["endless"][1]), 0.01 * abs(dips["endless"][0]))
         self.assertGreater(abs(dips["sides"][1]), 2 * abs(dips["endless"][1]))
         self.assertLess(abs(dips["endless"][0]), abs(dips["sides"][0]))  # stiffer: E/(1 - nu^2)
-        bonds = json.loads((self.folder / "out/endless/summary.json").read_text())["bonds"]
+        bonds = self.summary("endless")["bonds"]
         self.assertAlmostEqual(bonds["area"], 24 * 0.5, delta=1e-4)
 
     def test_refusals(self):

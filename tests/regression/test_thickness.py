@@ -2,7 +2,6 @@
 """Sheets of any thickness: a plate by finite elements, random fields, grids, files, ranks."""
 import json
 import os
-import sys
 import unittest
 
 import h5py
@@ -13,10 +12,7 @@ from scipy.interpolate import RectBivariateSpline
 
 import launch
 from bad_input import BadInput
-from launch import REPOSITORY, FolderTest
-
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import frames_of  # noqa: E402
+from scene_runs import SceneTest, last_frame
 
 YOUNG, POISSON, WATER, GRAVITY = 4e9, 0.3, 1010.0, 9.81
 SIDE = 60.0  # [m]
@@ -121,20 +117,7 @@ def lattice(folder):
                                               "beams/height")}
 
 
-def last_frame(folder):
-    """The arrays of the last frame of a run."""
-    _, path, group = frames_of(folder)[-1]
-    with h5py.File(path) as file:
-        return {key: item[:] for key, item in file[group].items() if isinstance(item, h5py.Dataset)}
-
-
-class Thickness(FolderTest):
-    def run_scene(self, text, *words, ranks=1, name="scene"):
-        (self.folder / f"{name}.yaml").write_text(text)
-        done = launch.run(f"{name}.yaml", *words, ranks=ranks, cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
-
+class Thickness(SceneTest):
     def test_a_plate_of_uneven_thickness(self):
         """Deflections under a load on 8 x 8 m: over the whole sheet within 1 % of a plate's."""
         write_grid(self.folder / "grid.csv")
@@ -242,27 +225,17 @@ class Thickness(FolderTest):
 
     def test_cracks_run_by_energy(self):
         self.run_scene(BREAKS, "-fracture_propagation", "energy", "-time_end", "1.5")
-        rows = np.genfromtxt(self.folder / "out/scene/history.csv", delimiter=",", names=True)
+        rows = self.rows()
         self.assertGreater(rows["beams_broken"][-1], 1)
         work = rows["energy_boundary"][-1]
         self.assertLess(abs(rows["energy_balance_error"][-1]), 1e-3 * abs(work))
 
     def test_breaks_the_same_on_ranks_and_after_restarts(self):
-        self.run_scene(BREAKS, name="one")
-        self.run_scene(BREAKS, name="two", ranks=2)
-        one = last_frame(self.folder / "out/one")
-        for key, values in last_frame(self.folder / "out/two").items():
-            np.testing.assert_array_equal(values, one[key], key)
-        rows = np.genfromtxt(self.folder / "out/one/history.csv", delimiter=",", names=True)
+        self.same_on_ranks_and_after_a_restart(BREAKS)
+        rows = self.rows("one")
         self.assertGreater(rows["beams_broken"][-1], 3)
         work = rows["energy_boundary"][-1]
         self.assertLess(abs(rows["energy_balance_error"][-1]), 1e-3 * abs(work))
-        steps = json.loads((self.folder / "out/one/summary.json").read_text())["steps"]
-        self.run_scene(BREAKS, "-ts_max_steps", str(steps // 2), name="part")
-        done = launch.run("-checkpoint_restart", "out/part/checkpoint.h5", cwd=self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        for key, values in last_frame(self.folder / "out/part").items():
-            np.testing.assert_array_equal(values, one[key], key)
 
 
 class Refused(BadInput):
