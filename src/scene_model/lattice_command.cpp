@@ -15,14 +15,21 @@ std::string command_that_makes(const std::string& file, const std::string& scene
   for (std::string line; std::getline(lines, line);) {
     const auto begin = line.find_first_not_of("# \t");
     if (!line.starts_with('#') || begin == std::string::npos) continue;
-    line = line.substr(begin, line.find("&&") - begin);
-    while (!line.empty() && (line.back() == ' ' || line.back() == '\r')) line.pop_back();
-    std::istringstream words(line);
-    std::string first, word;
-    words >> first;
-    while (words >> word) {
-      if (word == file) return line;
-    }
+    line = line.substr(begin);
+    if (!line.starts_with("floe ") && !line.starts_with("tools/")) continue;
+    // Commands joined by && end with the one that names the file: those after it read the file.
+    std::size_t from = 0, end = 0;
+    do {
+      end = line.find("&&", from);
+      std::istringstream words(line.substr(from, end - from));
+      for (std::string word; words >> word;) {
+        if (word != file) continue;
+        line = line.substr(0, end);
+        while (line.back() == ' ' || line.back() == '\r') line.pop_back();
+        return line;
+      }
+      from = end + 2;
+    } while (end != std::string::npos);
   }
   return {};
 }

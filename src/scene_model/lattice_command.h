@@ -14,8 +14,9 @@ namespace floe {
 ///   one
 void require_lattice_file(const Scene& scene, MPI_Comm comm);
 
-/// Finds the command in a scene's comments that writes `file`: the text of a comment line up to
-/// "&&" that has the path as a word; empty if there is none.
+/// Finds the command in a scene's comments that writes `file`: the text of a comment line that
+/// begins with "floe " or "tools/", up to the end of the first command ("&&" joins them) that has
+/// the path as a word; empty if there is none.
 std::string command_that_makes(const std::string& file, const std::string& scene_text);
 
 }  // namespace floe

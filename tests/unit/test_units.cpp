@@ -77,6 +77,9 @@ TEST(LatticeCommand, IsFoundInTheCommentsOfAScene) {
   EXPECT_EQ(command_that_makes(file, "# A strip.\n#   " + make + "\r\n"), make);
   EXPECT_EQ(command_that_makes(file, "forces: [beam]  # " + make + "\n"), "");
   EXPECT_EQ(command_that_makes(file, "# it is made by somebody else\nlattice_file: " + file), "");
+  EXPECT_EQ(command_that_makes(file, "# The strip was made by " + make + "\n"), "");  // no command
+  EXPECT_EQ(command_that_makes(file, "# floe pour.yaml && " + make + " && floe strip.yaml\n"),
+            "floe pour.yaml && " + make);
   EXPECT_EQ(command_that_makes("strip.h5", "# " + make + "\n"), "");  // another path
   EXPECT_EQ(command_that_makes(file, ""), "");
 }
