@@ -214,6 +214,7 @@ class DynamicRun : public Run {
     double strain = 0;
   };
   std::optional<EdgeMotion> edge_motion() const;
+  double way_of_edge() const;
   void begin_joined();
   std::vector<double> places_of_edge(double time) const;
   IceNow ice_now() const;
