@@ -18,6 +18,7 @@
 #include "floe/contact_laws/contact_options.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/load.h"
+#include "floe/forces/support.h"
 #include "floe/fracture/fracture_options.h"
 #include "floe/lattice/lattice.h"
 #include "floe/mesh/tessellation.h"
@@ -97,6 +98,19 @@ struct Floe {
   double strength = 1, energy = 1;  ///< factors of those of fracture
 };
 
+/// An obstacle that forces move: a body of the model.
+struct Structure {
+  std::size_t obstacle = 0;              ///< number of the obstacle, whose name it has
+  double mass = 0;                       ///< [kg]
+  std::optional<Point3> inertia;         ///< about axes of the world through its centre [kg m^2]
+  std::optional<Point3> centre;          ///< of mass [m]; none: that of its shape
+  std::array<double, 6> added_mass{};    ///< along and about axes of the world [kg, kg m^2]
+  bool floats = false;                   ///< whether weight and water act on it
+  SupportMatrix stiffness{}, damping{};  ///< of its support
+  std::optional<double> damping_ratio;   ///< in place of the damping
+  std::optional<Point3> support_point;   ///< at rest [m]; none: its centre of mass
+};
+
 /// The input of a run.
 struct Scene {
   std::string path;  ///< the scene file
@@ -155,6 +169,7 @@ struct Scene {
   bool added_mass_plate = false;  ///< each body's added mass is that of a floating disc
   ContactOptions contact;
   std::vector<Obstacle> obstacles;
+  std::vector<Structure> structures;
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {

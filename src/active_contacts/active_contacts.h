@@ -183,8 +183,8 @@ void ActiveContacts::act(const PairList& list, auto force_of) {
       if ((active.enclosed >> lane & 1U) != 0) continue;
       const Pair& pair = list.pair(pairs[lane]);
       on_a.add(lane, item(on_bodies_, pair.slot_a));
-      on_b.subtract(lane, is_obstacle(pair.b) ? on_obstacles_[obstacle_number(pair.b)]
-                                              : item(on_bodies_, pair.slot_b));
+      on_b.subtract(lane, pair.slot_b < 0 ? on_obstacles_[obstacle_number(pair.b)]
+                                          : item(on_bodies_, pair.slot_b));
     }
   }
 }
@@ -203,7 +203,7 @@ void ActiveContacts::add_sums(const PairList& list, auto force_of,
       if ((active.enclosed >> lane & 1U) != 0) continue;
       const Pair& pair = list.pair(pairs[lane]);
       on_a.add(lane, item(wrenches, pair.slot_a));
-      on_b.subtract(lane, is_obstacle(pair.b) ? on_obstacles : item(wrenches, pair.slot_b));
+      on_b.subtract(lane, pair.slot_b < 0 ? on_obstacles : item(wrenches, pair.slot_b));
     }
   }
 }

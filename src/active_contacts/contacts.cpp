@@ -25,8 +25,8 @@ Vec3<Lanes> nearest(const Periods& periods, Vec3<Lanes> apart) {
 
 Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
                    std::vector<BodyPair> joined, const ContactOptions& options,
-                   std::vector<Obstacle> obstacles)
-    : solids_(shapes, masses, std::move(obstacles), options.inertia_factor),
+                   std::vector<Obstacle> obstacles, std::span<const Point3> inertia)
+    : solids_(shapes, masses, std::move(obstacles), options.inertia_factor, inertia),
       options_(options),
       law_(law_of(options)),
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free,
@@ -37,6 +37,7 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
   list_.build(solids_, narrow_, poses, here, time);
+  if (!solids_.carriers().empty()) needed_.assign(here.begin(), here.end());
   places_.restart(list_.involved().size());
   history_.take_over(list_.pairs());
   active_.clear();
@@ -50,7 +51,7 @@ std::vector<BodyPair> Contacts::offload(std::size_t count) {
 }
 
 void Contacts::take_on(std::span<const BodyPair> pairs) {
-  list_.take_on(pairs);
+  list_.take_on(solids_, pairs);
   places_.restart(list_.involved().size());
 }
 

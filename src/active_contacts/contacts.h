@@ -66,8 +66,10 @@ class Contacts {
   /// \param joined     pairs with an unbroken beam, sorted, the smaller index first
   /// \param options    law and constants
   /// \param obstacles  may be empty
+  /// \param inertia    principal moments of all bodies, where some carry obstacles [kg m^2]
   Contacts(const Shapes& shapes, std::span<const double> masses, std::vector<BodyPair> joined,
-           const ContactOptions& options, std::vector<Obstacle> obstacles);
+           const ContactOptions& options, std::vector<Obstacle> obstacles,
+           std::span<const Point3> inertia = {});
 
   const Solids& solids() const { return solids_; }
   const PairList& list() const { return list_; }
@@ -123,9 +125,14 @@ class Contacts {
   /// as stress-free.
   void release(const BodyPair& pair) { list_.release(pair); }
 
-  /// Returns the force [N] and the moment about the origin of its frame [N m] of the bodies of this
-  /// rank on obstacle k, in the last evaluation.
-  ContactWrench on_obstacle(std::size_t k) const { return active_.on_obstacle(k); }
+  /// Returns the force [N] and the moment about the origin of its frame [N m] on obstacle k in the
+  /// last evaluation: of the bodies of this rank, or, if a body carries it, of all bodies where this
+  /// rank needs that body's wrench and else nothing. Obstacles of one body share its wrench.
+  ContactWrench on_obstacle(std::size_t k) const {
+    const std::int32_t body = solids_.obstacles()[k].body;
+    if (body < 0) return active_.on_obstacle(k);
+    return item(needed_, body) != 0 ? active_.on_body(list_.slot_of(body)).sum() : ContactWrench{};
+  }
   /// Returns the number of overlapping counted pairs in the last evaluation.
   std::int64_t touching() const { return active_.touching(); }
   /// Adds the power of the contacts of the last evaluation on an involved body that moves so.
@@ -137,6 +144,7 @@ class Contacts {
   /// at a time [s].
   void add_power_on_obstacles(double velocity_time, ContactPower& power) const {
     for (std::size_t k = 0; k < solids_.obstacles().size(); ++k) {
+      if (solids_.obstacles()[k].is_carried()) continue;
       const ObstacleMotion& motion = solids_.obstacles()[k].motion;
       active_.add_power_on_obstacle(k, motion.rate(velocity_time), motion.spin(velocity_time),
                                     power);
@@ -200,6 +208,7 @@ class Contacts {
   Wear wear_;
   CapFinder caps_;
   std::vector<WearCut> cuts_;  ///< of the last commit
+  std::vector<std::uint8_t> needed_;  ///< per body, where some carry obstacles
   StoredAtStart start_;
   ContactEvents events_;
 };

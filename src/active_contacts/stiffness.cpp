@@ -32,13 +32,20 @@ ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
                            const ContactLaws& law) {
   // L of the partner with the stiffest contacts: the smallest body, or 0 for an obstacle.
   double smallest = solids.obstacles().empty() ? std::numeric_limits<double>::max() : 0.0;
-  for (std::int32_t b = 0; b < solids.bodies(); ++b)
+  double least_size = std::numeric_limits<double>::max();
+  for (std::int32_t b = 0; b < solids.bodies(); ++b) {
+    if (solids.carries(b)) continue;
     smallest = std::min(smallest, 0.5 * solids.size(b));
+    least_size = std::min(least_size, solids.size(b));
+  }
+  double mobility = 0;  // of the lightest structure
+  for (const std::int32_t b : solids.carriers()) mobility = std::max(mobility, 1 / solids.mass(b));
   const double stiffest = std::max(options.young, options.young_broken.value_or(0));
   double most = 0, touch = 0;
   std::int32_t touching = -1;
   for (std::int32_t b = 0; b < solids.bodies(); ++b) {
-    const double size = solids.size(b);
+    // A structure is touched by bodies of any size, all over its surface.
+    const double size = solids.carries(b) ? least_size : solids.size(b);
     const Solids::Faces& faces = solids.faces(b);
     const double k = stiffest / (0.5 * size + smallest);
     const double steeper =
@@ -46,7 +53,9 @@ ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
     most = std::max(most, 2 * k * steeper * faces.area / solids.mass(b));
     // k_v/m_r is 2 E_c/size/m on an obstacle and between bodies of one size alike; of two sizes the
     // smaller body's own bound holds.
-    const double of_face = 2 * stiffest / size * steeper * faces.widest / solids.mass(b);
+    if (solids.carries(b)) continue;
+    double of_face = 2 * stiffest / size * steeper * faces.widest / solids.mass(b);
+    if (mobility > 0) of_face *= 1 + mobility * solids.mass(b);
     if (of_face > touch) {
       touch = of_face;
       touching = b;

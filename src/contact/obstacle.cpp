@@ -42,6 +42,23 @@ Shapes between(const std::vector<Point3>& low, const std::vector<Point3>& high) 
   return s;
 }
 
+Shapes one_of(const Shapes& shapes, std::int32_t body) {
+  const auto b = static_cast<std::size_t>(body);
+  const std::int32_t first = shapes.vertex_of[b];
+  Shapes one;
+  one.vertices.assign(shapes.vertices.begin() + first,
+                      shapes.vertices.begin() + shapes.vertex_of[b + 1]);
+  for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
+    std::vector<std::int32_t> corners;
+    for (std::int32_t c = shapes.corner_of[static_cast<std::size_t>(f)];
+         c < shapes.corner_of[static_cast<std::size_t>(f) + 1]; ++c)
+      corners.push_back(shapes.corners[static_cast<std::size_t>(c)] - first);
+    add_face(one, corners);
+  }
+  finish(one);
+  return one;
+}
+
 }  // namespace
 
 double Obstacle::radius() const {
@@ -77,6 +94,7 @@ Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>&
   for (auto v = static_cast<std::size_t>(shapes.vertex_of[b]);
        v < static_cast<std::size_t>(shapes.vertex_of[b + 1]); ++v)
     o.vertices.push_back(shapes.vertices[v]);
+  o.shape = one_of(shapes, body);
   return o;
 }
 

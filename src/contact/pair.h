@@ -27,7 +27,8 @@ constexpr std::int32_t obstacle_index(std::size_t k) { return -1 - static_cast<s
 /// A pair of the list. Every step looks at all of them, so they are small.
 struct Pair {
   std::int32_t a = 0, b = 0;              ///< global bodies; b < 0: obstacle -1 - b
-  std::int32_t slot_a = -1, slot_b = -1;  ///< slots of the bodies; -1 for an obstacle
+  /// slots of the bodies, of that which carries an obstacle too; -1 for an obstacle on its own
+  std::int32_t slot_a = -1, slot_b = -1;
   bool counted : 1 = false;               ///< this rank owns A, and so counts the pair's energies
   bool newly_eligible : 1 = false;        ///< the first overlap of the pair counts as stress-free
   bool broken : 1 = false;                ///< a beam between A and B broke: they have new faces

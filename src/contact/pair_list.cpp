@@ -41,7 +41,7 @@ void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const 
   std::sort(pairs_.begin(), pairs_.end(),
             [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
   taken_on_.clear();
-  find_involved();
+  find_involved(solids);
   changed_ = false;
 }
 
@@ -54,7 +54,9 @@ void PairList::list_bodies(const Search& search) {
   std::vector<double> radii;
   radii.reserve(centres.size());
   for (std::int32_t b = 0; b < solids.bodies(); ++b)
-    radii.push_back(intact && !eligibility_.on_surface(b) ? -1 : solids.radius(b));
+    radii.push_back((intact && !eligibility_.on_surface(b)) || solids.carries(b)
+                        ? -1
+                        : solids.radius(b));
   std::vector<BodyPair> near;
   near_pairs(centres, radii, reach_, search.here, near, periods_);
   for (const auto& [a, b] : near) {
@@ -68,8 +70,7 @@ constexpr double near = 0.25;  // of the reach
 }  // namespace
 
 bool PairList::is_near(const Solids& solids, std::int32_t body, const Placed& place,
-                       std::int32_t obstacle, double time) const {
-  const Placed other = place_of(solids.obstacle(obstacle), time, time);
+                       std::int32_t obstacle, const Placed& other) const {
   const Vec3<double> x = other.axes.to_local(periods_.nearest(place.x - other.x));
   const auto planes = solids.planes(obstacle);
   return std::none_of(planes.begin(), planes.end(), [&](const HalfSpace& h) {
@@ -84,9 +85,14 @@ void PairList::list_obstacles(const Search& search) {
   may_become_near_.clear();
   for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
     const std::int32_t index = obstacle_index(k);
-    const Placed obstacle = place_of(solids.obstacle(index), search.time, search.time);
+    const std::int32_t carrier = solids.obstacle(index).body;
+    const Placed obstacle = carrier < 0
+                                ? place_of(solids.obstacle(index), search.time, search.time)
+                                : item(search.bodies, carrier);
+    // The rank of a structure needs all contacts with it, as that of a body does.
+    const bool carrier_is_here = carrier >= 0 && search.is_here(carrier);
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {
-      if (!search.is_here(b)) continue;
+      if ((!search.is_here(b) && !carrier_is_here) || solids.carries(b)) continue;
       const Placed& body = item(search.bodies, b);
       const Vec3<double> x = obstacle.axes.to_local(periods_.nearest(body.x - obstacle.x));
       const auto planes = solids.planes(index);
@@ -97,7 +103,7 @@ void PairList::list_obstacles(const Search& search) {
       };
       // Both may travel by half of the reach before the next build.
       if (!is_within((1 + near) * reach_)) continue;
-      may_become_near_.push_back({b, index});
+      if (search.is_here(b)) may_become_near_.push_back({b, index});
       if (is_within(reach_)) list(search, {b, index}, body, obstacle);
     }
   }
@@ -126,8 +132,8 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
 }
 
 /// Lists the involved bodies and gives pairs the slots of their bodies.
-void PairList::find_involved() {
-  involved_.clear();
+void PairList::find_involved(const Solids& solids) {
+  involved_ = solids.carriers();
   for (const std::vector<Pair>* pairs : {&pairs_, &taken_on_}) {
     for (const Pair& p : *pairs) {
       involved_.push_back(p.a);
@@ -136,14 +142,11 @@ void PairList::find_involved() {
   }
   std::sort(involved_.begin(), involved_.end());
   involved_.erase(std::unique(involved_.begin(), involved_.end()), involved_.end());
-  const auto slot = [&](std::int32_t body) {
-    const auto found = std::lower_bound(involved_.begin(), involved_.end(), body);
-    return static_cast<std::int32_t>(found - involved_.begin());
-  };
   for (std::vector<Pair>* pairs : {&pairs_, &taken_on_}) {
     for (Pair& p : *pairs) {
-      p.slot_a = slot(p.a);
-      p.slot_b = is_obstacle(p.b) ? -1 : slot(p.b);
+      p.slot_a = slot_of(p.a);
+      const std::int32_t b = is_obstacle(p.b) ? solids.obstacle(p.b).body : p.b;
+      p.slot_b = b < 0 ? -1 : slot_of(b);
     }
   }
 }
@@ -154,10 +157,10 @@ BodyPair PairList::offload(std::int32_t pair) {
   return {offloaded.a, offloaded.b};
 }
 
-void PairList::take_on(std::span<const BodyPair> pairs) {
+void PairList::take_on(const Solids& solids, std::span<const BodyPair> pairs) {
   taken_on_.clear();
   for (const auto& [a, b] : pairs) taken_on_.push_back({.a = a, .b = b});
-  find_involved();
+  find_involved(solids);
 }
 
 void PairList::release(BodyPair pair) { changed_ = eligibility_.release(pair) || changed_; }

@@ -3,6 +3,7 @@
 /// (model.md, "Contact").
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -43,17 +44,17 @@ class PairList {
   /// Marks a pair as offloaded until the next build: another rank computes its overlap.
   BodyPair offload(std::int32_t pair);
   /// Takes on pairs of other ranks until the next build: this rank computes their overlaps.
-  void take_on(std::span<const BodyPair> pairs);
+  void take_on(const Solids& solids, std::span<const BodyPair> pairs);
   /// Makes a pair whose beam broke eligible from the next build on; its overlap at that time counts
   /// as stress-free.
   void release(BodyPair pair);
   /// Ends a step: pairs that were newly eligible have their first overlap now.
   void end_step();
-  /// Whether a body is near an obstacle at a time [s]: all its vertices are less than a quarter of
-  /// the reach beyond each plane of the obstacle. It depends on the state alone, not on when the
-  /// list was made. \param place  of the body, without motion
+  /// Whether a body is near an obstacle: all its vertices are less than a quarter of the reach
+  /// beyond each plane of the obstacle. It depends on the state alone, not on when the list was
+  /// made. \param place, other  of the body and of the obstacle, without motion
   bool is_near(const Solids& solids, std::int32_t body, const Placed& place, std::int32_t obstacle,
-               double time) const;
+               const Placed& other) const;
   /// Returns the bodies with a wrench here, each with an obstacle, that may become near before the
   /// next build.
   std::span<const BodyPair> may_become_near() const { return may_become_near_; }
@@ -70,15 +71,20 @@ class PairList {
   std::span<const Pair> pairs() const { return pairs_; }
   const Pair& pair(std::int32_t index) const { return item(pairs_, index); }
   std::span<Pair> taken_on() { return taken_on_; }
-  /// Returns the involved bodies, by slot.
+  /// Returns the involved bodies, by slot: those of the pairs, and all that carry obstacles.
   std::span<const std::int32_t> involved() const { return involved_; }
+  /// Returns the slot of an involved body.
+  std::int32_t slot_of(std::int32_t body) const {
+    const auto found = std::lower_bound(involved_.begin(), involved_.end(), body);
+    return static_cast<std::int32_t>(found - involved_.begin());
+  }
 
  private:
   struct Search;
   void list_bodies(const Search& search);
   void list_obstacles(const Search& search);
   void list(const Search& search, const BodyPair& bodies, const Placed& a, const Placed& b);
-  void find_involved();
+  void find_involved(const Solids& solids);
 
   Eligibility eligibility_;
   std::vector<Pair> pairs_, taken_on_;

@@ -88,11 +88,11 @@ class Places {
   const BodyMobility& mobility(std::int32_t slot) const { return item(mobility_, slot); }
   const BodyMobility& mobility_of_a(const Pair& pair) const { return mobility(pair.slot_a); }
   const BodyMobility& mobility_of_b(const Pair& pair) const {
-    return is_obstacle(pair.b) ? of_obstacle_ : mobility(pair.slot_b);
+    return pair.slot_b < 0 ? of_obstacle_ : mobility(pair.slot_b);
   }
   const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
   const Placed& of_b(const Pair& pair) const {
-    return is_obstacle(pair.b) ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
+    return pair.slot_b < 0 ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
   }
   const Periods& periods() const { return periods_; }
   /// Returns the image of B that is nearest to A. \param room  for its place, if it is not B's own
@@ -108,8 +108,8 @@ class Places {
   /// Return the predicted velocities of A and B.
   const BodyVelocity& predicted_a(const Pair& pair) const { return item(predicted_, pair.slot_a); }
   const BodyVelocity& predicted_b(const Pair& pair) const {
-    return is_obstacle(pair.b) ? predicted_obstacles_[obstacle_number(pair.b)]
-                               : item(predicted_, pair.slot_b);
+    return pair.slot_b < 0 ? predicted_obstacles_[obstacle_number(pair.b)]
+                           : item(predicted_, pair.slot_b);
   }
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }

@@ -49,7 +49,8 @@ Solids::Faces faces_of(const Shapes& shapes, std::int32_t body) {
 }  // namespace
 
 Solids::Solids(const Shapes& shapes, std::span<const double> masses,
-               std::vector<Obstacle> obstacles, double inertia_factor)
+               std::vector<Obstacle> obstacles, double inertia_factor,
+               std::span<const Point3> inertia)
     : shapes_(shapes), obstacles_(std::move(obstacles)), inertia_factor_(inertia_factor) {
   Graphs graphs;
   for (std::int32_t b = 0; b < shapes_.bodies(); ++b) {
@@ -60,6 +61,16 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
     extents_.push_back({.radius = o.radius(),
                         .width = least_width(o.vertices, o.planes),
                         .first_coordinate = add_lists(o.vertices)});
+  for (const Obstacle& o : obstacles_)
+    if (o.is_carried()) carriers_.push_back(o.body);
+  std::sort(carriers_.begin(), carriers_.end());
+  carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
+  if (!carriers_.empty()) carries_.assign(bodies_.size(), 0);
+  for (const std::int32_t b : carriers_) {
+    const Point3& moments = inertia[static_cast<std::size_t>(b)];
+    item(bodies_, b).inverse.moments = {1 / moments.x, 1 / moments.y, 1 / moments.z};
+    item(carries_, b) = 1;
+  }
   for (const Body& body : bodies_) thinnest_ = std::min(thinnest_, body.width);
   for (const Extents& obstacle : extents_) thinnest_ = std::min(thinnest_, obstacle.width);
 }
@@ -119,7 +130,9 @@ bool Solids::has_friction(const ContactOptions& options) const {
 
 double Solids::mean_radius() const {
   double mean = 0;
-  for (const Body& body : bodies_) mean += body.radius / static_cast<double>(bodies_.size());
+  const auto number = static_cast<double>(bodies_.size() - carriers_.size());
+  for (std::int32_t b = 0; b < bodies(); ++b)
+    if (!carries(b)) mean += item(bodies_, b).radius / number;
   return mean;
 }
 

@@ -27,8 +27,10 @@ class Solids {
   /// \param masses     of all bodies [kg]
   /// \param obstacles  may be empty
   /// \param inertia_factor  moments of inertia over those of the shapes
+  /// \param inertia  principal moments of all bodies, of which those of bodies that carry obstacles
+  ///   count [kg m^2]; empty if none does
   Solids(const Shapes& shapes, std::span<const double> masses, std::vector<Obstacle> obstacles,
-         double inertia_factor = 1);
+         double inertia_factor = 1, std::span<const Point3> inertia = {});
 
   std::int32_t bodies() const { return shapes_.bodies(); }
   const Shapes& shapes() const { return shapes_; }
@@ -61,6 +63,10 @@ class Solids {
     const Body& body = item(bodies_, index);
     return {planes_.data() + body.first_plane, static_cast<std::size_t>(body.planes)};
   }
+  /// Whether a body carries obstacles: it touches as these.
+  bool carries(std::int32_t body) const { return !carries_.empty() && item(carries_, body) != 0; }
+  /// Returns the bodies that carry obstacles, sorted.
+  const std::vector<std::int32_t>& carriers() const { return carriers_; }
   bool is_half_space(std::int32_t index) const {
     return is_obstacle(index) && obstacle(index).vertices.empty();
   }
@@ -87,7 +93,7 @@ class Solids {
   double width(std::int32_t index) const {
     return is_obstacle(index) ? extents_[obstacle_number(index)].width : item(bodies_, index).width;
   }
-  /// Returns the mean radius of all bodies [m].
+  /// Returns the mean radius of all bodies that carry no obstacle [m].
   double mean_radius() const;
   /// Returns the least width of all bodies and obstacles [m].
   double thinnest() const { return thinnest_; }
@@ -129,6 +135,8 @@ class Solids {
   std::vector<Body> bodies_;
   std::vector<Faces> faces_;      ///< per body
   std::vector<Extents> extents_;  ///< per obstacle
+  std::vector<std::uint8_t> carries_;   ///< per body; empty: none does
+  std::vector<std::int32_t> carriers_;  ///< sorted
   double thinnest_ = std::numeric_limits<double>::infinity();
 };
 

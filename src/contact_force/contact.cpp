@@ -77,10 +77,10 @@ class DistributedContact final : public Contact,
                      std::vector<Obstacle> obstacles, PrescribedMotion prescribed)
       : part_(part),
         contacts_(lattice.shapes, lattice.bodies.mass, sorted(lattice.beams.bodies), options,
-                  std::move(obstacles)),
+                  std::move(obstacles), lattice.bodies.inertia),
         halo_(part),
         balance_(part.comm),
-        expiry_(contacts_.solids()),
+        expiry_(contacts_.solids(), part_),
         obstacle_forces_(contacts_.solids().obstacles().size()),
         here_(owned_bodies(part)),
         prescribed_(std::move(prescribed)),
@@ -154,7 +154,7 @@ class DistributedContact final : public Contact,
     const State<Spatial> rest(static_cast<std::size_t>(part_.local));
     Wrenches<Spatial> none(static_cast<std::size_t>(part_.local));
     add(rest, none);
-    expiry_ = PairListExpiry(contacts_.solids());
+    expiry_ = PairListExpiry(contacts_.solids(), part_);
     refuse_enclosed(contacts_, part_.comm);
     overlap_at_start_ = check_overlaps(contacts_, part_.comm);
   }
@@ -190,7 +190,7 @@ class DistributedContact final : public Contact,
     columns.add("energy_crushing", e.crushing);
     const std::vector<Obstacle>& obstacles = contacts_.solids().obstacles();
     if (std::any_of(obstacles.begin(), obstacles.end(),
-                    [](const Obstacle& o) { return !o.motion.at_rest(); }))
+                    [](const Obstacle& o) { return !o.is_carried() && !o.motion.at_rest(); }))
       columns.add("energy_external", e.external);
     columns.add("contacts", static_cast<double>(contacts_.touching()));
     columns.add("contacts_enclosed", static_cast<double>(contacts_.enclosed().size()));
@@ -264,7 +264,13 @@ bool DistributedContact::is_near_obstacle(const State<Spatial>& state) const {
     const auto& [w, x, y, z] = part_.bodies.orientation[local];
     const Placed place{.x = part_.bodies.position[local] + displacement(state, local),
                        .axes = triad(product(rotation(state, local), Quat<double>{w, x, y, z}))};
-    return list.is_near(contacts_.solids(), pair[0], place, pair[1], state.time);
+    const Obstacle& obstacle = contacts_.solids().obstacle(pair[1]);
+    if (!obstacle.is_carried())
+      return list.is_near(contacts_.solids(), pair[0], place, pair[1],
+                          place_of(obstacle, state.time, state.time));
+    const Pose& carrier = item(bodies_, list.slot_of(obstacle.body)).pose;
+    return list.is_near(contacts_.solids(), pair[0], place, pair[1],
+                        {.x = carrier.x, .axes = triad(carrier.q)});
   });
 }
 
@@ -395,7 +401,7 @@ void DistributedContact::restore(const std::vector<double>& rows,
                                  std::span<const BodyPair> released, std::size_t known) {
   overlap_told_ = true;  // the run has given this remark at its start
   contacts_.restore(rows, released, known);
-  expiry_ = PairListExpiry(contacts_.solids());
+  expiry_ = PairListExpiry(contacts_.solids(), part_);
 }
 
 void check_shapes(const Lattice& lattice) {

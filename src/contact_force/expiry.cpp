@@ -16,8 +16,14 @@ std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
 
 }  // namespace
 
-PairListExpiry::PairListExpiry(const Solids& solids) {
-  for (std::int32_t b = 0; b < solids.bodies(); ++b) radius_ = std::max(radius_, solids.radius(b));
+PairListExpiry::PairListExpiry(const Solids& solids, const Part& part) {
+  for (std::int32_t b = 0; b < solids.bodies(); ++b)
+    if (!solids.carries(b)) radius_ = std::max(radius_, solids.radius(b));
+  for (const std::int32_t b : solids.carriers()) {
+    const std::int32_t local = part.local_index(b);
+    if (local >= 0 && local < part.owned)
+      carriers_.push_back({static_cast<std::size_t>(local), solids.radius(b)});
+  }
 }
 
 void PairListExpiry::start(const State<Spatial>& state, std::int32_t owned) {
@@ -33,6 +39,9 @@ void PairListExpiry::after_step(const State<Spatial>& state, double dt) {
   // The spin of a tumbling body changes within a step, by far less than this factor.
   constexpr double tumbling = 1.5;
   speed_ = state.fastest + tumbling * radius_ * state.fastest_spin;
+  for (const Carrier& c : carriers_)
+    speed_ = std::max(speed_, length(velocity(state, c.local)) +
+                                  tumbling * c.radius * length(angular_velocity(state, c.local)));
   travelled_ += dt * speed_;
 }
 

@@ -17,7 +17,8 @@ namespace floe {
 /// when this bound exceeds the slack. So a scene in which little moves pays next to nothing.
 class PairListExpiry {
  public:
-  explicit PairListExpiry(const Solids& solids);
+  /// \param part  must outlive this object
+  PairListExpiry(const Solids& solids, const Part& part);
   /// Notes the state from which a list was made.
   /// \param owned  number of owned bodies
   void start(const State<Spatial>& state, std::int32_t owned);
@@ -34,7 +35,13 @@ class PairListExpiry {
   std::array<double, 2> of_obstacles(const Solids& solids, double time) const;
   double travels(const State<Spatial>& state, const Part& part, const Solids& solids) const;
 
-  double radius_ = 0;             ///< largest distance of a vertex from its centroid [m]
+  /// A body of this rank that carries obstacles.
+  struct Carrier {
+    std::size_t local;
+    double radius;  ///< distance of the farthest vertex from its centroid [m]
+  };
+  std::vector<Carrier> carriers_;
+  double radius_ = 0;             ///< the same, the largest of all other bodies [m]
   std::vector<double> at_build_;  ///< records of owned bodies when the list was made
   double time_ = 0;               ///< when the list was made [s]
   /// Bound of the travel of this rank's vertices since the list was made [m].

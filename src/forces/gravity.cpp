@@ -11,16 +11,21 @@ class Gravity final : public Force<Spatial> {
 
   std::string_view name() const override { return "gravity"; }
   void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) override {
-    for (std::int32_t b = 0; b < part_.owned; ++b)
-      wrenches.of(static_cast<std::size_t>(b))[2] -= item(part_.bodies.mass, b) * g_;
+    const bool all = part_.bodies.dry.empty();
+    for (std::int32_t b = 0; b < part_.owned; ++b) {
+      if (all || !is_dry(part_.bodies, b))
+        wrenches.of(static_cast<std::size_t>(b))[2] -= item(part_.bodies.mass, b) * g_;
+    }
   }
   /// Reports the potential m g u_z, 0 at rest.
   void report(const State<Spatial>& state, std::span<const double>,
               Columns& columns) const override {
     double energy = 0;
-    for (std::int32_t b = 0; b < part_.owned; ++b)
+    for (std::int32_t b = 0; b < part_.owned; ++b) {
+      if (is_dry(part_.bodies, b)) continue;
       energy +=
           item(part_.bodies.mass, b) * g_ * displacement(state, static_cast<std::size_t>(b)).z;
+    }
     columns.add("energy_gravity", energy);
   }
 

@@ -34,7 +34,8 @@ void PackedLattice::pack_bodies(Lattice& lattice, const Bodies& copy) {
   const Bodies& b = lattice.bodies;
   const bool same = b.position == copy.position && b.orientation == copy.orientation &&
                     b.mass == copy.mass && b.inertia == copy.inertia &&
-                    b.velocity == copy.velocity && b.angular_velocity == copy.angular_velocity;
+                    b.velocity == copy.velocity && b.angular_velocity == copy.angular_velocity &&
+                    b.dry == copy.dry;
   if (!same) return;
   bodies_ = &copy;
   lattice.bodies = {};

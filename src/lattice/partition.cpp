@@ -72,6 +72,26 @@ std::vector<std::int32_t> cut_by_load(const std::vector<std::int32_t>& order,
   return owner;
 }
 
+/// Takes the vertices and faces away from bodies that no water reaches: forces see shapes for the
+/// water only.
+void empty_dry(Shapes& shapes, const std::vector<std::uint8_t>& dry) {
+  if (shapes.empty()) return;
+  Shapes kept;
+  for (std::size_t b = 0; b < dry.size(); ++b) {
+    const auto first = static_cast<std::int32_t>(kept.vertices.size());
+    for (std::int32_t v = shapes.vertex_of[b]; v < shapes.vertex_of[b + 1] && dry[b] == 0; ++v)
+      kept.vertices.push_back(item(shapes.vertices, v));
+    for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1] && dry[b] == 0; ++f) {
+      for (std::int32_t c = item(shapes.corner_of, f); c < item(shapes.corner_of, f + 1); ++c)
+        kept.corners.push_back(item(shapes.corners, c) - shapes.vertex_of[b] + first);
+      kept.corner_of.push_back(static_cast<std::int32_t>(kept.corners.size()));
+    }
+    kept.face_of.push_back(static_cast<std::int32_t>(kept.corner_of.size()) - 1);
+    kept.vertex_of.push_back(static_cast<std::int32_t>(kept.vertices.size()));
+  }
+  shapes = std::move(kept);
+}
+
 }  // namespace
 
 std::vector<std::int32_t> owners_by_load(const std::vector<Point3>& places,
@@ -142,6 +162,7 @@ Part partition(const Lattice& lattice, MPI_Comm comm, const std::vector<std::int
     ghost_index.push_back(item(index, b));
   }
   part.shapes = pick(lattice.shapes, part.global);
+  if (!lattice.bodies.dry.empty()) empty_dry(part.shapes, pick(lattice.bodies.dry, part.global));
   part.global.insert(part.global.end(), ghosts.begin(), ghosts.end());
   part.local = static_cast<std::int32_t>(part.global.size());
   for (std::int32_t k = 0; k < part.local; ++k) {

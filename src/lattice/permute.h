@@ -22,8 +22,9 @@ std::vector<T> pick(const std::vector<T>& values, std::span<const std::int32_t> 
 }
 
 inline Bodies pick(const Bodies& b, std::span<const std::int32_t> order) {
-  return {pick(b.position, order), pick(b.orientation, order), pick(b.mass, order),
-          pick(b.inertia, order),  pick(b.velocity, order),    pick(b.angular_velocity, order)};
+  return {pick(b.position, order),         pick(b.orientation, order), pick(b.mass, order),
+          pick(b.inertia, order),          pick(b.velocity, order),
+          pick(b.angular_velocity, order), pick(b.dry, order)};
 }
 
 inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
@@ -39,8 +40,8 @@ inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {
 /// structured bindings name every member, so that none is forgotten.
 inline void permute(Bodies& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };
-  auto& [position, orientation, mass, inertia, velocity, spin] = b;
-  each(position, orientation, mass, inertia, velocity, spin);
+  auto& [position, orientation, mass, inertia, velocity, spin, dry] = b;
+  each(position, orientation, mass, inertia, velocity, spin, dry);
 }
 inline void permute(Beams& b, std::span<const std::int32_t> order) {
   const auto each = [&](auto&... arrays) { ((arrays = pick(arrays, order)), ...); };

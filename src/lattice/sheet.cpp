@@ -41,7 +41,7 @@ void to_frame(std::span<const Point2> polygon, const Point2& centroid, const Poi
 }
 
 void reserve(Lattice& lattice, std::size_t n, std::size_t corners, std::size_t m) {
-  auto& [position, orientation, mass, inertia, velocity, spin] = lattice.bodies;
+  auto& [position, orientation, mass, inertia, velocity, spin, dry] = lattice.bodies;
   position.reserve(n), orientation.reserve(n), mass.reserve(n), inertia.reserve(n);
   lattice.shapes.vertices.reserve(2 * corners);
   lattice.shapes.corners.reserve(6 * corners);

@@ -86,6 +86,7 @@ std::string fingerprint(const Lattice& lattice) {
   if (!m.image.empty()) hash.add(m.image);
   for (const auto* factors : {&m.strength, &m.energy})
     if (!factors->empty()) hash.add(*factors);
+  if (!b.dry.empty()) hash.add(b.dry);
   hash.add(lattice.shapes.vertices);
   return std::to_string(lattice.bodies.size()) + " bodies, " +
          std::to_string(lattice.beams.size()) + " beams, " + hash.text();

@@ -110,7 +110,13 @@ void read_contact(Options& options, Scene& scene) {
     } else if (!options.given("obstacle: NAME: friction", name)) {
       obstacle.friction_wet = contact.friction_wet;
     }
-    obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
+    if (options.given("obstacle: NAME: mass", name)) {
+      scene.structures.push_back(read_structure(options, obstacle));
+      scene.structures.back().obstacle = scene.obstacles.size();
+    } else {
+      refuse_structure(options, name);
+      obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
+    }
     scene.obstacles.push_back(std::move(obstacle));
   }
 }

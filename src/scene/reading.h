@@ -60,4 +60,11 @@ void read_path_choice(Options& options, Scene& scene);
 /// Reads how they follow it, after loads, boundaries and time.
 void read_path_control(Options& options, Scene& scene);
 
+/// Reads an obstacle that has a mass.
+Structure read_structure(Options& options, const Obstacle& obstacle);
+/// Refuses the keys of a structure where an obstacle has no mass.
+void refuse_structure(Options& options, const std::string& name);
+/// Checks structures against the rest of the scene, when all is read. \throws InputError
+void check_structures(const Scene& scene);
+
 }  // namespace floe

@@ -17,6 +17,7 @@
 #include "floe/mesh/cuts.h"
 #include "run/expected_cost.h"
 #include "scene/reading.h"
+#include "scene_model/structures.h"
 #include "scene_model/bonds.h"
 #include "scene_model/lattice_command.h"
 #include "scene_model/mesh_file.h"
@@ -406,6 +407,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
   if (scene.inertia_factor != 1) {
     for (Point3& moments : lattice.bodies.inertia) moments = scene.inertia_factor * moments;
   }
+  add_structures(scene, lattice);
   return lattice;
 }
 

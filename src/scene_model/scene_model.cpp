@@ -10,6 +10,7 @@
 #include "floe/files/log.h"
 #include "forces/gravity.h"
 #include "scene/reading.h"
+#include "scene_model/structures.h"
 #include "water/added_mass.h"
 #include "water/buoyancy.h"
 #include "water/drag.h"
@@ -158,6 +159,7 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
       added.push_back({mass, moment});
     model.set_added_inertia(std::move(added));
   }
+  if constexpr (std::is_same_v<Space, Spatial>) add_supports(scene, model);
   for (const PlacedLoad& load : loads)
     model.add_force(make_load<Space>(part, load, scene.beam.kinematics));
 }
@@ -178,7 +180,8 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
     ContactOptions options = scene.contact;
     options.inertia_factor = scene.inertia_factor;
     options.periods = scene.periods;
-    auto contact = make_contact(model.part(), lattice, options, scene.obstacles, std::move(motion));
+    auto contact = make_contact(model.part(), lattice, options,
+                                obstacles_on(scene, lattice), std::move(motion));
     const std::string& overlap = contact->overlap_at_start();
     if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
     model.add_force(std::move(contact));

@@ -23,7 +23,9 @@ Immersion::Immersion(const Part& part, Wet wet) : part_(part), wet_(wet) {
   const auto owned = static_cast<std::size_t>(part.owned);
   blocks_.resize((owned + lanes - 1) / lanes);
   for (std::size_t b = 0; b < owned; ++b) {
-    whole_.push_back(volume_properties(part.shapes, static_cast<std::int32_t>(b)));
+    const bool has_shape = part.shapes.vertex_of[b] < part.shapes.vertex_of[b + 1];
+    whole_.push_back(has_shape ? volume_properties(part.shapes, static_cast<std::int32_t>(b))
+                               : VolumeProperties{});
     double extent = 0;
     for (std::int32_t v = part.shapes.vertex_of[b]; v < part.shapes.vertex_of[b + 1]; ++v) {
       const Point3& r = item(part.shapes.vertices, v);
@@ -51,6 +53,7 @@ Prism<double> Immersion::find_prism(std::size_t b) const {
   const Shapes& shapes = part_.shapes;
   const std::span vertices(shapes.vertices.data() + shapes.vertex_of[b],
                            shapes.vertices.data() + shapes.vertex_of[b + 1]);
+  if (vertices.empty()) return prism;
   const auto [low, high] =
       std::minmax_element(vertices.begin(), vertices.end(),
                           [](const Point3& p, const Point3& q) { return p[2] < q[2]; });

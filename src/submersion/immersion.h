@@ -193,6 +193,10 @@ class Immersion {
   double volume(std::int32_t body) const { return item(whole_, body).volume; }
   /// Area of an owned body at rest seen from above [m^2].
   double plan_area(std::int32_t body) const;
+  /// Volume of an owned body over that area [m]; 0 for one that no water reaches (Bodies::dry).
+  double mean_thickness(std::int32_t body) const {
+    return volume(body) > 0 ? volume(body) / plan_area(body) : 0;
+  }
   /// Whether the surface cuts an owned body other than through its sides only.
   bool is_cut_across(const State<Spatial>& state, std::int32_t body) const;
   /// Whether an owned body is a prism along its axis 3.

@@ -34,7 +34,7 @@ Submersion::Submersion(const Part& part, int pace, bool shared)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       const auto body = static_cast<std::int32_t>(immersion_.body_of(block, lane));
       const double extent = immersion_.extent(body);
-      const double most = largest_move * immersion_.volume(body) / immersion_.plan_area(body);
+      const double most = largest_move * immersion_.mean_thickness(body);
       sizes_[block].extent2[lane] = extent * extent;
       sizes_[block].most2[lane] = 0.5 * most * most;
     }

@@ -19,7 +19,7 @@ SubmersionInWaves::SubmersionInWaves(const Part& part, Waves waves, int pace, bo
   if (!has_pace()) return;
   expansions_.resize(owned);
   for (std::int32_t body = 0; body < part.owned; ++body) {
-    const double most = largest_move * immersion_.volume(body) / immersion_.plan_area(body);
+    const double most = largest_move * immersion_.mean_thickness(body);
     most2_.push_back(0.5 * most * most);
   }
 }

@@ -28,6 +28,10 @@ std::vector<AddedAlongAxes> added_of_plates(const Part& part, double density) {
   std::vector<AddedAlongAxes> all;
   for (std::int32_t body = 0; body < part.owned; ++body) {
     const auto b = static_cast<std::size_t>(body);
+    if (is_dry(part.bodies, body)) {
+      all.push_back({});
+      continue;
+    }
     const double a = std::sqrt(immersion.plan_area(body) / std::numbers::pi);
     const double heave = 4.0 / 3.0 * density * a * a * a;
     const double roll = 8.0 / 45.0 * density * std::pow(a, 5);

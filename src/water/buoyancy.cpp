@@ -24,7 +24,7 @@ double heave_bound(const Immersion& immersion, const Part& part, double weight_d
     low = std::min(low, item(part.shapes.vertices, v)[2]);
     high = std::max(high, item(part.shapes.vertices, v)[2]);
   }
-  return 3.0 * weight_density * immersion.volume(body) / (high - low);
+  return high > low ? 3.0 * weight_density * immersion.volume(body) / (high - low) : 0.0;
 }
 
 /// Buoyancy of the owned bodies. With r from the centroid of a body, its submerged part V and its

@@ -38,7 +38,7 @@ class WettedBodies<Spatial> {
     for (std::size_t k = 0; k < immersion_.blocks() * lanes; ++k) {
       const auto body = static_cast<std::int32_t>(immersion_.body_of(k / lanes, k % lanes));
       area_per_volume_[k / lanes].values[k % lanes] =
-          immersion_.plan_area(body) / immersion_.volume(body);
+          immersion_.volume(body) > 0 ? immersion_.plan_area(body) / immersion_.volume(body) : 0;
     }
   }
   std::size_t blocks() const { return immersion_.blocks(); }

@@ -22,6 +22,12 @@ struct Obstacle {
   std::optional<double> friction_wet{};  ///< mu against bodies below still water, if another
   std::vector<HalfSpace> planes;         ///< of its faces, in its frame
   std::vector<Vec3<double>> vertices;    ///< in its frame [m]; empty for a half-space
+  Shapes shape{};                        ///< the same with its faces; empty for a half-space
+  /// The body of the model that carries it, of which the frame is this one's then; -1: it follows
+  /// `motion`.
+  std::int32_t body = -1;
+
+  bool is_carried() const { return body >= 0; }
 
   /// Distance of the farthest vertex from the origin of the frame [m].
   double radius() const;

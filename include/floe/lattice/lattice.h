@@ -25,8 +25,15 @@ struct Bodies {
   std::vector<Point3> inertia;           ///< principal moments [kg m^2]
   std::vector<Point3> velocity;          ///< [m/s]; empty: at rest
   std::vector<Point3> angular_velocity;  ///< [rad/s]; empty: at rest
+  /// 1: neither weight nor water acts, since a support carries the body; empty: all 0
+  std::vector<std::uint8_t> dry;
   std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
 };
+
+/// Whether neither weight nor water acts on a body.
+inline bool is_dry(const Bodies& bodies, std::int32_t body) {
+  return !bodies.dry.empty() && bodies.dry[static_cast<std::size_t>(body)] != 0;
+}
 
 /// Returns the moment of inertia at rest of a body about a unit vector in the world [kg m^2].
 double inertia_about(const Bodies& bodies, std::int32_t body, const Point3& axis);
