@@ -247,7 +247,9 @@ class PushedEdge(SupplyTest):
         momentum = (np.sqrt(2 * rows["energy_kinetic"] * present)
                     - rows["momentum_supplied_x"])
         impulse = np.concatenate([[0], np.cumsum(np.diff(time) * (force[1:] + force[:-1]) / 2)])
-        np.testing.assert_allclose(momentum[time > 1], impulse[time > 1], rtol=0.03)
+        # Where no ice has just joined, all goes at one speed.
+        at = [*np.flatnonzero(np.diff(rows["bodies_supplied"])), -1]
+        np.testing.assert_allclose(momentum[at], impulse[at], rtol=0.01)
         self.assertEqual(len(np.unique(rows["bodies_supplied"])), 4)  # three strips have joined
         self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
                         1e-3 * np.max(rows["energy_kinetic"]))
@@ -401,6 +403,11 @@ class Refused(SupplyTest):
                 (("-boundary_push_velocity", "-1 0 0"), "a velocity along +x"),
                 (("-boundary_push_set", "right"), "'set: left'"),
                 (("-supply_spring", "10"), "supply: spring: would have no effect"),
+                (("-supply_pressure", "1e5"), "supply: pressure: would have no effect"),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0", "-supply_response", "2"),
+                 "supply: response: would have no effect: there is no 'supply: pressure'"),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0", "-supply_pressure",
+                  "1e5"), "supply: velocity: does not go with 'supply: pressure'"),
                 (("-supply_edge", "absorbing"), "supply: velocity: "),
                 (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0"),
                  "boundary: push: fix: x and y of 'set: left' do not go with"),
