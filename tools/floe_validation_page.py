@@ -12,7 +12,7 @@ import floe_program
 from floe_program import BadInput
 from floe_runs import clock, write_whole
 from floe_validation import SEEDS, verdict_of
-from floe_validation_measures import Found, Line
+from floe_validation_lines import Found, Line
 
 with floe_program.packages():
     import matplotlib
