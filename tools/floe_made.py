@@ -19,13 +19,13 @@ from floe_runs import Run, Runner, dies_with, locked
 
 # Tools that make a file, and its ending.
 TOOLS = {"make_lattice": ".h5", "make_ridge": ".h5", "make_floes": ".geojson"}
-FIELDS = ("seed", "before")
+FIELDS = ("seed", "before", "here")
 FOLDER = "made"  # in the folder of the ensemble
 
 
 def read(key, given, base, scene_file):
     """A recipe: the commands, one after the other, that make the file of a key of scenes, as
-    [(words, path of its scene or None)]. ValueError with the key, the value and what is allowed.
+    [(words, path of its scene or None, folder of the spec)]. ValueError with the key, the value and what is allowed.
 
     given: a command, or a list of commands; base: the folder from which paths of scenes count;
     scene_file(key, path, base): the path of a scene from here."""
@@ -46,8 +46,9 @@ def read(key, given, base, scene_file):
         for name in sorted(fields):
             if name not in FIELDS or name == "before" and number == 0:
                 raise ValueError(f"{key}: '{command}': {{{name}}} is not known here; there are "
-                                 "{seed} and, from the second command on, {before}")
-        found.append((words, None if words[0] in TOOLS else scene_file(key, words[0], base)))
+                                 "{seed}, {here} and, from the second command on, {before}")
+        found.append((words, None if words[0] in TOOLS else scene_file(key, words[0], base),
+                      Path(base)))
     if found[-1][1]:
         raise ValueError(f"{key}: '{commands[-1]}' makes a folder, not a file; the last command "
                          f"must begin with one of {', '.join(TOOLS)}")
@@ -56,19 +57,21 @@ def read(key, given, base, scene_file):
 
 def needs_seed(recipe):
     """Whether the file of a recipe depends on the seed of a run."""
-    return any("{seed}" in word for words, _ in recipe for word in words)
+    return any("{seed}" in word for words, *_ in recipe for word in words)
 
 
 def told(recipe):
     """A recipe as one text, with {seed} and {before} as they are."""
-    return " && ".join(shlex.join(words) for words, _ in recipe)
+    return " && ".join(shlex.join(words) for words, *_ in recipe)
 
 
 @dataclass
 class Step(Run):
     """A command of a recipe, by its words as the spec has them; scene: the path of its scene from
-    here, or None of a tool; before: the step whose file it needs, or None."""
+    here, or None of a tool; before: the step whose file it needs, or None; here: the folder of the
+    spec."""
     before: object = None
+    here: object = None
 
     @property
     def text(self):
@@ -103,7 +106,8 @@ class Step(Run):
     def command(self, output, ranks=1):
         output = Path(output)
         before = self.before.place(output.parent.parent) if self.before else None
-        words = [word.replace("{before}", str(before)) for word in self.words[1:]]
+        words = [word.replace("{before}", str(before)).replace("{here}", str(self.here))
+                 for word in self.words[1:]]
         if self.scene:
             return Run(self.name, self.scene, {}, tuple(words)).command(output)
         return [*dies_with(f"= {os.getpid()}"), sys.executable,
@@ -114,14 +118,14 @@ def steps(recipe, seed):
     """The steps of a recipe for a run of this seed; the last one makes its file. Those of the same
     words and the same text of scenes have the same name."""
     found, digest = [], hashlib.sha256()
-    for words, scene in recipe:
+    for words, scene, here in recipe:
         words = tuple(word.replace("{seed}", str(seed)) for word in words)
         digest.update("\0".join(words).encode())
         if scene:
             digest.update(Path(scene).read_bytes())
         stem = re.sub(r"\W+", "_", Path(words[0]).stem)
         found.append(Step(f"{stem}_{digest.hexdigest()[:12]}", scene, {}, words,
-                          before=found[-1] if found else None))
+                          before=found[-1] if found else None, here=here))
     return found
 
 

@@ -2,6 +2,7 @@
 finished runs and its settings. SI units."""
 import numpy as np
 
+import floe_fields
 import floe_loads
 import floe_signals
 from floe_output import Output
@@ -67,3 +68,201 @@ def ridging(runs, settings):
                "points"), ("linear in h", thickness, [linear * h / 1e3 for h in thickness], None,
                            "line")]
     return Found(lines, "thickness [m]", "mean force per width [kN/m]", series, log="xy")
+
+
+def ridge_building(runs, settings):
+    """Mean force per width on the held end over the last part of the way, against thickness; its
+    largest value before; the work of the push over the gain of potential energy, over the whole way
+    and over its last part. settings: start (share of the way after which the last part begins),
+    published_ratio, allowed_ratio."""
+    found = {}
+    for point, drawn in by_point(runs).items():
+        for run in drawn:
+            force, way = np.abs(run.column("hold_force_x")), run.column("push_displacement_x")
+            work = np.concatenate([[0], np.cumsum(np.diff(way) * (force[1:] + force[:-1]) / 2)])
+            potential = run.column("energy_gravity") + run.column("energy_water")
+            first = int(np.searchsorted(way, settings["start"] * way[-1]))
+            width = run.option("sheet_width")
+            found.setdefault(run.option("sheet_thickness"), {})[run.seed] = (
+                (work[-1] - work[first]) / (way[-1] - way[first]) / width,
+                force[:first].max() / width,
+                work[-1] / (potential[-1] - potential[0]),
+                (work[-1] - work[first]) / (potential[-1] - potential[first]))
+    thickness = sorted(found)
+    seeds = sorted(set.intersection(*(set(of_seed) for of_seed in found.values())))
+    lines = []
+    for k, what in enumerate(("mean force per width", "largest force per width before")):
+        if len(thickness) > 1:
+            lines.append(Line(f"exponent of thickness in the {what}",
+                              [slope_of(thickness, [found[h][seed][k] for h in thickness])
+                               for seed in seeds], *([1.0, [1.0, 1.0]] if k == 0 else []),
+                              by_band=True))
+    for h in thickness:
+        of_h = np.array(list(found[h].values())).T
+        lines += [Line(f"h = {h:g} m: mean force per width", list(of_h[0]), unit="N/m"),
+                  Line(f"h = {h:g} m: largest force per width before", list(of_h[1]), unit="N/m"),
+                  Line(f"h = {h:g} m: work over the gain of potential energy", list(of_h[2]),
+                       settings["published_ratio"], settings["allowed_ratio"]),
+                  Line(f"h = {h:g} m: the same of the last part of the way", list(of_h[3]))]
+    series = []
+    for k, label in ((0, "mean"), (1, "largest before")):
+        means = [mean_and_band([values[k] for values in found[h].values()]) for h in thickness]
+        series.append((label, thickness, [m / 1e3 for m, _ in means], [b / 1e3 for _, b in means],
+                       "points"))
+    linear = np.mean([values[0] for values in found[thickness[0]].values()]) / thickness[0]
+    series.append(("linear in h", thickness, [linear * h / 1e3 for h in thickness], None, "line"))
+    return Found(lines, "thickness [m]", "force per width [kN/m]", series, log="xy")
+
+
+def layers(places, solid, h, width, step):
+    """Of columns of ice on a grid of `step` [m] in a sheet of thickness h and this width: the
+    number of layers of thickness h in strips across the sheet 2 h long, and the share of the ice
+    beyond one layer that lies in a second one (1: nowhere more than two)."""
+    strip = np.floor(places[:, 0] / (2 * h)).astype(int)
+    strip -= strip.min()
+    number = np.bincount(strip, solid) * step**2 / (2 * h * width) / h
+    beyond = np.maximum(solid / h - 1, 0)
+    return number, float(np.minimum(beyond, 1).sum() / beyond.sum()) if beyond.any() else 1.0
+
+
+def rafting(runs, settings):
+    """Whether sheets that are pushed together rafted, that is whether at the last frame at least
+    half of the ice beyond one layer lies in a second one; the number of layers where the ice is
+    thickest, the length of what is thicker than 1.5 layers, the work over the gain of potential
+    energy. settings: published {point: [share of runs that raft, least, most]}, ratio {point:
+    [published, least, most]}, labels {point: text}."""
+    lines, series = [], []
+    for point, drawn in by_point(runs).items():
+        shares, thickest, long, ratios, profiles = [], [], [], [], []
+        for run in drawn:
+            h, width = run.option("sheet_thickness"), run.option("sheet_width")
+            output = Output(run.folder)
+            bodies = floe_fields.Bodies(output, float(output.times[-1]))
+            low, high = bodies.low.min(axis=0)[:2], bodies.high.max(axis=0)[:2]
+            places, _, _, solid = floe_fields.columns(bodies, h / 2, (low, high))
+            number, share = layers(places, solid, h, width, h / 2)
+            shares.append(share)
+            thickest.append(float(number.max()))
+            long.append(float(2 * (number > 1.5).sum()))
+            profiles.append(number)
+            force, way = np.abs(run.column("hold_force_x")), run.column("push_displacement_x")
+            potential = run.column("energy_gravity") + run.column("energy_water")
+            ratios.append(np.trapz(force, way) / (potential[-1] - potential[0]))
+        label = settings["labels"][point]
+        value, *allowed = settings["published"][point]
+        ratio, *allowed_ratio = settings["ratio"][point]
+        lines += [Line(f"{label}: share of the runs that raft",
+                       [float(share >= 0.5) for share in shares], value, allowed),
+                  Line(f"{label}: share of the ice beyond one layer that lies in a second", shares),
+                  Line(f"{label}: layers where thickest", thickest),
+                  Line(f"{label}: length of what is thicker than 1.5 layers over h", long),
+                  Line(f"{label}: work over the gain of potential energy", ratios, ratio,
+                       allowed_ratio)]
+        ordered = [np.sort(number)[::-1] for number in profiles]
+        short = min(map(len, ordered))
+        series.append((label, list(2.0 * np.arange(short)),
+                       list(np.mean([one[:short] for one in ordered], axis=0)), None, "line"))
+    return Found(lines, "length of the sheet that is thicker, over h", "layers of ice", series)
+
+
+def porosity_within(bodies, low, high, spacing):
+    """Share of a box low to high (3) [m] that is not within any body, by points on a grid."""
+    axes = [np.arange(a + spacing / 2, b, spacing) for a, b in zip(low, high)]
+    full = np.zeros([len(axis) for axis in axes], bool)
+    for body in np.flatnonzero(np.all((bodies.low < high) & (bodies.high > low), axis=1)):
+        part = tuple(slice(*np.searchsorted(axis, (a, b)))
+                     for axis, a, b in zip(axes, bodies.low[body], bodies.high[body]))
+        points = np.stack(np.meshgrid(*(axis[one] for axis, one in zip(axes, part)),
+                                      indexing="ij"), axis=-1)
+        normal, offset = bodies.planes(body)
+        full[part] |= np.all(points @ normal.T <= offset, axis=-1)
+    return float(1 - full.mean())
+
+
+def porosity(runs, settings):
+    """Porosity of rubble that has settled between walls, at the last frame, a longest side of its
+    blocks within the walls and half a mean side within its mean surfaces. settings: walls (distance
+    from the middle [m]), blocks (sides 3 [m]), published, allowed, judged (points of which the
+    number is set beside the published one), labels {point: text}."""
+    lines, labels, found = [], [], []
+    for point, drawn in by_point(runs).items():
+        sides = settings["blocks"][point]
+        inside, mean = settings["walls"] - max(sides), float(np.mean(sides))
+        shares = []
+        for run in drawn:
+            output = Output(run.folder)
+            bodies = floe_fields.Bodies(output, float(output.times[-1]))
+            box = np.array([-inside, -inside]), np.array([inside, inside])
+            _, top, bottom, _ = floe_fields.columns(bodies, min(sides) / 2, box)
+            low, high = np.median(bottom) + mean / 2, np.median(top) - mean / 2
+            shares.append(porosity_within(bodies, np.append(box[0], low), np.append(box[1], high),
+                                          min(sides) / 5))
+        judged = point in settings["judged"]
+        lines.append(Line(f"{settings['labels'][point]}: porosity", shares,
+                          settings["published"] if judged else None,
+                          settings["allowed"] if judged else None))
+        labels.append(run.option("contact_friction"))
+        found.append(mean_and_band(shares))
+    series = [("floe", labels, [m for m, _ in found], [b for _, b in found], "points"),
+              ("Baltic keels", [min(labels), max(labels)], [settings["published"]] * 2, None,
+               "line")]
+    return Found(lines, "friction between blocks", "porosity", series)
+
+
+def shear_box(runs, settings):
+    """Shear stress in a box, the force on its held blocks over its area: the largest mean over some
+    time, which is the shear strength, and the mean over the last part. settings: mean [s], last
+    (share of the time), allowed [Pa], labels {point: text}."""
+    lines, series = [], []
+    for point, drawn in by_point(runs).items():
+        strengths, last, curves = [], [], []
+        for run in drawn:
+            area = np.prod(run.option("model_periodic"))
+            time, stress = run.column("time"), np.abs(run.column("bottom_force_x")) / area
+            step = (time[-1] - time[0]) / (len(time) - 1)
+            number = max(1, round(settings["mean"] / step))
+            passed = np.convolve(stress, np.ones(number) / number, "valid")
+            strengths.append(float(passed.max()))
+            last.append(float(stress[time >= (1 - settings["last"]) * time[-1]].mean()))
+            curves.append(passed)
+        label = settings["labels"][point]
+        lines += [Line(f"{label}: shear strength [Pa]", strengths, None, settings["allowed"]),
+                  Line(f"{label}: shear stress of the last part [Pa]", last)]
+        short = min(map(len, curves))
+        series.append((label, list(time[number - 1:][:short]),
+                       list(np.mean([one[:short] for one in curves], axis=0) / 1e3), None, "line"))
+    return Found(lines, "time [s]", "shear stress, mean over the seeds [kPa]", series)
+
+
+def keel_punch(runs, settings):
+    """Shear strength of a keel from the largest force F of a punch, (F - F_b)/(pi D H): F_b the
+    buoyancy of the blocks under the plate of diameter D, H the rubble's mean thickness there, both
+    at the start. settings: filter [s], allowed [Pa], labels {point: text}."""
+    lines, series = [], []
+    for point, drawn in by_point(runs).items():
+        strengths, forces, curves = [], [], []
+        for run in drawn:
+            output = Output(run.folder)
+            radius = run.option("obstacle_plate_radius")
+            centre = np.array(run.option("obstacle_plate_base")[:2])
+            bodies = floe_fields.Bodies(output, 0.0)
+            under = np.linalg.norm(output.position[:, :2] - centre, axis=1) < radius
+            net = G * (run.option("water_density") / 920 - 1) * output.mass[under].sum()
+            places, top, bottom, _ = floe_fields.columns(bodies, radius / 16,
+                                                         (centre - radius, centre + radius))
+            near = np.linalg.norm(places - centre, axis=1) < radius
+            high = float((top - bottom)[near].mean())
+            table = floe_loads.read_run(run.folder)
+            record = np.abs(floe_signals.Filter("mean", length=settings["filter"]).apply(
+                table.forces["plate"], table.dt)[2])
+            forces.append(float(record.max()))
+            strengths.append((forces[-1] - net) / (2 * np.pi * radius * high))
+            curves.append((np.arange(len(record)) * table.dt, record))
+        label = settings["labels"][point]
+        lines += [Line(f"{label}: shear strength [Pa]", strengths, None, settings["allowed"]),
+                  Line(f"{label}: largest force", forces, unit="N")]
+        short = min(len(record) for _, record in curves)
+        series.append((label, list(curves[0][0][:short]),
+                       list(np.mean([record[:short] for _, record in curves], axis=0) / 1e3), None,
+                       "line"))
+    return Found(lines, "time [s]", "force on the plate, mean over the seeds [kN]", series)

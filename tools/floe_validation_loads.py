@@ -5,7 +5,9 @@ import math
 
 import numpy as np
 
+import floe_extremes
 import floe_program
+import floe_signals
 from floe_program import BadInput
 from floe_validation_formulas import iso_crushing, iso_slope
 from floe_validation_lines import (LEVEL, Found, Line, by_point, low_passed, mean_and_band,
@@ -15,6 +17,30 @@ with floe_program.packages():
     from scipy import stats
 
 DRAWS, SEED = 2000, 1  # of bootstraps
+
+
+def ratio_of_means(one, other):
+    """Mean of one over that of the other, of independent draws, and half its band by Student's t
+    and the errors of both; 0 of one draw."""
+    one, other = np.asarray(one, float), np.asarray(other, float)
+    ratio = float(one.mean() / other.mean())
+    many = min(len(one), len(other))
+    if many < 2:
+        return ratio, 0.0
+    error = math.hypot(stats.sem(one) / one.mean(), stats.sem(other) / other.mean())
+    return ratio, float(abs(ratio) * error * stats.t.ppf(0.5 + LEVEL / 2, 2 * many - 2))
+
+
+def iso_terms(run, settings, strength):
+    """The arguments of iso_slope but the rubble's height. strength: the scene's key of the flexural
+    strength."""
+    return {"h": run.option("sheet_thickness"),
+            "width": settings.get("width", run.option("sheet_width")), "angle": settings["angle"],
+            "friction": run.option(f"obstacle_{settings['obstacle']}_friction"),
+            "sigma": run.option(strength), "young": run.option("ice_young"),
+            "ice_friction": run.option("contact_friction"),
+            "water": run.option("water_density"), "ice": run.option("ice_density"),
+            "repose": settings["repose"]}
 
 
 def iso(runs, settings):
@@ -30,13 +56,7 @@ def iso(runs, settings):
             h, width = run.option("sheet_thickness"), settings.get("width",
                                                                    run.option("sheet_width"))
             raised = rubble_height(run, settings["obstacle"], times[peak], width / 2)
-            given = {"h": h, "width": width, "angle": settings["angle"],
-                     "friction": run.option(f"obstacle_{settings['obstacle']}_friction"),
-                     "sigma": run.option("fracture_flexural_strength"),
-                     "young": run.option("ice_young"),
-                     "ice_friction": run.option("contact_friction"),
-                     "water": run.option("water_density"), "ice": run.option("ice_density"),
-                     "repose": settings["repose"]}
+            given = iso_terms(run, settings, "fracture_flexural_strength")
             ratios.append(record[peak] / iso_slope(rubble=raised, **given)["H"])
             bare.append(record[peak] / iso_slope(**given)["H"])
             of_h.append(raised)
@@ -223,17 +243,11 @@ def wide(runs, settings):
         lines.append(Line(f"{what}: peak per width", list(values[:, 0]), unit="N/m"))
         lines.append(Line(f"{what}: deviation over mean, in time", list(values[:, 2])))
         if width > widths[0]:
-            ratio = values[:, 0].mean() / narrow[:, 0].mean()
+            ratio, half = ratio_of_means(values[:, 0], narrow[:, 0])
             theory = values[0, 3] / narrow[0, 3]
-            many = min(len(values), len(narrow))
-            half = 0.0
-            if many > 1:
-                error = math.hypot(stats.sem(values[:, 0]) / values[:, 0].mean(),
-                                   stats.sem(narrow[:, 0]) / narrow[:, 0].mean())
-                half = float(ratio * error * stats.t.ppf(0.5 + LEVEL / 2, 2 * many - 2))
             line = Line(f"{what}: peak per width over that of D/h = {widths[0] / h:.0f}",
                         [ratio], theory, [theory * one for one in settings["allowed"]], half=half)
-            line.seeds = many
+            line.seeds = min(len(values), len(narrow))
             lines.append(line)
     x = [width / h for width in widths]
     columns = [[mean_and_band(np.array(found[width])[:, k]) for width in widths] for k in (0, 1)]
@@ -242,3 +256,84 @@ def wide(runs, settings):
     series.append(("ISO, bare ice", x, [found[width][0][3] / 1e3 for width in widths], None,
                    "line"))
     return Found(lines, "D/h", "force per width [kN/m]", series, log="xy")
+
+
+def endless(runs, settings):
+    """The load of ice without end on a slope: mean, deviation in time, largest means over some
+    time, largest low-pass filtered value over ISO's load, Gumbel's law of these over the seeds;
+    trend. settings: obstacle, angle [degrees], repose, filter [Hz], start [s], mean [s], allowed
+    [least, most]."""
+    name, found = settings["obstacle"], []
+    for run in runs:
+        record, times = low_passed(run, name, settings)
+        step = times[1] - times[0]
+        peak = int(np.argmax(record))
+        given = iso_terms(run, settings, "fracture_tensile_strength")
+        raised = rubble_height(run, name, times[peak], given["width"] / 2)
+        number = max(1, round(settings["mean"] / step))
+        running = np.convolve(record, np.ones(number) / number, "valid")
+        trend = floe_signals.trend([record], step)
+        half = len(record) // 2
+        found.append({"mean": record.mean(), "deviation": record.std(), "peak": record[peak],
+                      "running": running.max(), "height": raised,
+                      "ratio": record[peak] / iso_slope(rubble=raised, **given)["H"],
+                      "bare": record[peak] / iso_slope(**given)["H"],
+                      "trend": float(trend is not None and trend["p"] < 0.05),
+                      "halves": record[half:].mean() / record[:half].mean(),
+                      "time": times, "record": record})
+
+    def of(key):
+        return [float(one[key]) for one in found]
+    lines = [Line(f"largest value over ISO with its rubble, {np.mean(of('height')):.2f} m high",
+                  of("ratio"), 1 / 1.6, settings["allowed"]),
+             Line("largest value over ISO without rubble", of("bare")),
+             Line("largest value", of("peak"), unit="N"),
+             Line(f"largest mean of {settings['mean']:g} s", of("running"), unit="N"),
+             Line("mean", of("mean"), unit="N"),
+             Line("deviation in time", of("deviation"), unit="N"),
+             Line("share of the records with a trend (Mann and Kendall, p < 0.05)", of("trend")),
+             Line("mean of the second half over that of the first", of("halves"))]
+    peaks = np.array(of("peak"))
+    if len(peaks) > 1:
+        mu, beta = floe_extremes.fit(peaks, "moments")
+        for p in (0.5, 0.01):
+            low, high = floe_extremes.band(mu, beta, len(peaks), p, "moments")
+            line = Line(f"Gumbel's law of the largest values: exceeded with probability {p:g}",
+                        [float(floe_extremes.quantile(mu, beta, p))], unit="N",
+                        half=float(high - low) / 2)
+            line.seeds = len(peaks)
+            lines.append(line)
+    series = []
+    for k, one in enumerate(found[:3]):
+        coarse = max(1, len(one["record"]) // 600)
+        whole = len(one["record"]) // coarse * coarse
+        series.append((f"seed {runs[k].seed}", list(one["time"][:whole:coarse]),
+                       list(one["record"][:whole].reshape(-1, coarse).max(axis=1) / 1e3), None,
+                       "line"))
+    return Found(lines, "time [s]", "load [kN]", series)
+
+
+def floe_shape(runs, settings):
+    """Mean and deviation in time of the load of floes of several shapes on an obstacle, those of
+    one shape over those of the others. settings: obstacle, filter [Hz], start [s], shape (its
+    point), labels {point: text}, allowed [least, most]."""
+    found, lines = {}, []
+    for point, drawn in by_point(runs).items():
+        records = [low_passed(run, settings["obstacle"], settings)[0] for run in drawn]
+        found[point] = {"mean": [float(record.mean()) for record in records],
+                        "deviation in time": [float(record.std()) for record in records]}
+        for what, values in found[point].items():
+            lines.append(Line(f"{settings['labels'][point]}: {what} of the load", values, unit="N"))
+    shape, points = settings["shape"], list(found)
+    for point in points:
+        for what in found[point] if point != shape and shape in found else ():
+            ratio, half = ratio_of_means(found[shape][what], found[point][what])
+            line = Line(f"{what} of the load, {settings['labels'][shape]} over "
+                        f"{settings['labels'][point]}", [ratio], None, settings["allowed"],
+                        half=half, by_band=True)
+            line.seeds = min(len(found[shape][what]), len(found[point][what]))
+            lines.append(line)
+    series = [(settings["labels"][point], [v / 1e3 for v in found[point]["mean"]],
+               [v / 1e3 for v in found[point]["deviation in time"]], None, "points")
+              for point in points]
+    return Found(lines, "mean load of a run [kN]", "deviation in time [kN]", series)
