@@ -25,7 +25,8 @@ FOLDER = "made"  # in the folder of the ensemble
 
 def read(key, given, base, scene_file):
     """A recipe: the commands, one after the other, that make the file of a key of scenes, as
-    [(words, path of its scene or None, folder of the spec)]. ValueError with the key, the value and what is allowed.
+    [(words, path of its scene or None, folder of the spec)]. ValueError with the key, the value and
+    what is allowed.
 
     given: a command, or a list of commands; base: the folder from which paths of scenes count;
     scene_file(key, path, base): the path of a scene from here."""

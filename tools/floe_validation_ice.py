@@ -95,8 +95,7 @@ def ridge_building(runs, settings):
         if len(thickness) > 1:
             lines.append(Line(f"exponent of thickness in the {what}",
                               [slope_of(thickness, [found[h][seed][k] for h in thickness])
-                               for seed in seeds], *([1.0, [1.0, 1.0]] if k == 0 else []),
-                              by_band=True))
+                               for seed in seeds], 1.0, [1.0, 1.0], by_band=True))
     for h in thickness:
         of_h = np.array(list(found[h].values())).T
         lines += [Line(f"h = {h:g} m: mean force per width", list(of_h[0]), unit="N/m"),
@@ -227,7 +226,8 @@ def shear_box(runs, settings):
             curves.append(passed)
         label = settings["labels"][point]
         lines += [Line(f"{label}: shear strength [Pa]", strengths, None, settings["allowed"]),
-                  Line(f"{label}: shear stress of the last part [Pa]", last)]
+                  Line(f"{label}: shear stress of the last part [Pa]", last, None,
+                       settings["allowed"])]
         short = min(map(len, curves))
         series.append((label, list(time[number - 1:][:short]),
                        list(np.mean([one[:short] for one in curves], axis=0) / 1e3), None, "line"))

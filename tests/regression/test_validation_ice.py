@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Measures of docs/validation.md on ice as it is found, on made numbers of which the answer is known:
-ridging, layers, porosity, shear box, punch, endless ice, floes of several shapes."""
+"""Measures of docs/validation.md on ice as it is found, on made numbers of which the answer is
+known: ridging, layers, porosity, shear box, punch, endless ice, floes of several shapes."""
 import subprocess
 import sys
 import unittest
@@ -196,8 +196,8 @@ class Made(FolderTest):
                               if line.what == "mean of the load, A over B").verdict, "disagrees")
 
     def test_keel_punch(self):
-        """A block of 4 x 4 x 1 m that a plate pushes down: 1 m of it is under the plate, and all its
-        buoyancy counts, since its centroid is."""
+        """A block of 4 x 4 x 1 m that a plate pushes down: 1 m of it is under the plate, and all
+        its buoyancy counts, since its centroid is."""
         subprocess.run([REPOSITORY / "tools/make_lattice", "block", self.folder / "block.h5"],
                        check=True, capture_output=True)
         (self.folder / "scene.yaml").write_text(PUNCH)
