@@ -113,55 +113,58 @@ def ridge_building(runs, settings):
     return Found(lines, "thickness [m]", "force per width [kN/m]", series, log="xy")
 
 
-def layers(places, solid, h, width, step):
-    """Of columns of ice on a grid of `step` [m] in a sheet of thickness h and this width: the
-    number of layers of thickness h in strips across the sheet 2 h long, and the share of the ice
-    beyond one layer that lies in a second one (1: nowhere more than two)."""
+def strips(places, top, bottom, solid, h, width, step):
+    """Of columns of ice on a grid of `step` [m] in a sheet of thickness h and this width, in strips
+    across the sheet 2 h long: the mean thickness from the lowest to the highest ice, voids
+    included, and the ice's volume over that of one layer, both over h."""
     strip = np.floor(places[:, 0] / (2 * h)).astype(int)
     strip -= strip.min()
-    number = np.bincount(strip, solid) * step**2 / (2 * h * width) / h
-    beyond = np.maximum(solid / h - 1, 0)
-    return number, float(np.minimum(beyond, 1).sum() / beyond.sum()) if beyond.any() else 1.0
+    thickness = np.bincount(strip, top - bottom) / np.maximum(np.bincount(strip), 1) / h
+    return thickness, np.bincount(strip, solid) * step**2 / (2 * h * width) / h
 
 
 def rafting(runs, settings):
-    """Whether sheets that are pushed together rafted, that is whether at the last frame at least
-    half of the ice beyond one layer lies in a second one; the number of layers where the ice is
-    thickest, the length of what is thicker than 1.5 layers, the work over the gain of potential
-    energy. settings: published {point: [share of runs that raft, least, most]}, ratio {point:
-    [published, least, most]}, labels {point: text}."""
+    """Whether sheets that are pushed together have rafted at several times, that is whether no
+    strip across them, 2 h long, is thicker than some h in the mean; the thickness where it is
+    thickest, the layers of ice there, the length of what is thicker than 1.5 h, the work over the
+    gain of potential energy. settings: times [s], most (thickness over h of what has rafted),
+    published {point: [share of runs that raft, least, most]}, ratio {point: [published, least,
+    most]}, labels {point: text}."""
     lines, series = [], []
     for point, drawn in by_point(runs).items():
-        shares, thickest, long, ratios, profiles = [], [], [], [], []
-        for run in drawn:
-            h, width = run.option("sheet_thickness"), run.option("sheet_width")
-            output = Output(run.folder)
-            bodies = floe_fields.Bodies(output, float(output.times[-1]))
-            low, high = bodies.low.min(axis=0)[:2], bodies.high.max(axis=0)[:2]
-            places, _, _, solid = floe_fields.columns(bodies, h / 2, (low, high))
-            number, share = layers(places, solid, h, width, h / 2)
-            shares.append(share)
-            thickest.append(float(number.max()))
-            long.append(float(2 * (number > 1.5).sum()))
-            profiles.append(number)
-            force, way = np.abs(run.column("hold_force_x")), run.column("push_displacement_x")
-            potential = run.column("energy_gravity") + run.column("energy_water")
-            ratios.append(np.trapz(force, way) / (potential[-1] - potential[0]))
         label = settings["labels"][point]
         value, *allowed = settings["published"][point]
+        for end in settings["times"]:
+            thickest, layers, long, ratios, profiles = [], [], [], [], []
+            for run in drawn:
+                h, width = run.option("sheet_thickness"), run.option("sheet_width")
+                output = Output(run.folder)
+                bodies = floe_fields.Bodies(output, end)
+                low, high = bodies.low.min(axis=0)[:2], bodies.high.max(axis=0)[:2]
+                columns = floe_fields.columns(bodies, h / 2, (low, high))
+                thickness, number = strips(*columns, h, width, h / 2)
+                thickest.append(float(thickness.max()))
+                layers.append(float(number.max()))
+                long.append(float(2 * (thickness > 1.5).sum()))
+                profiles.append(np.sort(thickness)[::-1])
+                last = run.column("time") <= end
+                force, way = (np.abs(run.column("hold_force_x"))[last],
+                              run.column("push_displacement_x")[last])
+                potential = (run.column("energy_gravity") + run.column("energy_water"))[last]
+                ratios.append(np.trapz(force, way) / (potential[-1] - potential[0]))
+            what = f"{label}, {end:g} s"
+            lines += [Line(f"{what}: share of the runs that have rafted",
+                           [float(one <= settings["most"]) for one in thickest], value, allowed),
+                      Line(f"{what}: thickness where thickest over h", thickest),
+                      Line(f"{what}: layers of ice where they are most", layers),
+                      Line(f"{what}: length of what is thicker than 1.5 h, over h", long)]
+            short = min(map(len, profiles))
+            series.append((what, list(2.0 * np.arange(short)),
+                           list(np.mean([one[:short] for one in profiles], axis=0)), None, "line"))
         ratio, *allowed_ratio = settings["ratio"][point]
-        lines += [Line(f"{label}: share of the runs that raft",
-                       [float(share >= 0.5) for share in shares], value, allowed),
-                  Line(f"{label}: share of the ice beyond one layer that lies in a second", shares),
-                  Line(f"{label}: layers where thickest", thickest),
-                  Line(f"{label}: length of what is thicker than 1.5 layers over h", long),
-                  Line(f"{label}: work over the gain of potential energy", ratios, ratio,
-                       allowed_ratio)]
-        ordered = [np.sort(number)[::-1] for number in profiles]
-        short = min(map(len, ordered))
-        series.append((label, list(2.0 * np.arange(short)),
-                       list(np.mean([one[:short] for one in ordered], axis=0)), None, "line"))
-    return Found(lines, "length of the sheet that is thicker, over h", "layers of ice", series)
+        lines.append(Line(f"{what}: work over the gain of potential energy", ratios, ratio,
+                          allowed_ratio))
+    return Found(lines, "length of the sheet that is thicker, over h", "thickness over h", series)
 
 
 def porosity_within(bodies, low, high, spacing):

@@ -42,17 +42,18 @@ class Cubes:
 
 class Formulas(unittest.TestCase):
     def test_layers(self):
-        """A sheet 40 h long that lies in n layers over 12 h of it."""
+        """A sheet 40 h long that lies in n layers, h/2 apart, over 12 h of it."""
         h, width, step = 0.5, 6.0, 0.25
         x, y = np.meshgrid(np.arange(-10 + step / 2, 10, step), np.arange(step / 2, width, step),
                            indexing="ij")
         places = np.column_stack([x.ravel(), y.ravel()])
-        for n, share in ((1, 1), (2, 1), (3, 1 / 2), (5, 1 / 4)):
-            solid = np.where((places[:, 0] > 2) & (places[:, 0] < 8), n * h, h)
-            number, found = ice.layers(places, solid, h, width, step)
-            self.assertAlmostEqual(found, share)
-            np.testing.assert_allclose(number[:12], 1)
-            np.testing.assert_allclose(number[12:18], n)
+        for n in (1, 2, 5):
+            piled = (places[:, 0] > 2) & (places[:, 0] < 8)
+            solid = np.where(piled, n * h, h)
+            bottom = -solid - piled * (n - 1) * h / 2
+            thickness, number = ice.strips(places, 0 * solid, bottom, solid, h, width, step)
+            np.testing.assert_allclose(number, [1] * 12 + [n] * 6 + [1] * 2)
+            np.testing.assert_allclose(thickness, [1] * 12 + [1.5 * n - 0.5] * 6 + [1] * 2)
 
     def test_porosity(self):
         """Boxes that fill a quarter, also where two overlap or reach beyond the box."""
