@@ -25,9 +25,8 @@ class Bodies:
     """The bodies' polyhedra in a frame: planes n x <= d of all faces, one body after another."""
 
     def __init__(self, output, time):
-        shapes = output.shapes
+        self.points, shapes = output.polyhedra(time)
         self.vertex_of, self.face_of = shapes["vertex_of"], shapes["face_of"]
-        self.points = output.field("points", time)
         corner_of, corners = shapes["corner_of"], shapes["corners"]
         first = self.points[corners[corner_of[:-1]]]
         # twice the area vector of each face (Newell's method)

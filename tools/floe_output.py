@@ -127,6 +127,22 @@ def summary_of(folder):
         return json.loads(path.read_text()) if path.exists() else {}
 
 
+def shapes_of(topology, body_of_face, vertices):
+    """Shapes as in lattice.h5 of XDMF's polygons (3, number of corners, corners, of each face) and
+    the body of each face, both in the order of the bodies."""
+    corner_of, corners, at = [0], [], 0
+    while at < len(topology):
+        number = int(topology[at + 1])
+        corners.append(topology[at + 2:at + 2 + number])
+        corner_of.append(corner_of[-1] + number)
+        at += 2 + number
+    face_of = np.searchsorted(body_of_face, np.arange(body_of_face[-1] + 2))
+    corner_of, corners = np.array(corner_of), np.concatenate(corners)
+    vertex_of = np.minimum.reduceat(corners, corner_of[face_of[:-1]])
+    return {"vertex_of": np.append(vertex_of, vertices), "face_of": face_of,
+            "corner_of": corner_of, "corners": corners}
+
+
 class Output(Lattice):
     """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
 
@@ -158,6 +174,21 @@ class Output(Lattice):
                                f"{file[group].attrs['time']:g} s is of other bodies than "
                                "lattice.h5; ParaView shows it by fields.xmf")
             return file[group][name][:]
+
+    def polyhedra(self, time):
+        """Corners of all bodies of the sample nearest to `time`, v x 3 [m], and their shapes as in
+        lattice.h5 (vertex_of, face_of, corner_of, corners), which are others once ice has joined or
+        left (supply)."""
+        if not self._frames:
+            raise BadInput(f"{self.folder} has no frame yet")
+        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
+        with reading(path), h5py.File(path) as file:
+            mesh, points = file[group].attrs.get("mesh"), file[group]["points"][:]
+        if mesh is None:
+            return points, self.shapes
+        path = path.with_name(f"mesh_{int(mesh):06d}.h5")
+        with reading(path), h5py.File(path) as file:
+            return points, shapes_of(file["mesh/topology"][:], file["mesh/body"][:], len(points))
 
     def has_field(self, name, time):
         """Whether the sample nearest to `time` has the dataset `name`."""

@@ -7,13 +7,18 @@ of its pieces leave over the slope.
 import csv
 import json
 import random
+import sys
 import unittest
 
 import h5py
 import numpy as np
 
-from launch import FULL
+from launch import FULL, REPOSITORY
 from test_restart import RestartTest, contents
+
+sys.path.insert(0, str(REPOSITORY / "tools"))
+from floe_fields import Bodies  # noqa: E402
+from floe_output import Output  # noqa: E402
 
 SCENE = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
@@ -356,6 +361,16 @@ class Files(SupplyTest):
                     self.assertLess(np.max(np.abs(way[:, 1:])), 6)
                     self.assertLess(np.median(np.abs(way[:, 0])), 3.5)
         self.assertEqual(len({len(n) for n in names}), 4)
+        # The tools find the polyhedra: as many as bodies, convex, each around its centre.
+        output = Output(folder)
+        bodies = Bodies(output, output.times[-1])
+        self.assertEqual(len(bodies), len(names[-1]))
+        with h5py.File(folder / "fields.h5") as file:
+            for body, centre in enumerate(file[frames[-1]]["centres"][:]):
+                normal, offset = bodies.planes(body)
+                points = bodies.points[bodies.vertex_of[body]:bodies.vertex_of[body + 1]]
+                self.assertLess(np.max(points @ normal.T - offset), 1e-6)
+                self.assertGreater(np.min(offset - normal @ centre), 0.1)
         text = (folder / "fields.xmf").read_text()
         grids = text.count("<Grid Name=\"sheet\"") + sum(
             (folder / href).read_text().count("<Grid Name=\"sheet\"")
