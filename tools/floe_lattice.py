@@ -542,6 +542,9 @@ def settled(folder):
         raise ValueError(f"{folder}: has no frames")
     _, path, group = frames[-1]
     with h5py.File(path) as file:
+        if "mesh" in file[group].attrs:
+            raise ValueError(f"{folder}: its ice joins or leaves (supply), and lattice.h5 has the "
+                             "first bodies only")
         move, turn = file[group]["bodies_displacement"][:], file[group]["bodies_rotation"][:]
         damage = file[group]["damage"][:] if "damage" in file[group] else None
     angle = np.linalg.norm(turn, axis=1)
