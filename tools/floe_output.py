@@ -144,6 +144,11 @@ def summary_of(folder):
         return json.loads(path.read_text()) if path.exists() else {}
 
 
+def has_changes(folder):
+    """Whether ice has joined or left in a run (supply)."""
+    return any(Path(folder).glob("fields/mesh_*.h5"))
+
+
 class Output(Lattice):
     """An output folder. Its arrays of bodies and beams are those of its lattice.h5, the first ones;
     where ice joins and leaves (`changes`), those of a frame are at(time)."""
@@ -156,7 +161,7 @@ class Output(Lattice):
         self.times = np.array([time for time, _, _ in self._frames])
         # per frame the first one that has the same bodies
         self.meshes = np.zeros(len(self._frames), int)
-        if any(self.folder.glob("fields/mesh_*.h5")):
+        if has_changes(self.folder):
             self.meshes[:] = [self._mesh_number(*frame[1:]) for frame in self._frames]
         self._present = self._pairs = (0, None)
 
@@ -210,9 +215,10 @@ class Output(Lattice):
                 self._pairs = mesh, names[file["mesh/beams"][:]]
         return self._pairs[1]
 
-    def last_times(self):
-        """Per mesh the time of its last frame: all that has broken of its bodies has by then."""
-        return self.times[np.append(np.diff(self.meshes) != 0, True)[:len(self.meshes)]]
+    def last_frames(self):
+        """Numbers of the last frames before other bodies: all that breaks in a frame of the same
+        bodies has broken by then."""
+        return np.flatnonzero(np.append(np.diff(self.meshes) != 0, True)[:len(self.meshes)])
 
     def box(self):
         """Corners low, high [m] of the box of the centroids at rest; where ice joins and leaves,

@@ -114,7 +114,7 @@ class Cast:
             time = dict(zip(breaks["beam"].tolist(), breaks["time"]))
             return corners, carrier, np.array([time.get(b, 0) for b in beam.tolist()])
         times, parts = floe_breaks.Times(output), []
-        for time in output.last_times():
+        for time in output.times[output.last_frames()]:
             corners, carrier, beam = faces_of(output, time)
             names = output.beam_names(time)[beam]
             key = np.column_stack([names, np.arange(len(beam)) % 2])

@@ -229,7 +229,8 @@ const floeScene = (() => {
     }
     const pieces = [...found.values()].sort((a, b) => b.mass - a.mass || a.root - b.root);
     const number = new Map(pieces.map((one, k) => [one.root, k]));
-    return {of: Int32Array.from(parent, (_, k) => (there(k) ? number.get(root(k)) : -1)), pieces};
+    const of = Int32Array.from(parent, (_, k) => (there(k) ? number.get(root(k)) : -1));
+    return {of, pieces};
   }
 
   function hue(k, light) {
