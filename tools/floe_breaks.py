@@ -7,6 +7,7 @@ frame that has them.
 import h5py
 import numpy as np
 
+from floe_output import has_changes
 from floe_program import reading
 
 BREAKS = ("time", "beam", "fragments/of_body", "fragments/mass", "fragments/bodies")
@@ -112,7 +113,7 @@ def bodies_of_mesh(output, mesh):
 def at_end(output):
     """Breaks and pieces of the ice at the end of a run as {name: array} by BREAKS; nothing if no
     beam can break."""
-    if output.changes:
+    if has_changes(output.folder) and len(output.times):
         return at_frame(output, output.times[-1])
     path = output.folder / "breaks.h5"
     if not path.exists():

@@ -25,7 +25,8 @@ with floe_program.packages():
 
 CONVENTIONS = "CF-1.8"
 UNITS = ((r"^energy_", "J"), (r"^mass_", "kg"), (r"^momentum_", "kg m s-1"),
-         (r"_force_[xyz]$", "N"), (r"_moment_[xyz]$", "N m"), (r"_displacement_[xyz]$", "m"), (r"_rotation_[xyz]$", "rad"))
+         (r"_force_[xyz]$", "N"), (r"_moment_[xyz]$", "N m"), (r"_displacement_[xyz]$", "m"),
+         (r"_rotation_[xyz]$", "rad"))
 LABELS = {"force": ("N", "force on the obstacle at this instant"),
           "moment": ("N m", "moment on the obstacle about its point at this instant")}
 AXIS = ("axis", np.array(list("xyz"), object), {"long_name": "axis of the world, z up"})

@@ -163,12 +163,33 @@ class Output(Lattice):
         self.meshes = np.zeros(len(self._frames), int)
         if has_changes(self.folder):
             self.meshes[:] = [self._mesh_number(*frame[1:]) for frame in self._frames]
+        if has_changes(self.folder) or "supply_strip" in self.options():
+            self._require_meshes()
         self._present = self._pairs = (0, None)
 
     @property
     def changes(self):
         """Whether some frames are of other bodies than lattice.h5."""
         return bool(np.any(self.meshes))
+
+    def _require_meshes(self):
+        """Checks that each mesh has the bodies of its frames."""
+        for number in np.unique(self.meshes):
+            count, path = len(self.position), self.mesh_file(number)
+            if number > 0:
+                with reading(path), h5py.File(path) as file:
+                    count = len(file["mesh/name"])
+            for k in np.flatnonzero(self.meshes == number):
+                if self.count(self.times[k]) != count:
+                    raise BadInput(f"{self.folder}: the frame at {self.times[k]:g} s is of bodies "
+                                   "that joined or left (supply) and that no file in fields/ "
+                                   "tells of")
+
+    def count(self, time):
+        """Number of the bodies in the frame nearest to `time`."""
+        _, path, group = self._frames[self._number(time)]
+        with reading(path), h5py.File(path) as file:
+            return len(file[group]["centres"])
 
     @staticmethod
     def _mesh_number(path, group):

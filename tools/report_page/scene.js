@@ -246,6 +246,7 @@ const floeScene = (() => {
     return stops[k].map((c, i) => c + f * (stops[k + 1][i] - c));
   }
 
-  return {unpackScene, meshOf, planeThrough, lifeOf, exists, bodyPose, between, quaternionOfMatrix, textureFor, put,
-          fillBodies, fragmentsAt, hue, speedColour, vertexShader, litShader, plainShader};
+  return {unpackScene, meshOf, planeThrough, lifeOf, exists, bodyPose, between, quaternionOfMatrix,
+          textureFor, put, fillBodies, fragmentsAt, hue, speedColour, vertexShader, litShader,
+          plainShader};
 })();
