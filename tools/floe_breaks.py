@@ -4,6 +4,8 @@ breaks.h5 is of the bodies that a run had when it was last written. Where ice jo
 beams of bodies that have left since are known by the frames: their breaks count from the first
 frame that has them.
 """
+import functools
+
 import h5py
 import numpy as np
 
@@ -72,6 +74,12 @@ class Times:
         return np.where(self.key[at] == keys(names), self.time[at], np.nan)
 
 
+@functools.lru_cache(maxsize=1)
+def times_of(output):
+    """Times of the output last asked for, found once."""
+    return Times(output)
+
+
 def of_file(output):
     """Keys and times of the breaks in breaks.h5. Nothing where it is not plain of which bodies it
     is: a run that was killed may have changed its ice since."""
@@ -122,13 +130,12 @@ def at_end(output):
         return {name: file[name][:] for name in BREAKS}
 
 
-def at_frame(output, time, times=None):
-    """The same of the ice in the frame nearest to `time`, beams and bodies in its order. times: of
-    the run, if they are known."""
+def at_frame(output, time):
+    """The same of the ice in the frame nearest to `time`, beams and bodies in its order."""
     if not output.has_field("damage", time):
         return {}
     ice, broken = output.at(time), output.field("damage", time) >= 1
-    when = (times or Times(output)).of(output.beam_names(time)[broken])
+    when = times_of(output).of(output.beam_names(time)[broken])
     order = np.argsort(when, kind="stable")
     return {"time": when[order], "beam": np.flatnonzero(broken)[order],
             **fragments(ice, ~broken)}

@@ -101,7 +101,7 @@ class Cast:
         found = [self.output.beam_names(time) for time in self.times]
         _, first = np.unique(floe_breaks.keys(np.concatenate(found)), return_index=True)
         pairs = np.concatenate(found)[first]
-        return self.numbers(pairs), floe_breaks.Times(self.output).of(pairs)
+        return self.numbers(pairs), floe_breaks.times_of(self.output).of(pairs)
 
     def cracks(self, breaks):
         """Faces of broken sections: corners k x 4 x 3 [m] about the centroid at rest of the body
@@ -113,7 +113,7 @@ class Cast:
             corners, carrier, beam = faces_of(output, output.times[-1])
             time = dict(zip(breaks["beam"].tolist(), breaks["time"]))
             return corners, carrier, np.array([time.get(b, 0) for b in beam.tolist()])
-        times, parts = floe_breaks.Times(output), []
+        times, parts = floe_breaks.times_of(output), []
         for time in output.times[output.last_frames()]:
             corners, carrier, beam = faces_of(output, time)
             names = output.beam_names(time)[beam]

@@ -56,12 +56,11 @@ class Frames(SupplyTools):
 
     def test_are_of_the_account(self):
         """Number and mass of the bodies, breaks and pieces, by counts of their own."""
-        times = floe_breaks.Times(self.output)
         for when in self.output.times:
             ice, wanted = self.output.at(when), self.account.at(when)
             self.assertEqual(len(ice.names), wanted["bodies"])
             self.assertAlmostEqual(ice.mass.sum() / wanted["mass"], 1, 12)
-            found = floe_breaks.at_frame(self.output, when, times)
+            found = floe_breaks.at_frame(self.output, when)
             self.assertEqual(len(found["beam"]), wanted["beams_broken"])
             self.assertEqual(len(found["fragments/mass"]), wanted["fragments"])
             self.assertEqual(found["fragments/bodies"].sum(), len(ice.names))
