@@ -163,7 +163,8 @@ class Output(Lattice):
         self.meshes = np.zeros(len(self._frames), int)
         if has_changes(self.folder):
             self.meshes[:] = [self._mesh_number(*frame[1:]) for frame in self._frames]
-        if has_changes(self.folder) or "supply_strip" in self.options():
+        is_there = (self.folder / "options.yaml").exists()
+        if has_changes(self.folder) or is_there and "supply_strip" in self.options():
             self._require_meshes()
         self._present = self._pairs = (0, None)
 

@@ -218,6 +218,17 @@ class OtherRuns(SupplyTools):
         said = tool("plot_sheet", lost, code=2)
         self.assertEqual(said.count("\n"), 1, said)
         self.assertIn("(supply)", said)
+        spoilt = sorted(self.made.glob("fields/mesh_*.h5"))[-1]
+        kept = spoilt.read_bytes()
+        try:
+            spoilt.write_bytes(kept[:1000])
+            for words in (["report"], ["vtkhdf"], ["netcdf"], ["loads", "--fields"],
+                          ["plot_fragments", "--time", "1"]):
+                said = tool(words[0], self.made, *words[1:], code=2)
+                self.assertEqual(said.count("\n"), 1, said)
+                self.assertIn(spoilt.name, said)
+        finally:
+            spoilt.write_bytes(kept)
 
     def test_breaks_of_other_bodies_are_left_alone(self):
         """breaks.h5 of a moment that no mesh fits: breaks count from their frames."""
