@@ -17,11 +17,12 @@ from pathlib import Path
 import numpy as np
 import yaml
 
+import floe_made
 from floe_program import BadInput, reading
 from floe_runs import ENVIRONMENT, Run, locked, write_whole
 
-KEYS = ("scene", "options", "seeds", "seed_keys", "grid", "list", "latin_hypercube", "ranks",
-        "limit", "output")
+KEYS = ("scene", "options", "seeds", "seed_keys", "make", "grid", "list", "latin_hypercube",
+        "ranks", "limit", "output")
 OURS = ("output_dir", "output_overwrite", "check", "checkpoint_restart")
 # Of summary.json what is not the same in each run of the same scene, and what the table says itself
 TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s",
@@ -43,7 +44,8 @@ class UniqueKeys(yaml.SafeLoader):
 @dataclass
 class Spec:
     """An ensemble as its spec says it. points: [(label, scene, {key: value} that is varied, further
-    columns of the table)], without seeds; limits in s."""
+    columns of the table, {key: recipe of the file that is made for it})], without seeds; limits in
+    s."""
     name: str
     points: list
     options: dict
@@ -58,20 +60,35 @@ class Spec:
 
 @dataclass
 class Member(Run):
-    """A run of an ensemble: its parameters as the table has them."""
+    """A run of an ensemble: its parameters as the table has them. made: {key: the last step
+    (floe_made) of what makes its file}; made_in: the folder of such files."""
     parameters: dict = field(default_factory=dict)
     seed: object = None
+    made: dict = field(default_factory=dict)
+    made_in: object = None
 
     @property
     def record(self):
-        """All that its results depend on and that a spec can change."""
+        """All that its results depend on and that a spec can change. A file that is made is its
+        command, with the digest of the scenes in it."""
+        made = {key: f"{step.text} ({step.name})" for key, step in self.made.items()}
         return {"scene": hashlib.sha256(Path(self.scene).read_bytes()).hexdigest(),
-                "options": self.options}
+                "options": self.options | made}
 
     def group(self, seed_keys):
         """The same for all seeds of the same parameters."""
-        return json.dumps([self.scene, {key: value for key, value in self.options.items()
-                                        if key not in seed_keys}])
+        return json.dumps([self.scene, self.parameters,
+                           {key: value for key, value in self.options.items()
+                            if key not in seed_keys}])
+
+    def command(self, output, ranks=1):
+        files = {key: str(step.place(self.made_in)) for key, step in self.made.items()}
+        return Run(self.name, self.scene, self.options | files, self.words).command(output, ranks)
+
+    @property
+    def ready(self):
+        """Whether the files that are made for it are there."""
+        return all(step.done(self.made_in) for step in self.made.values())
 
 
 def refuse(key, value, allowed):
@@ -150,10 +167,15 @@ def text_of(section, key, value):
 def values(section, given):
     """{key: text} of the options in a section of the spec."""
     found = {key: text_of(section, key, value) for key, value in flat(section, given).items()}
-    for key in found:
+    ours(section, found)
+    return found
+
+
+def ours(section, keys):
+    """Refuses keys of scenes that only the ensemble gives."""
+    for key in keys:
         if key in OURS:
             raise ValueError(f"{section}: {key}: is the ensemble's own")
-    return found
 
 
 def grid(given):
@@ -166,8 +188,16 @@ def grid(given):
     return [("", None, merged(*cell)) for cell in itertools.product(*axes)]
 
 
+def recipes(section, given, base):
+    """{key: recipe} of a mapping of keys of scenes to commands (floe_made)."""
+    found = {key: floe_made.read(f"{section}: {key}", commands, base, scene_file)
+             for key, commands in flat(section, given).items()}
+    ours(section, found)
+    return found
+
+
 def listed(given, base):
-    """One point per entry: options, and maybe a name and a scene of its own."""
+    """One point per entry: options, and maybe a name, a scene and a `make` of its own."""
     if not isinstance(given, list) or not given:
         refuse("list", given, "a list of at least one mapping")
     points = []
@@ -176,8 +206,9 @@ def listed(given, base):
         name, scene = str(entry.pop("name", "")), entry.pop("scene", None)
         if name and not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9._-]*", name):
             refuse("list: name", name, "letters, digits, '.', '_' and '-'")
+        made = recipes("list: make", entry.pop("make", {}), base)
         points.append((name, scene if scene is None else scene_file("list: scene", scene, base),
-                       values("list", entry)))
+                       values("list", entry), made))
     return points
 
 
@@ -250,13 +281,18 @@ def spec_of(given, name, base):
     known("", given, KEYS)
     scene = scene_file("scene", given["scene"], base) if "scene" in given else None
     sections = [grid(given.get("grid") or {}),
-                listed(given["list"], base) if "list" in given else [("", None, {})],
+                listed(given["list"], base) if "list" in given else [("", None, {}, {})],
                 latin_hypercube(given["latin_hypercube"]) if "latin_hypercube" in given
                 else [("", None, {})]]
     options = values("options", given.get("options") or {})
     seeds = seeds_of(given.get("seeds"))
+    common = recipes("make", given.get("make") or {}, base)
+    seeded = [floe_made.needs_seed(recipe) for made in (common, *(part[3] for part in sections[1]))
+              for recipe in made.values()]
+    if any(seeded) and seeds == [None]:
+        raise ValueError("make: {seed}: seeds is not given")
     seed_keys = given.get("seed_keys", ["sheet_seed"])
-    if not isinstance(seed_keys, list) or not seed_keys:
+    if not isinstance(seed_keys, list) or not (seed_keys or any(seeded)):
         refuse("seed_keys", seed_keys, "a list of keys, as [sheet_seed, fracture_seed]")
     seed_keys = list(flat("seed_keys", dict.fromkeys(seed_keys)))
     if seeds == [None] and "seed_keys" in given:
@@ -268,10 +304,12 @@ def spec_of(given, name, base):
         if (own or scene) is None:
             raise ValueError("scene: is missing; it is the path of a scene, which counts from the "
                              "spec's folder")
-        merged(options, varied, dict.fromkeys(seed_keys))
+        made = merged(common, parts[1][3])
+        merged(options, varied, dict.fromkeys(seed_keys), made)
         if not label or len(sections[0]) * len(sections[2]) > 1:
             label = f"{label}_p{number:03d}".lstrip("_")
-        points.append((label, own or scene, varied, {"scene": own} if own else {}))
+        told = {key: floe_made.told(recipe) for key, recipe in parts[1][3].items()}
+        points.append((label, own or scene, varied, ({"scene": own} if own else {}) | told, made))
     labels = [point[0] for point in points]
     if len(set(labels)) < len(labels):
         raise ValueError(f"list: name: two points are named '{max(labels, key=labels.count)}'")
@@ -301,22 +339,26 @@ def members(spec):
     """The runs: all seeds of each point. p002_s013 is seed 13 at the second point."""
     runs = []
     varies = len(spec.points) > 1 or spec.points[0][2] or spec.seeds == [None]
-    for label, scene, varied, told in spec.points:
+    for label, scene, varied, told, recipes_ in spec.points:
         for seed in spec.seeds:
             words = [label if varies else "", "" if seed is None else f"s{seed:03d}"]
             seeded = dict.fromkeys(spec.seed_keys, str(seed))
+            made = {key: floe_made.steps(recipe, seed)[-1] for key, recipe in recipes_.items()}
             runs.append(Member("_".join(filter(None, words)), scene, spec.options | varied | seeded,
-                               parameters=told | varied, seed=seed))
+                               parameters=told | varied, seed=seed, made=made))
     return runs
 
 
 class Folder:
-    """An ensemble's folder: ensemble.json (what its runs are), runs/NAME (their output), results/
-    NAME.json (how they ended), runs.csv (the table of all)."""
+    """An ensemble's folder: ensemble.json (what its runs are), made (files that were made for
+    them), runs/NAME (their output), results/NAME.json (how they ended), runs.csv (the table of
+    all)."""
 
     def __init__(self, path, spec):
         self.path, self.spec, self.runs = Path(path), spec, members(spec)
         self.seconds = {}  # planned time [s] of a group of runs that differ by the seed
+        for run in self.runs:
+            run.made_in = self.path / floe_made.FOLDER
 
     def output(self, run):
         return self.path / "runs" / run.name
@@ -357,7 +399,7 @@ class Folder:
                 if self.result_file(run).exists() or self.output(run).exists():
                     raise BadInput(f"{self.path}: its run {run.name} has {difference(old, run)}; "
                                    "choose another folder (output, --dir)")
-            else:
+            elif old["seconds"] is not None or not run.made:  # else its file was not there yet
                 self.seconds[run.group(self.spec.seed_keys)] = old["seconds"]
         return before
 
@@ -366,17 +408,19 @@ class Folder:
         runs = self.compare()
         for run in self.runs:
             runs[run.name] = {**run.record, "parameters": run.parameters, "seed": run.seed,
-                              "seconds": self.seconds[run.group(self.spec.seed_keys)]}
+                              "seconds": self.seconds.get(run.group(self.spec.seed_keys))}
         text = json.dumps({"name": self.spec.name, "spec": self.spec.text, "runs": runs}, indent=1)
         write_whole(self.path / "ensemble.json", text + "\n")
 
     def plan(self, jobs):
         """Asks floe for the planned time of each point: its first seed. BadInput with floe's words
         if a point is none that floe would run. Costs are times of finished runs where there are
-        any; other plans are scaled as those of the finished runs turned out."""
+        any; other plans are scaled as those of the finished runs turned out. Points of which no
+        seed has its made files yet are not asked for."""
         first = {}
         for run in self.runs:
-            first.setdefault(run.group(self.spec.seed_keys), run)
+            if run.ready:
+                first.setdefault(run.group(self.spec.seed_keys), run)
         asked = {group: run for group, run in first.items() if group not in self.seconds}
         with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
             times = pool.map(lambda run: planned(run, self.output(run), self.spec.ranks),
@@ -387,16 +431,27 @@ class Folder:
             if self.finished(run):
                 taken.setdefault(run.group(self.spec.seed_keys), []).append(
                     self.result(run)["wall_s"])
-        known = [group for group in taken if self.seconds[group]]
+        known = [group for group in taken if self.seconds.get(group)]
         pace = (sum(np.mean(taken[group]) for group in known)
                 / (sum(self.seconds[group] for group in known) or 1)) or 1.0
         for run in self.runs:
             group = run.group(self.spec.seed_keys)
-            run.cost = float(np.mean(taken.get(group, [(self.seconds[group] or 1.0) * pace])))
+            run.cost = float(np.mean(taken.get(group, [(self.seconds.get(group) or 1.0) * pace])))
 
     def unknown(self, run):
         """Whether nobody knows how long a run takes."""
-        return self.seconds[run.group(self.spec.seed_keys)] is None and not self.finished(run)
+        return (self.seconds.get(run.group(self.spec.seed_keys)) is None
+                and not self.finished(run))
+
+    def make(self, runs, jobs, locks=()):
+        """Makes the files of runs that are not there; whether all are, which is false when it was
+        stopped. Then plans what could not be planned without them."""
+        steps = [step for run in runs for step in run.made.values()]
+        if not floe_made.make(self.path / floe_made.FOLDER, steps, jobs, locks):
+            return False
+        if steps:
+            self.plan(jobs)
+        return True
 
     def keep(self, run, output, ended):
         """What is kept of a run that has ended: the scalars of its summary."""
@@ -432,8 +487,9 @@ class Folder:
 
 def difference(old, run):
     """What a run of the folder has that the spec has not."""
-    for key in {**old["options"], **run.options}:
-        was, now = (options.get(key, "(not given)") for options in (old["options"], run.options))
+    options_now = run.record["options"]
+    for key in {**old["options"], **options_now}:
+        was, now = (options.get(key, "(not given)") for options in (old["options"], options_now))
         if was != now:
             return f"{key} {was}, the spec says {now}"
     return f"another scene than {run.scene} is now"

@@ -180,6 +180,11 @@ class Row:
             given["list"] = points
         return floe_ensemble.spec_of(given, self.name, self.path.parent)
 
+    def made_by(self):
+        """The scenes in the commands that make files of its runs."""
+        return sorted({scene for run in self.folder(".").runs for step in run.made.values()
+                       for scene in step.scenes()})
+
     def make_lattices(self, folder):
         """Writes what is not there of the lattices of its runs."""
         for words in filter(None, self.lattices()):

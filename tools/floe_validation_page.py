@@ -12,7 +12,7 @@ import floe_program
 from floe_program import BadInput
 from floe_runs import clock, write_whole
 from floe_validation import SEEDS, verdict_of
-from floe_validation_measures import Found, Line
+from floe_validation_lines import Found, Line
 
 with floe_program.packages():
     import matplotlib
@@ -171,8 +171,8 @@ def digest(row):
     """Of what the row runs and measures, its scenes included: another one is another row."""
     text = json.dumps([row.runs, row.settings, row.measure.__name__, row.lattice_seeds],
                       sort_keys=True)
-    for scene in scenes_of(row):
-        text += scene.read_text()
+    for scene in [*scenes_of(row), *row.made_by()]:
+        text += Path(scene).read_text()
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

@@ -138,8 +138,8 @@ Tessellation tessellate_periodic(const SheetPlan& plan, std::span<const Point2> 
           move = std::max(move, std::hypot(cell.centroid[0] - z[0], cell.centroid[1] - z[1]));
         }
         const double area = plan.area();
-        own->energy_ratio = energy * static_cast<double>(n) /
-                            (5 / (18 * std::numbers::sqrt3) * area * area);
+        own->energy_ratio =
+            energy * static_cast<double>(n) / (5 / (18 * std::numbers::sqrt3) * area * area);
         own->largest_move = move / plan.element_size;
         return std::move(*own);
       }

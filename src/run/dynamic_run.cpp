@@ -149,6 +149,8 @@ void DynamicRun<Space>::persist(Archive& archive) {
   archive.common("limited_by", result_.limited_by);
   archive.common("next_sample", next_sample_, not_negative_or_infinite);
   archive.common("sampled_step", sampled_, -1);
+  archive.common("sampled_when_due", sampled_when_due_, -1);
+  if (options_.supply) archive.common("ice_has_changed", ice_has_changed_);
   archive.common("largest_velocity2", largest_, not_negative);
   persist_own(archive);
   if (balance_) {
@@ -692,6 +694,7 @@ bool DynamicRun<Space>::sample(bool last) {
              .last = last,
              .forces = reported});
   sampled_ = done_;
+  if (due()) sampled_when_due_ = done_;
   next_sample_ = std::numeric_limits<double>::infinity();
   for (const double every : sample_every_) {
     if (every > 0)

@@ -98,9 +98,10 @@ constexpr std::array table{
                "to the ice behind"},
     OptionSpec{"supply: velocity", numbers, "(required)", "m/s", ">= -1e6, <= 1e6",
                "absorbing: of the ice behind the far edge", 3},
-    OptionSpec{"supply: pressure", number, "(none)", "Pa", ">= 0, <= 1e9",
-               "absorbing, in place of the velocity: mean pressure with which the ice behind pushes "
-               "the far edge, as fast as that goes"},
+    OptionSpec{
+        "supply: pressure", number, "(none)", "Pa", ">= 0, <= 1e9",
+        "absorbing, in place of the velocity: mean pressure with which the ice behind pushes "
+        "the far edge, as fast as that goes"},
     OptionSpec{"supply: response", number, "1", "s", ">= 1e-9, <= 1e12",
                "absorbing, with a pressure: dashpots are relative to the mean motion of the edge "
                "over this time; waves longer than it come back"},

@@ -102,7 +102,8 @@ void read_plan(Options& options, Scene& scene) {
     plan.width = options.number("sheet: width", {}, plan.length);
     plan.periodic = options.flag("sheet: periodic");
   } else {
-    options.refuse("sheet: periodic", "does not go with 'sheet: outline': a rectangle repeats itself");
+    options.refuse("sheet: periodic",
+                   "does not go with 'sheet: outline': a rectangle repeats itself");
   }
   plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
   const double shorter = std::min(plan.length, plan.width);
@@ -254,8 +255,9 @@ void read_regions_and_cuts(Options& options, Scene& scene) {
   for (const std::string& name : options.names("region")) {
     Region region{name, options.numbers<6>("region: NAME: box", name)};
     if (scene.sheet.periodic)
-      options.refuse_one("region: NAME: edge", name,
-                         "does not go with 'sheet: periodic': its ends are the sets left and right");
+      options.refuse_one(
+          "region: NAME: edge", name,
+          "does not go with 'sheet: periodic': its ends are the sets left and right");
     else if (scene.has_sheet)
       region.edge = options.flag("region: NAME: edge", name);
     else

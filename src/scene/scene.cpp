@@ -45,8 +45,7 @@ void read_periods(Options& options, Scene& scene) {
   }
   auto [x, y] = options.numbers<2>("model: periodic");
   if (scene.sheet.periodic) {
-    const bool given = options.given("model: periodic");
-    if (given && y != scene.sheet.width)
+    if (y != 0 && y != scene.sheet.width)
       throw InputError("model: periodic: " + text_of(y) + " along y must be sheet: width " +
                        text_of(scene.sheet.width) + " [m], since 'sheet: periodic' is true");
     y = scene.sheet.width;

@@ -7,13 +7,18 @@ of its pieces leave over the slope.
 import csv
 import json
 import random
+import sys
 import unittest
 
 import h5py
 import numpy as np
 
-from launch import FULL
+from launch import FULL, REPOSITORY
 from test_restart import RestartTest, contents
+
+sys.path.insert(0, str(REPOSITORY / "tools"))
+from floe_fields import Bodies  # noqa: E402
+from floe_output import Output  # noqa: E402
 
 SCENE = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
@@ -247,7 +252,9 @@ class PushedEdge(SupplyTest):
         momentum = (np.sqrt(2 * rows["energy_kinetic"] * present)
                     - rows["momentum_supplied_x"])
         impulse = np.concatenate([[0], np.cumsum(np.diff(time) * (force[1:] + force[:-1]) / 2)])
-        np.testing.assert_allclose(momentum[time > 1], impulse[time > 1], rtol=0.03)
+        # Where no ice has just joined, all goes at one speed.
+        at = [*np.flatnonzero(np.diff(rows["bodies_supplied"])), -1]
+        np.testing.assert_allclose(momentum[at], impulse[at], rtol=0.01)
         self.assertEqual(len(np.unique(rows["bodies_supplied"])), 4)  # three strips have joined
         self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
                         1e-3 * np.max(rows["energy_kinetic"]))
@@ -354,6 +361,16 @@ class Files(SupplyTest):
                     self.assertLess(np.max(np.abs(way[:, 1:])), 6)
                     self.assertLess(np.median(np.abs(way[:, 0])), 3.5)
         self.assertEqual(len({len(n) for n in names}), 4)
+        # The tools find the polyhedra: as many as bodies, convex, each around its centre.
+        output = Output(folder)
+        bodies = Bodies(output, output.times[-1])
+        self.assertEqual(len(bodies), len(names[-1]))
+        with h5py.File(folder / "fields.h5") as file:
+            for body, centre in enumerate(file[frames[-1]]["centres"][:]):
+                normal, offset = bodies.planes(body)
+                points = bodies.points[bodies.vertex_of[body]:bodies.vertex_of[body + 1]]
+                self.assertLess(np.max(points @ normal.T - offset), 1e-6)
+                self.assertGreater(np.min(offset - normal @ centre), 0.1)
         text = (folder / "fields.xmf").read_text()
         grids = text.count("<Grid Name=\"sheet\"") + sum(
             (folder / href).read_text().count("<Grid Name=\"sheet\"")
@@ -401,6 +418,11 @@ class Refused(SupplyTest):
                 (("-boundary_push_velocity", "-1 0 0"), "a velocity along +x"),
                 (("-boundary_push_set", "right"), "'set: left'"),
                 (("-supply_spring", "10"), "supply: spring: would have no effect"),
+                (("-supply_pressure", "1e5"), "supply: pressure: would have no effect"),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0", "-supply_response",
+                  "2"), "supply: response: would have no effect: there is no 'supply: pressure'"),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0", "-supply_pressure",
+                  "1e5"), "supply: velocity: does not go with 'supply: pressure'"),
                 (("-supply_edge", "absorbing"), "supply: velocity: "),
                 (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0"),
                  "boundary: push: fix: x and y of 'set: left' do not go with"),

@@ -15,10 +15,12 @@ from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_validation as validation  # noqa: E402
-import floe_validation_measures as measures  # noqa: E402
+import floe_validation_formulas as formulas  # noqa: E402
+import floe_validation_ice as ice  # noqa: E402
 import floe_validation_page as pages  # noqa: E402
+import floe_validation_sheets as sheets  # noqa: E402
 from floe_program import BadInput  # noqa: E402
-from floe_validation_measures import Found, Line  # noqa: E402
+from floe_validation_lines import Found, Line  # noqa: E402
 
 TOOL = str(REPOSITORY / "tools/validate")
 
@@ -26,32 +28,32 @@ TOOL = str(REPOSITORY / "tools/validate")
 class Formulas(unittest.TestCase):
     def test_slope(self):
         """OpenFAST IceFloe's own test log, and bare ice."""
-        found = measures.iso_slope(1, 5, 60, 0.15, 0.7e6, 8e9, 3, ice=916.2, water=999.8)
+        found = formulas.iso_slope(1, 5, 60, 0.15, 0.7e6, 8e9, 3, ice=916.2, water=999.8)
         for part, value in (("H_B", 1.8441), ("H_R", 0.4083), ("H_L", 0.2097), ("H_T", 0.0426),
                             ("H_P", 0.0022), ("H", 2.660)):
             self.assertAlmostEqual(found[part] / 1e6, value, delta=6e-5 if part != "H" else 6e-4)
         for h, angle, load in ((0.5, 45, 0.255), (0.5, 55, 0.346), (0.5, 60, 0.423),
                                (1, 45, 0.909), (1, 55, 1.224), (1, 60, 1.494)):
             self.assertAlmostEqual(
-                measures.iso_slope(h, 10, angle, 0.1, 0.5e6, 4e9)["H"] / 1e6, load, delta=6e-4)
+                formulas.iso_slope(h, 10, angle, 0.1, 0.5e6, 4e9)["H"] / 1e6, load, delta=6e-4)
 
     def test_crushing(self):
-        self.assertAlmostEqual(measures.iso_crushing(1, 5, 2.2e6) * 5 / 1e6, 8.503, 3)
-        self.assertAlmostEqual(measures.iso_crushing(0.5, 4, 1.8e6) * 2 / 1e6, 3.406, 3)
+        self.assertAlmostEqual(formulas.iso_crushing(1, 5, 2.2e6) * 5 / 1e6, 8.503, 3)
+        self.assertAlmostEqual(formulas.iso_crushing(0.5, 4, 1.8e6) * 2 / 1e6, 3.406, 3)
 
     def test_beams_on_water(self):
         for h, loads in ((0.5, (7.54, 11.46, 14.71)), (1, (18.24, 27.94, 36.12))):
             for angle, load in zip((45, 55, 60), loads):
                 self.assertAlmostEqual(
-                    measures.first_failure(h, angle, 0.1, 5e5, 4e9) / 1e3, load, delta=0.006)
-        self.assertAlmostEqual(measures.edge_uplift(0.5, 5e5, 4e9) / (0.6804 * 5e5 * (
+                    formulas.first_failure(h, angle, 0.1, 5e5, 4e9) / 1e3, load, delta=0.006)
+        self.assertAlmostEqual(formulas.edge_uplift(0.5, 5e5, 4e9) / (0.6804 * 5e5 * (
             1010 * 9.81 * 0.5**5 / 4e9)**0.25), 1, 3)
 
     def test_floe_in_waves(self):
         """Long waves carry it along; in one of its own length it does not heave."""
-        for amplitude in measures.thin_floe(1, 1000, 0):
+        for amplitude in formulas.thin_floe(1, 1000, 0):
             self.assertAlmostEqual(amplitude, 1, 4)
-        self.assertAlmostEqual(measures.thin_floe(10, 10, 0.3)[0], 0, 9)
+        self.assertAlmostEqual(formulas.thin_floe(10, 10, 0.3)[0], 0, 9)
 
 
 class Verdicts(unittest.TestCase):
@@ -200,7 +202,7 @@ class Runs(FolderTest):
         for seed, first in ((1, 0.8), (2, 1.0)):
             run = self.folder / f"kept/row/runs/s00{seed}"
             run.mkdir(parents=True)
-            load = measures.edge_uplift(0.5, 5e5, 4e9) * 8 * first
+            load = formulas.edge_uplift(0.5, 5e5, 4e9) * 8 * first
             (run / "history.csv").write_text(f"time,beams_broken\n0,0\n{load / 6e4},1\n")
             (run / "summary.json").write_text('{"version": "9.9"}')
             (run / "options.yaml").write_text(
@@ -307,11 +309,11 @@ class Measures(FolderTest):
                  3.0 + time * (1e-5 + 1e-4 / (1 - time / 0.9))}
         run = self.made("free_s001", table, {"load_push_force": "8e6, 0, 0",
                                              "load_push_ramp": "1"})
-        self.assertAlmostEqual(measures.southwell(run, "nudge", 8) / 0.9e6, 1, 4)
+        self.assertAlmostEqual(sheets.southwell(run, "nudge", 8) / 0.9e6, 1, 4)
         short = {key: values[:40] for key, values in table.items()}
         run = self.made("short_s001", short, {})
         with self.assertRaisesRegex(BadInput, "does not grow enough"):
-            measures.southwell(run, "nudge", 8)
+            sheets.southwell(run, "nudge", 8)
 
     def test_ridging(self):
         """Forces proportional to h, with scatter that a seed shares."""
@@ -324,7 +326,7 @@ class Measures(FolderTest):
                     "time": time, "hold_force_x": force, "push_displacement_x": 0.5 * time,
                     "energy_gravity": -time, "energy_water": time + abs(force) * time / 30},
                     {"sheet_thickness": str(h), "sheet_width": "12"}))
-        found = measures.ridging(runs, {"start": 5, "published_ratio": 15,
+        found = ice.ridging(runs, {"start": 5, "published_ratio": 15,
                                         "allowed_ratio": [10, 20]})
         np.testing.assert_allclose(found.lines[0].values, 1, rtol=1e-9)
         self.assertEqual(found.lines[0].verdict, "agrees")

@@ -68,11 +68,11 @@ void expect_same_as_among_copies(const SheetPlan& plan, const std::vector<Point2
   }
   double area = 0;
   for (std::int32_t k = 0; k < n; ++k)
-    area += plan_properties(std::span(own.vertices)
-                                .subspan(static_cast<std::size_t>(own.offset[k]),
-                                         static_cast<std::size_t>(own.offset[k + 1] -
-                                                                  own.offset[k])))
-                .area;
+    area +=
+        plan_properties(std::span(own.vertices)
+                            .subspan(static_cast<std::size_t>(own.offset[k]),
+                                     static_cast<std::size_t>(own.offset[k + 1] - own.offset[k])))
+            .area;
   EXPECT_NEAR(area, plan.length * plan.width, 1e-9 * area);
 }
 

@@ -96,7 +96,8 @@ struct Tessellation {
 /// options of the quasi-Newton solver have the prefix mesh_ (-mesh_tao_monitor). \param
 /// on_iteration  called after each sweep with its number and the largest move over l; by
 /// quasi_newton after each accepted step, with the number of evaluations so far (may be empty)
-/// \throws InputError if there would be more than 1e8 cells, or if a periodic plan is so narrow that
+/// \throws InputError if there would be more than 1e8 cells, or if a periodic plan is so narrow
+/// that
 ///   cells meet others at both sides
 Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
                         const std::function<void(int, double)>& on_iteration = {});
