@@ -104,9 +104,10 @@ class Supports final : public Force<Spatial>,
       const bool here = held.local >= 0;
       const std::string& name = held.support.name;
       const auto of_three = [&](const std::string& what, const Vec3<double>& v) {
-        columns.add(name + what + "x", here ? v.x : 0.0);
-        columns.add(name + what + "y", here ? v.y : 0.0);
-        columns.add(name + what + "z", here ? v.z : 0.0);
+        const Vec3<double> shown = here ? v + Vec3<double>{} : Vec3<double>{};  // no -0
+        columns.add(name + what + "x", shown.x);
+        columns.add(name + what + "y", shown.y);
+        columns.add(name + what + "z", shown.z);
       };
       const auto b = static_cast<std::size_t>(std::max(held.local, 0));
       const Vec3<double> w = here ? angular_velocity(state, b) : Vec3<double>{};

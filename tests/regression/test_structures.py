@@ -1,0 +1,275 @@
+#!/usr/bin/python3
+"""Structures: obstacles with a mass, which contacts, supports, loads and water move."""
+import csv
+import sys
+import unittest
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.optimize import curve_fit
+
+from launch import REPOSITORY
+from scene_runs import SceneTest
+from test_restart import contents
+
+sys.path.insert(0, str(REPOSITORY / "tools"))
+import floe_lattice as fl  # noqa: E402
+
+# A leg beside ice that it never meets.
+ALONE = """integrator: explicit
+forces: [contact]
+lattice_file: block.h5
+contact: {young: 1e6}
+obstacle:
+  names: [leg]
+  leg: {shape: box, centre: [9, 0, 0], size: [2, 2, 6], mass: 5e4, SUPPORT}
+time: {end: 6, dt: 5e-4}
+output: {history: 2e-3}
+"""
+STIFFNESS = (2e6, 3e6, 4e6, 5e6, 6e6, 7e6)
+DIAGONAL = f"support_stiffness: {list(STIFFNESS)}"
+# Ice that drives against a leg on springs, breaks and slides past.
+ICE = """integrator: explicit
+forces: [beam, fracture, gravity, buoyancy, drag, contact]
+ice: {young: 4e8}
+sheet: {length: 12, width: 8, thickness: 0.5, element_size: 1, iterations: 20}
+beam: {damping_ratio: 0.1}
+fracture: {tensile_strength: 1e5, shear_strength: 1e5, energy: 15}
+water: {drag_linear: 200, current: [1, 0, 0]}
+contact: {young: 1e7, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
+obstacle:
+  names: [leg]
+  leg: {shape: cylinder, base: [7.6, 0, -3], radius: 1.5, height: 5, friction: 0.1, LEG}
+boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [1, 0, 0], ramp: 0.1}}
+time: {end: 1.5, dt: 2e-4}
+output: {history: 0.02, fields: 0.5}
+checkpoint: {every: 1000}
+"""
+SOFT = ("mass: 2e4, support_stiffness: [2e6, 2e6, 1e7, 1e7, 1e7, 1e7], "
+        "support_damping_ratio: 0.02")
+
+
+def rows_of(folder):
+    with open(folder / "history.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+class StructureTest(SceneTest):
+    def setUp(self):
+        super().setUp()
+        fl.blocks(np.array([[1.0, 1, 1]]), np.array([[0.0, 0, 0]])).write(
+            self.folder / "block.h5")
+
+    def rows(self, scene, *words, name="s"):
+        self.run_scene(scene.replace(", SUPPORT", ""), *words, name=name)
+        return rows_of(self.folder / "out" / name)
+
+
+class OneDegree(StructureTest):
+    def test_frequency_and_decrement(self):
+        """f = sqrt(k/m)/(2 pi) to 1e-4, damping to 1e-3, in every component by itself."""
+        about_x = 5e4 * (2 ** 2 + 6 ** 2) / 12
+        inertia = [5e4] * 3 + [about_x, about_x, 5e4 * 8 / 12]
+        for component, (stiffness, mass) in enumerate(zip(STIFFNESS, inertia)):
+            name = ("leg_x", "leg_y", "leg_z", "leg_rx", "leg_ry", "leg_rz")[component]
+            kick = [0.0] * 3
+            kick[component % 3] = 0.01
+            key = "velocity" if component < 3 else "angular_velocity"
+            scene = (ALONE.replace("SUPPORT", DIAGONAL + ", support_damping_ratio: 0.02")
+                     + f"initial: {{names: [kick], kick: {{set: leg, {key}: {kick}}}}}\n")
+            rows = self.rows(scene, name=name)
+            rate = np.sqrt(stiffness / mass)
+
+            def motion(t, amplitude, zeta, w, phase):
+                return amplitude * np.exp(-zeta * w * t) * np.sin(
+                    w * np.sqrt(1 - zeta ** 2) * t + phase)
+            found, _ = curve_fit(motion, rows["time"], rows[name],
+                                 p0=[0.01 / rate, 0.02, rate, 0])
+            self.assertAlmostEqual(found[2] / rate, 1, delta=1e-4)
+            self.assertAlmostEqual(found[1] / 0.02, 1, delta=1e-3)
+            self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                            1e-9 * np.max(rows["energy_kinetic"]))
+            self.assertGreater(rows["energy_damping"][-1], 0.5 * rows["energy_kinetic"][0])
+
+    def test_offset_under_a_load(self):
+        scene = (ALONE.replace("SUPPORT", DIAGONAL + ", support_damping_ratio: 1")
+                 + "load: {names: [pull], pull: {set: leg, force: [1e5, -2e5, 3e5], ramp: 1}}\n")
+        rows = self.rows(scene)
+        for name, force, stiffness in zip(("leg_x", "leg_y", "leg_z"), (1e5, -2e5, 3e5),
+                                          STIFFNESS):
+            self.assertAlmostEqual(rows[name][-1] / (force / stiffness), 1, delta=1e-6)
+        self.assertAlmostEqual(rows["leg_support_force_y"][-1] / 2e5, 1, delta=1e-6)
+
+    def test_six_frequencies_of_a_matrix(self):
+        """A support off the centre, of a full matrix: each eigenvector of (K, M) swings by
+        itself."""
+        random = np.random.default_rng(3)
+        root = random.normal(size=(6, 6)) * np.sqrt(np.array(STIFFNESS))[:, None]
+        matrix = root @ root.T / 6 + np.diag(STIFFNESS)
+        point = np.array([0.5, -0.3, -3.0])  # from the centre
+        about = 5e4 * np.array([40, 40, 8]) / 12
+        mass = np.diag([5e4] * 3 + list(about))
+        # d = u + t x r and t of u, t at the centre.
+        cross = np.array([[0, point[2], -point[1]], [-point[2], 0, point[0]],
+                          [point[1], -point[0], 0]])
+        lever = np.block([[np.eye(3), cross], [np.zeros((3, 3)), np.eye(3)]])
+        rates2, vectors = eigh(lever.T @ matrix @ lever, mass)
+        support = (f"support_matrix: {[float(x) for x in matrix.ravel()]}, "
+                   f"support_point: {[9 + float(point[0]), float(point[1]), float(point[2])]}")
+        for k in range(6):
+            v = vectors[:, k] * 1e-3 / np.max(np.abs(vectors[:, k]))
+            scene = ALONE.replace("SUPPORT", support) + (
+                "initial: {names: [kick], kick: {set: leg, "
+                f"velocity: {[float(x) for x in v[:3]]}, "
+                f"angular_velocity: {[float(x) for x in v[3:]]}}}}}\n")
+            rows = self.rows(scene, name=f"k{k}")
+            rate = np.sqrt(rates2[k])
+            # The motion of the support's point and the turn are along lever v, as sin(rate t).
+            shape = lever @ v
+            motion = np.stack([rows[f"leg_{c}"] for c in ("x", "y", "z", "rx", "ry", "rz")])
+            along = shape @ motion / (shape @ shape)
+            apart = motion - np.outer(shape, along)
+            self.assertLess(np.max(np.abs(apart)), 2e-3 * np.max(np.abs(motion)))
+            found, _ = curve_fit(lambda t, a, w: a * np.sin(w * t), rows["time"], along,
+                                 p0=[1 / rate, rate])
+            self.assertAlmostEqual(found[1] / rate, 1, delta=1e-4)
+
+
+class Impact(StructureTest):
+    def test_free_structure_hit_by_a_block(self):
+        """Momentum to 1e-10; restitution of a central impact to 2 %."""
+        for restitution in (1.0, 0.4):
+            scene = (ALONE.replace("SUPPORT", "").replace("[9, 0, 0]", "[2.6, 0, 0]")
+                     .replace("size: [2, 2, 6]", "size: [2, 1, 1]").replace("5e4,", "2000")
+                     .replace("young: 1e6", f"young: 1e8, restitution: {restitution}")
+                     .replace("end: 6, dt: 5e-4", "end: 3")
+                     + "initial: {names: [go], go: {set: all, velocity: [1, 0, 0]}}\n")
+            rows = self.rows(scene, name=f"e{restitution}")
+            after = rows["leg_velocity_x"][-1]
+            self.assertAlmostEqual(rows["leg_x"][-1] - rows["leg_x"][-2],
+                                   after * (rows["time"][-1] - rows["time"][-2]), delta=1e-9)
+            # The block's speed by the kinetic energy of both; it has come back or goes on.
+            block = (920 - 2000 * after) / 920
+            kinetic = 0.5 * (920 * block ** 2 + 2000 * after ** 2)
+            self.assertAlmostEqual(rows["energy_kinetic"][-1] / kinetic, 1, delta=1e-10)
+            self.assertAlmostEqual((after - block) / restitution, 1, delta=0.02)
+
+    def test_prescribed_structure_is_the_obstacle_that_moves_so(self):
+        """A boundary that holds all of a structure makes the obstacle with that motion; a large
+        mass, since contacts' dashpots go with the mass of both."""
+        scene = ICE.replace("mass: 2e4, ", "")
+        fixed = rows_of(self.whole(scene.replace(", LEG", ", velocity: [-0.5, 0, 0]"), "fixed"))
+        held = self.whole(
+            scene.replace("LEG", "mass: 1e14").replace(
+                "boundary: {names: [push]", "boundary: {names: [push, drive], drive: {set: leg, "
+                "fix: x y z rx ry rz, velocity: [-0.5, 0, 0]}"), "held")
+        rows = rows_of(held)
+        self.assertGreater(np.max(np.abs(fixed["leg_force_x"])), 1e4)
+        early = fixed["time"] < 0.2  # later a rounding decides which beam breaks first
+        self.assertGreater(np.max(np.abs(fixed["leg_force_x"][early])), 1e4)
+        np.testing.assert_allclose(rows["leg_force_x"][early], fixed["leg_force_x"][early],
+                                   atol=1e-6 * np.max(np.abs(fixed["leg_force_x"])))
+
+    def whole(self, scene, name):
+        self.run_scene(scene, name=name)
+        return self.folder / "out" / name
+
+
+class Ice(StructureTest):
+    def test_ranks_and_restarts(self):
+        """Breaking ice against a leg on springs: the same bits on two ranks and after a stop."""
+        scene = ICE.replace("LEG", SOFT)
+        self.run_scene(scene, name="one")
+        self.run_scene(scene, name="two", ranks=2)
+        self.run_scene(scene, "-ts_max_steps", "3111", name="part")
+        self.run_scene(scene, "-checkpoint_restart", "out/part/checkpoint.h5", name="part")
+        one = contents(self.folder / "out/one/checkpoint.h5")
+        rows = rows_of(self.folder / "out/one")
+        self.assertGreater(np.max(np.abs(rows["leg_x"])), 1e-3)
+        self.assertGreater(rows["beams_broken"][-1], 3)
+        for name in ("two", "part"):
+            other = contents(self.folder / f"out/{name}/checkpoint.h5")
+            for key in ("bodies/records", "force_5_contact/pairs"):
+                np.testing.assert_array_equal(one[key], other[key], f"{name} {key}")
+        two = rows_of(self.folder / "out/two")
+        for column in ("leg_x", "leg_ry", "leg_support_force_x"):
+            np.testing.assert_array_equal(rows[column], two[column])
+        np.testing.assert_allclose(rows["leg_force_x"], two["leg_force_x"], rtol=1e-12,
+                                   atol=1e-6)
+        self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                        1e-2 * np.max(rows["energy_boundary"]))
+
+    def test_stiff_and_soft(self):
+        """A support of a thousand times the ice's stiffness bears what the fixed leg bears until
+        chaos; a soft one lowers the first peak."""
+        peak = {}
+        for name, leg in (("fixed", ""), ("stiff", SOFT.replace("2e6, 2e6", "2e10, 2e10")),
+                          ("soft", SOFT.replace("2e6, 2e6", "1e5, 1e5").replace("2e4", "5e3"))):
+            scene = ICE.replace(", LEG" if not leg else "LEG", leg)
+            rows = self.rows(scene.replace("end: 1.5", "end: 0.5"), name=name)
+            peak[name] = rows["leg_peak_force_x"][-1]
+        self.assertAlmostEqual(peak["stiff"] / peak["fixed"], 1, delta=0.05)
+        self.assertLess(peak["soft"], 0.8 * peak["fixed"])
+
+
+class Floats(StructureTest):
+    def test_heave_and_roll(self):
+        """A box of half the water's density: heave by rho g A/(m + added), roll by rho g (I -
+        V BG) over I + added, to 1e-3."""
+        side, high = 4.0, 2.0
+        mass, g, rho = 0.5 * 1010 * side ** 2 * high, 9.81, 1010
+        scene = ALONE.replace("forces: [contact]", "forces: [gravity, buoyancy, contact]").replace(
+            "size: [2, 2, 6], mass: 5e4, SUPPORT",
+            f"size: [{side}, {side}, {high}], mass: {mass}, floats: true, "
+            "added_mass: [0, 0, 3e4, 2e4, 2e4, 0]").replace("dt: 5e-4", "dt: 1e-3") + (
+            "water: {density: 1010}\n"
+            "initial: {names: [kick], kick: {set: leg, velocity: [0, 0, 0.02], "
+            "angular_velocity: [0.01, 0, 0]}}\n")
+        rows = self.rows(scene.replace("end: 6", "end: 12"))
+        heave = np.sqrt(rho * g * side ** 2 / (mass + 3e4))
+        draft = high / 2
+        lever = draft / 2  # of weight above buoyancy
+        about = mass * (side ** 2 + high ** 2) / 12 + 2e4
+        roll = np.sqrt(rho * g * (side ** 4 / 12 - side ** 2 * draft * lever) / about)
+        for name, rate in (("leg_z", heave), ("leg_rx", roll)):
+            found, _ = curve_fit(lambda t, a, w: a * np.sin(w * t), rows["time"], rows[name],
+                                 p0=[0.01, rate])
+            self.assertAlmostEqual(found[1] / rate, 1, delta=1e-3, msg=name)
+
+    def test_a_structure_on_a_support_feels_no_water(self):
+        scene = ALONE.replace("forces: [contact]", "forces: [gravity, buoyancy, drag, contact]") + (
+            "water: {density: 1010, drag_linear: 100, current: [1, 0, 0]}\n")
+        rows = self.rows(scene.replace("SUPPORT", DIAGONAL))
+        for column in ("leg_x", "leg_z", "leg_rx", "leg_support_force_z"):
+            self.assertEqual(np.max(np.abs(rows[column])), 0, column)
+
+
+class Refused(StructureTest):
+    def test_what_does_not_go_together(self):
+        for support, part in (
+                ("velocity: [1, 0, 0]", "leg: velocity: does not go with 'mass'"),
+                ("support_damping_ratio: 0.1", "support_damping_ratio: would have no effect"),
+                ("support_point: [0, 0, 0]", "support_point: would have no effect"),
+                ("centre_of_mass: [0, 0, 0]", "centre_of_mass: needs 'inertia'"),
+                ("floats: true", "floats: needs gravity and buoyancy among 'forces'"),
+                ("support_matrix: [" + ", ".join(["1"] * 6 + ["2"] * 30) + "]",
+                 "it must be symmetric"),
+                (DIAGONAL + ", support_matrix: [" + ", ".join(["0"] * 36) + "]",
+                 "support_stiffness: 'support_matrix' says it")):
+            done = self.run_scene(ALONE.replace("SUPPORT", support), code=2)
+            self.assertIn(part, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for scene, part in (
+                (ALONE.replace("mass: 5e4, SUPPORT", DIAGONAL), "needs 'mass', by which"),
+                (ALONE.replace("SUPPORT", "").replace("leg", "all"), "'all' is the name of a set"),
+                (ALONE.replace("box, centre: [9, 0, 0], size: [2, 2, 6]",
+                               "halfspace, point: [9, 0, 0]").replace(", SUPPORT", ""),
+                 "mass: a halfspace is no body")):
+            done = self.run_scene(scene, code=2)
+            self.assertIn(part, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
