@@ -2,9 +2,10 @@
 
     dataset = ensemble([dataset_of("out/cone/seed1"), dataset_of("out/cone/seed2")])
 
-Dimensions: run, time, obstacle, axis (x y z), fragment. Times are the multiples of `output:
-history` at which rows are due, so that runs join; `sample_time` has the instants themselves, up to
-a step later. What one run has and another lacks is nan. SI units.
+Dimensions: run, time, obstacle, axis (x y z), fragment; if asked for, frame and body. Times are the
+multiples of `output: history` at which rows are due, so that runs join; `sample_time` has the
+instants themselves, up to a step later. What one run has and another lacks is nan, and so is a body
+in frames in which it does not exist (CF 9.3.2, incomplete multidimensional arrays). SI units.
 """
 import re
 from pathlib import Path
@@ -12,9 +13,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+import floe_breaks
 import floe_loads
 import floe_program
-from floe_output import options_of, summary_of
+from floe_output import Output, has_changes, options_of, summary_of
 from floe_program import BadInput, reading
 
 with floe_program.packages():
@@ -22,10 +24,12 @@ with floe_program.packages():
     import xarray
 
 CONVENTIONS = "CF-1.8"
-UNITS = ((r"^energy_", "J"), (r"_force_[xyz]$", "N"), (r"_moment_[xyz]$", "N m"),
-         (r"_displacement_[xyz]$", "m"), (r"_rotation_[xyz]$", "rad"))
+UNITS = ((r"^energy_", "J"), (r"^mass_", "kg"), (r"^momentum_", "kg m s-1"),
+         (r"_force_[xyz]$", "N"), (r"_moment_[xyz]$", "N m"), (r"_displacement_[xyz]$", "m"),
+         (r"_rotation_[xyz]$", "rad"))
 LABELS = {"force": ("N", "force on the obstacle at this instant"),
           "moment": ("N m", "moment on the obstacle about its point at this instant")}
+AXIS = ("axis", np.array(list("xyz"), object), {"long_name": "axis of the world, z up"})
 
 
 def interval_of(options):
@@ -96,8 +100,12 @@ def of_fragments(folder):
     path = Path(folder) / "breaks.h5"
     if not path.exists():
         return {}
-    with reading(path), h5py.File(path) as file:
-        mass, bodies = file["fragments/mass"][:], file["fragments/bodies"][:]
+    if has_changes(folder):  # of the last frame: a run that was killed may have other breaks
+        found = floe_breaks.at_end(Output(folder))
+        mass, bodies = found["fragments/mass"], found["fragments/bodies"]
+    else:
+        with reading(path), h5py.File(path) as file:
+            mass, bodies = file["fragments/mass"][:], file["fragments/bodies"][:]
     order = np.argsort(-mass, kind="stable")
     return {"fragment_mass": variable(("run", "fragment"), mass[order][None], "kg",
                                       "mass of a piece at the end, the heaviest first"),
@@ -105,9 +113,44 @@ def of_fragments(folder):
                                         "number of bodies of a piece at the end")}
 
 
-def dataset_of(folder, name=None):
+def of_bodies(folder):
+    """Variables of the bodies in the frames (run, frame, body, axis), and their coordinates."""
+    output = Output(folder)
+    if not len(output.times):
+        raise BadInput(f"{folder} has no frame yet")
+    names = np.unique(np.concatenate([output.at(time).names
+                                      for time in output.times[output.last_frames()]]))
+    shape = len(output.times), len(names)
+    place, turn, mass = (np.full(size, np.nan) for size in ((*shape, 3), (*shape, 3), shape[1]))
+    piece = np.full(shape, np.nan)
+    for k, time in enumerate(output.times):
+        ice = output.at(time)
+        rows = np.searchsorted(names, ice.names)
+        place[k, rows], turn[k, rows] = (output.field("centres", time),
+                                         output.field("bodies_rotation", time))
+        mass[rows] = ice.mass
+        if output.has_field("damage", time):
+            whole = output.field("damage", time) < 1
+            piece[k, rows] = floe_breaks.fragments(ice, whole)["fragments/of_body"]
+    dims, axes = ("run", "frame", "body"), ("run", "frame", "body", "axis")
+    found = {"frame_time": variable(dims[:2], output.times[None], "s",
+                                    "time of the frame since the start of the run"),
+             "body_mass": variable(("run", "body"), mass[None], "kg", "mass of the body"),
+             "body_position": variable(axes, place[None], "m", "place of the body's centroid"),
+             "body_rotation": variable(axes, turn[None], "rad",
+                                       "rotation vector of the body from rest")}
+    if not np.all(np.isnan(piece)):
+        found["body_fragment"] = variable(dims, piece[None], "1", "rank by mass of the piece that "
+                                          "has the body in this frame")
+    return found, {"frame": variable("frame", np.arange(len(output.times)), "1",
+                                     "number of the frame"),
+                   "body": variable("body", names, "1", "name of the body, its number in the run"),
+                   "axis": AXIS}
+
+
+def dataset_of(folder, name=None, bodies=False):
     """A run as a dataset with a dimension run of length 1, called `name` (default: the folder's
-    name)."""
+    name). bodies: with those of the frames."""
     folder = Path(folder)
     table, options, summary = floe_loads.history(folder), options_of(folder), summary_of(folder)
     if not len(table):
@@ -138,8 +181,10 @@ def dataset_of(folder, name=None):
     if names:
         coordinates["obstacle"] = ("obstacle", np.array(names, object),
                                    {"long_name": "name of the obstacle"})
-        coordinates["axis"] = ("axis", np.array(list("xyz"), object),
-                               {"long_name": "axis of the world, z up"})
+        coordinates["axis"] = AXIS
+    if bodies:
+        of_frames, its = of_bodies(folder)
+        variables, coordinates = variables | of_frames, coordinates | its
     if "fragment_mass" in variables:
         number = variables["fragment_mass"][1].shape[1]
         coordinates["fragment"] = variable("fragment", np.arange(number), "1",
@@ -199,8 +244,9 @@ def write(dataset, path):
                 for name, data in dataset.data_vars.items() if data.dtype.kind == "f"}
     encoding |= {name: {"_FillValue": None} for name, data in dataset.coords.items()
                  if data.dtype.kind == "f"}
-    if "fragment_bodies" in dataset:
-        encoding["fragment_bodies"] |= {"dtype": "int32", "_FillValue": -1}
+    for name in ("fragment_bodies", "body_fragment"):
+        if name in dataset:
+            encoding[name] |= {"dtype": "int32", "_FillValue": -1}
     path = Path(path)
     part = path.with_name(f".{path.name}.part")
     dataset.to_netcdf(part, format="NETCDF4", engine="netcdf4", encoding=encoding)

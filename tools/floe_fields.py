@@ -4,9 +4,9 @@ depth and porosity against distance, sizes of fragments. SI units; z = 0 is stil
 Shapes are those of the bodies at rest in their places of the frame: what a body has lost by wear is
 not taken off, so areas of contact are upper, pressures lower bounds once ice has crushed.
 """
-import h5py
 import numpy as np
 
+import floe_breaks
 import floe_loads
 import floe_program
 from floe_obstacles import obstacles
@@ -25,8 +25,9 @@ class Bodies:
     """The bodies' polyhedra in a frame: planes n x <= d of all faces, one body after another."""
 
     def __init__(self, output, time):
-        self.points, shapes = output.polyhedra(time)
+        shapes = output.at(time).shapes
         self.vertex_of, self.face_of = shapes["vertex_of"], shapes["face_of"]
+        self.points = output.field("points", time)
         corner_of, corners = shapes["corner_of"], shapes["corners"]
         first = self.points[corners[corner_of[:-1]]]
         # twice the area vector of each face (Newell's method)
@@ -112,8 +113,8 @@ def placed(obstacle, k):
 def obstacle_of(output, name, times):
     """The obstacle of a run's scene, with its places at these times; planes reach 10 m beyond the
     ice."""
-    low = output.position.min(axis=0) - [10, 10, 10]
-    high = output.position.max(axis=0) + [10, 10, 10]
+    low, high = output.box()
+    low, high = low - [10, 10, 10], high + [10, 10, 10]
     return next(o for o in obstacles(output.options(), low, high, times) if o["name"] == name)
 
 
@@ -286,12 +287,11 @@ def profile_in_bins(found):
 
 def fragments(output):
     """Masses [kg] and bodies of the pieces at the end without the heaviest, which is the sheet;
-    empty where nothing could break."""
-    path = output.folder / "breaks.h5"
-    if not path.exists():
+    empty where nothing could break. Pieces that have left are none of them."""
+    found = floe_breaks.at_end(output)
+    if not found:
         return np.zeros(0), np.zeros(0, int)
-    with floe_program.reading(path), h5py.File(path) as file:
-        mass, bodies = file["fragments/mass"][:], file["fragments/bodies"][:]
+    mass, bodies = found["fragments/mass"], found["fragments/bodies"]
     kept = np.arange(len(mass)) != np.argmax(mass)
     return mass[kept], bodies[kept]
 

@@ -534,13 +534,18 @@ def matrices(turn):
 def settled(folder):
     """The bodies of the last frame of a run, at rest, and the beams between them that are whole, as
     stress-free as they then lie; sets stay. folder: of the run's results."""
-    from floe_output import frames_of
+    from floe_output import Output, frames_of, has_changes
     folder = Path(folder)
     lattice = read(folder / "lattice.h5")
     frames = frames_of(folder)
     if not frames:
         raise ValueError(f"{folder}: has no frames")
-    _, path, group = frames[-1]
+    time, path, group = frames[-1]
+    if has_changes(folder):  # then lattice.h5 has the first bodies only
+        from floe_supply_lattice import lattice_of
+        output = Output(folder)
+        ice = output.at(time)
+        lattice = lattice if ice is output else lattice_of(ice, output.options())
     with h5py.File(path) as file:
         move, turn = file[group]["bodies_displacement"][:], file[group]["bodies_rotation"][:]
         damage = file[group]["damage"][:] if "damage" in file[group] else None

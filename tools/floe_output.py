@@ -2,7 +2,8 @@
 """Reads an output folder of floe: summary.json, options.yaml, lattice.h5, history.csv, fields. SI
 units everywhere.
 
-Also that of a run that is under way, was killed or has failed: what is there is whole.
+Also that of a run that is under way, was killed or has failed: what is there is whole. Where ice
+joins and leaves (supply) Output.at(time) has the ice of a frame; one frame is read at a time.
 """
 import csv
 import json
@@ -13,6 +14,7 @@ import h5py
 import numpy as np
 
 from floe_program import BadInput, reading
+from floe_supply import ice_of
 
 # name: dataset of a time group of fields.h5, its column (None: length of the vector), unit, label
 BODY_QUANTITIES = {
@@ -40,8 +42,15 @@ def matrices(quaternions):
     return np.moveaxis(np.array(rows), 2, 0)
 
 
+def rotations(vectors):
+    """Rotation matrices n x 3 x 3 of rotation vectors n x 3."""
+    angle = np.linalg.norm(vectors, axis=1)
+    half = np.sinc(angle / 2 / np.pi) / 2  # sin(angle/2)/angle
+    return matrices(np.column_stack([np.cos(angle / 2), vectors * half[:, None]]))
+
+
 class Lattice:
-    """A lattice.h5."""
+    """A lattice.h5. names: of the bodies, which they keep while others join and leave."""
 
     def __init__(self, path):
         with reading(path), h5py.File(path) as file:
@@ -51,6 +60,7 @@ class Lattice:
             self.beams = {name: data[:] for name, data in file.get("beams", {}).items()}
             self.sets = {name: data[:] for name, data in file.get("sets", {}).items()}
             self.shapes = {name: data[:] for name, data in file.get("shapes", {}).items()}
+        self.names = np.arange(len(self.position))
 
     def plans(self):
         """Per body the corners k x 2 [m], seen from above, of its most upward face, in the
@@ -68,6 +78,13 @@ class Lattice:
         top = order[self.shapes["face_of"][1:] - 1]
         ends = self.shapes["corner_of"]
         return [placed[corners[ends[f]:ends[f + 1]], :2] for f in top]
+
+
+class Present(Lattice):
+    """The lattice of the bodies of a frame, at rest. arrays: floe_supply.ice_of."""
+
+    def __init__(self, arrays):
+        vars(self).update(arrays)
 
 
 def frames_of(folder):
@@ -127,24 +144,14 @@ def summary_of(folder):
         return json.loads(path.read_text()) if path.exists() else {}
 
 
-def shapes_of(topology, body_of_face, vertices):
-    """Shapes as in lattice.h5 of XDMF's polygons (3, number of corners, corners, of each face) and
-    the body of each face, both in the order of the bodies."""
-    corner_of, corners, at = [0], [], 0
-    while at < len(topology):
-        number = int(topology[at + 1])
-        corners.append(topology[at + 2:at + 2 + number])
-        corner_of.append(corner_of[-1] + number)
-        at += 2 + number
-    face_of = np.searchsorted(body_of_face, np.arange(body_of_face[-1] + 2))
-    corner_of, corners = np.array(corner_of), np.concatenate(corners)
-    vertex_of = np.minimum.reduceat(corners, corner_of[face_of[:-1]])
-    return {"vertex_of": np.append(vertex_of, vertices), "face_of": face_of,
-            "corner_of": corner_of, "corners": corners}
+def has_changes(folder):
+    """Whether ice has joined or left in a run (supply)."""
+    return any(Path(folder).glob("fields/mesh_*.h5"))
 
 
 class Output(Lattice):
-    """An output folder. Arrays of bodies and beams are in the order of its lattice.h5."""
+    """An output folder. Its arrays of bodies and beams are those of its lattice.h5, the first ones;
+    where ice joins and leaves (`changes`), those of a frame are at(time)."""
 
     def __init__(self, folder):
         self.folder = Path(folder)
@@ -152,6 +159,97 @@ class Output(Lattice):
         super().__init__(self.folder / "lattice.h5")
         self._frames = frames_of(self.folder)
         self.times = np.array([time for time, _, _ in self._frames])
+        # per frame the first one that has the same bodies
+        self.meshes = np.zeros(len(self._frames), int)
+        if has_changes(self.folder):
+            self.meshes[:] = [self._mesh_number(*frame[1:]) for frame in self._frames]
+        is_there = (self.folder / "options.yaml").exists()
+        if has_changes(self.folder) or is_there and "supply_strip" in self.options():
+            self._require_meshes()
+        self._present = self._pairs = (0, None)
+
+    @property
+    def changes(self):
+        """Whether some frames are of other bodies than lattice.h5."""
+        return bool(np.any(self.meshes))
+
+    def _require_meshes(self):
+        """Checks that each mesh has the bodies of its frames."""
+        for number in np.unique(self.meshes):
+            count, path = len(self.position), self.mesh_file(number)
+            if number > 0:
+                with reading(path), h5py.File(path) as file:
+                    count = len(file["mesh/name"])
+            for k in np.flatnonzero(self.meshes == number):
+                if self.count(self.times[k]) != count:
+                    raise BadInput(f"{self.folder}: the frame at {self.times[k]:g} s is of bodies "
+                                   "that joined or left (supply) and that no file in fields/ "
+                                   "tells of")
+
+    def count(self, time):
+        """Number of the bodies in the frame nearest to `time`."""
+        _, path, group = self._frames[self._number(time)]
+        with reading(path), h5py.File(path) as file:
+            return len(file[group]["centres"])
+
+    @staticmethod
+    def _mesh_number(path, group):
+        with reading(path), h5py.File(path) as file:
+            return int(file[group].attrs.get("mesh", 0))
+
+    def _number(self, time):
+        """Number of the frame nearest to `time`."""
+        if not self._frames:
+            raise BadInput(f"{self.folder} has no frame yet")
+        return int(np.argmin(np.abs(self.times - time)))
+
+    def at(self, time):
+        """The lattice of the bodies and beams that exist in the frame nearest to `time`, at rest:
+        fields of that frame are in its order."""
+        number = self._number(time)
+        mesh = self.meshes[number]
+        if mesh == 0:
+            return self
+        if self._present[0] != mesh:
+            _, path, group = self._frames[number]
+            of_mesh = self.mesh_file(mesh)
+            with reading(of_mesh), h5py.File(of_mesh) as shared, reading(path), h5py.File(
+                    path) as file:
+                frame = file[group]
+                turns = rotations(frame["bodies_rotation"][:])
+                self._present = mesh, Present(ice_of(shared["mesh"], frame, turns,
+                                                     len(self.position), self.options()))
+        return self._present[1]
+
+    def mesh_file(self, mesh):
+        """File of the bodies of the frames from number `mesh` > 0 on."""
+        return self.folder / f"fields/mesh_{mesh:06d}.h5"
+
+    def beam_names(self, time):
+        """Names m x 2 of the bodies of the beams of the frame nearest to `time`."""
+        mesh = self.meshes[self._number(time)]
+        if mesh == 0:
+            return self.beams.get("bodies", np.zeros((0, 2), int)).astype(np.int64)
+        if self._pairs[0] != mesh:
+            path = self.mesh_file(mesh)
+            with reading(path), h5py.File(path) as file:
+                names = file["mesh/name"][:].astype(np.int64)
+                self._pairs = mesh, names[file["mesh/beams"][:]]
+        return self._pairs[1]
+
+    def last_frames(self):
+        """Numbers of the last frames before other bodies: all that breaks in a frame of the same
+        bodies has broken by then."""
+        return np.flatnonzero(np.append(np.diff(self.meshes) != 0, True)[:len(self.meshes)])
+
+    def box(self):
+        """Corners low, high [m] of the box of the centroids at rest; where ice joins and leaves,
+        also of those in the first and the last frame."""
+        places = [self.position]
+        if self.changes:
+            places += [self.field("centres", time) for time in self.times[[0, -1]]]
+        return (np.min([p.min(axis=0) for p in places], axis=0),
+                np.max([p.max(axis=0) for p in places], axis=0))
 
     def nearest(self, time, parser):
         """Time of the frame nearest to `time` (None: the last one); ends the tool if the run has
@@ -165,34 +263,13 @@ class Output(Lattice):
 
     def field(self, name, time):
         """Dataset `name` of the sample nearest to `time`."""
-        if not self._frames:
-            raise BadInput(f"{self.folder} has no frame yet")
-        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
+        _, path, group = self._frames[self._number(time)]
         with reading(path), h5py.File(path) as file:
-            if "mesh" in file[group].attrs:
-                raise BadInput(f"{path}: since ice has joined or left (supply), the frame at "
-                               f"{file[group].attrs['time']:g} s is of other bodies than "
-                               "lattice.h5; ParaView shows it by fields.xmf")
             return file[group][name][:]
-
-    def polyhedra(self, time):
-        """Corners of all bodies of the sample nearest to `time`, v x 3 [m], and their shapes as in
-        lattice.h5 (vertex_of, face_of, corner_of, corners), which are others once ice has joined or
-        left (supply)."""
-        if not self._frames:
-            raise BadInput(f"{self.folder} has no frame yet")
-        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
-        with reading(path), h5py.File(path) as file:
-            mesh, points = file[group].attrs.get("mesh"), file[group]["points"][:]
-        if mesh is None:
-            return points, self.shapes
-        path = path.with_name(f"mesh_{int(mesh):06d}.h5")
-        with reading(path), h5py.File(path) as file:
-            return points, shapes_of(file["mesh/topology"][:], file["mesh/body"][:], len(points))
 
     def has_field(self, name, time):
         """Whether the sample nearest to `time` has the dataset `name`."""
-        _, path, group = self._frames[int(np.argmin(np.abs(self.times - time)))]
+        _, path, group = self._frames[self._number(time)]
         with reading(path), h5py.File(path) as file:
             return name in file[group]
 
@@ -205,7 +282,8 @@ class Output(Lattice):
     def beam_stress(self, name, time):
         """Values m [Pa] of a quantity of BEAM_STRESSES, and its label."""
         if name == "axial":
-            return self.field("beams_force", time)[:, 0] / self.beams["area"], BEAM_STRESSES[name]
+            area = self.at(time).beams["area"]
+            return self.field("beams_force", time)[:, 0] / area, BEAM_STRESSES[name]
         return self.field("beams_stress", time)[:,
                                                 {"tensile": 0,
                                                  "shear": 1}[name]], BEAM_STRESSES[name]

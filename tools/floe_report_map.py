@@ -108,7 +108,8 @@ def pressure_map(output, history, name, start):
     of surface [kPa], share of the impulse that is on it. None without forces."""
     rows = np.flatnonzero(history["time"] >= start)
     table = {key: values[rows] for key, values in history.items()}
-    low, high = output.position.min(axis=0) - 10, output.position.max(axis=0) + 10
+    low, high = output.box()
+    low, high = low - 10, high + 10
     obstacle = next(o for o in obstacles(output.options(), low, high, table["time"])
                     if o["name"] == name)
     _, at, force = action(obstacle, table, name)

@@ -5,22 +5,24 @@ import re
 
 import numpy as np
 
+import floe_breaks
 import floe_fields
 import floe_loads
 import floe_signals as signals
 from floe_output import Output
 from floe_program import BadInput
 from floe_report_map import action, pressure_map
-from floe_report_scene import breaks_of, obstacles_of, scene_of
+from floe_report_scene import obstacles_of, scene_of
 from floe_report_series import energy_unit, rounded, series, unit_of
 
 LOSSES = {"damping": "damping of beams", "drag": "drag of the water", "fracture": "fracture",
           "contact_viscous": "dashpots of contacts", "friction": "friction",
           "crushing": "crushing", "released": "released by breaks",
-          "numerical": "numerical damping"}
+          "numerical": "numerical damping", "removed": "with ice that left"}
 STORED = {"kinetic": "motion", "strain": "beams", "gravity": "gravity", "water": "buoyancy",
           "contact": "springs of contacts"}
-INPUT = {"boundary": "work of boundaries and obstacles", "external": "work of loads"}
+INPUT = {"boundary": "work of boundaries and obstacles", "external": "work of loads",
+         "supplied": "with ice that joined"}
 NO_TERM = ("load", "balance_error")  # of the balance; every other energy is stored
 COLOURS = ["#22577a", "#c1440e", "#4c956c", "#8a5a9e", "#b8860b", "#5c677d", "#d1495b", "#2a9d8f"]
 
@@ -73,7 +75,9 @@ def rows_of_facts(output):
              ("forces", options.get("forces", "")),
              ("ice", " x ".join(filter(None, sheet)) + " m" if any(sheet) else
               options.get("lattice_file", "")),
-             ("bodies, beams", f"{len(output.position):,}, {summary.get('beams', 0):,}"),
+             ("bodies, beams", f"{summary.get('bodies', len(output.position)):,}, "
+              f"{summary.get('beams', 0):,}" + " at the end" * output.changes),
+             ("ice that joined and left", supply_in_words(summary.get("supply"))),
              ("time", f"to {number(summary.get('time'))} s, {summary.get('steps', 0):,} "
               f"step{'s' * (summary.get('steps') != 1)} of {number(summary.get('dt'))} s"
               if "time" in summary else ""),
@@ -81,6 +85,14 @@ def rows_of_facts(output):
              ("obstacles", ", ".join(f"{name} ({options.get(f'obstacle_{name}_shape')})" for name in
                                      options.get("obstacle_names", "").replace(",", " ").split()))]
     return [[what, value] for what, value in found if value and value.strip(" ,;")]
+
+
+def supply_in_words(supply):
+    """supply: of summary.json, or None."""
+    if not supply:
+        return ""
+    return "; ".join(f"{int(supply[f'bodies_{key}']):,} bodies of {supply[f'mass_{key}']:,.0f} kg "
+                     f"{word}" for key, word in (("supplied", "joined"), ("removed", "left")))
 
 
 def number(value, digits=4):
@@ -155,6 +167,7 @@ def reactions_of(output, history):
     """Forces that named boundaries take, over time: [series], their unit."""
     names = [key.removesuffix("_displacement_x") for key in history
              if key.endswith("_displacement_x")]
+    names += [name for name in ("far_edge",) if f"{name}_force_x" in history]
     found = []
     for name in names:
         for axis in "xyz":
@@ -202,7 +215,7 @@ def energies_of(history):
 
 def fragments_of(output, history):
     """Pieces over time and at the end; None where nothing could break."""
-    breaks = breaks_of(output.folder)
+    breaks = floe_breaks.at_end(output)
     if not breaks:
         return None
     mass = np.sort(breaks["fragments/mass"])[::-1]
@@ -235,13 +248,16 @@ def forces_of(output, history):
                       "at": [p if np.isfinite(p[0]) else None for p in at]})
     options = output.options()
     for name in options.get("boundary_names", "").replace(",", " ").split():
-        bodies = output.sets.get(options.get(f"boundary_{name}_set", ""))
-        if bodies is None or f"{name}_displacement_x" not in table:
+        own = options.get(f"boundary_{name}_set", "")
+        if own not in output.sets or f"{name}_displacement_x" not in table:
             continue
+        rest = np.array([ice.position[ice.sets[own]].mean(axis=0)
+                         for ice in map(output.at, output.times)]) if output.changes else (
+            output.position[output.sets[own]].mean(axis=0))
         force, way = (np.column_stack([table[f"{name}_{what}_{axis}"] for axis in "xyz"])
                       for what in ("force", "displacement"))
         found.append({"name": name, "kind": "boundary", "force": force,
-                      "at": list(output.position[bodies].mean(axis=0) + way)})
+                      "at": list(rest + way)})
     return found
 
 

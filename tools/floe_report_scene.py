@@ -4,24 +4,17 @@ cracks, obstacles, forces. SI units; whole numbers count steps that the scene st
 Places are about `origin`. Each body's corners, faces and orientation are those at rest, its pose at
 a frame is a displacement of its centroid and a rotation vector from rest.
 """
-import h5py
 import numpy as np
 
+import floe_breaks
 from floe_obstacles import obstacles
-from floe_output import frames_of, matrices
-from floe_program import reading
+from floe_output import matrices
 from floe_report_arrays import pack
+from floe_report_cast import Cast
 
 FRAMES = 200             # at most, if not told otherwise
 TRIANGLES = 1_800_000    # of bodies; cracks, obstacles and arrows have the rest of 2 million
 TURN_STEP = 1e-3         # [rad]
-
-
-def rotations(vectors):
-    """Rotation matrices n x 3 x 3 of rotation vectors n x 3."""
-    angle = np.linalg.norm(vectors, axis=1)
-    half = np.sinc(angle / 2 / np.pi) / 2  # sin(angle/2)/angle
-    return matrices(np.column_stack([np.cos(angle / 2), vectors * half[:, None]]))
 
 
 def chosen(count, most):
@@ -37,15 +30,14 @@ def triangles_of(shapes):
     return np.add.reduceat(sides, shapes["face_of"][:-1])
 
 
-def kept_bodies(output, places):
+def kept_bodies(cast, places):
     """Indices of the bodies that are shown: all, or those nearest to obstacles where their
     triangles would be too many."""
-    triangles = triangles_of(output.shapes)
+    triangles = triangles_of(cast.ice.shapes)
     if triangles.sum() <= TRIANGLES:
         return np.arange(len(triangles))
-    centres = np.array(places) if len(places) else output.position.mean(axis=0)[None]
-    distance = np.min([np.linalg.norm(output.position - c, axis=1) for c in centres], axis=0)
-    order = np.argsort(distance, kind="stable")
+    centres = np.array(places) if len(places) else cast.output.position.mean(axis=0)[None]
+    order = np.argsort(cast.nearest(centres), kind="stable")
     number = np.searchsorted(np.cumsum(triangles[order]), TRIANGLES, side="right")
     return np.sort(order[:number])
 
@@ -63,10 +55,10 @@ def step_of(size):
     return float(power * max(s for s in (1, 2, 5) if s * power <= exact * (1 + 1e-9)))
 
 
-def shapes_of(output, bodies, step):
+def shapes_of(ice, bodies, step):
     """Corners at rest about each body's centroid, in the world's directions, and faces."""
-    shapes, corners, sizes, faces, counts = output.shapes, [], [], [], []
-    turn = matrices(output.orientation)
+    shapes, corners, sizes, faces, counts = ice.shapes, [], [], [], []
+    turn = matrices(ice.orientation)
     for body in bodies:
         v = slice(*shapes["vertex_of"][body:body + 2])
         corners.append(shapes["vertices"][v] @ turn[body].T)
@@ -80,67 +72,51 @@ def shapes_of(output, bodies, step):
             "faces": pack(np.concatenate(faces)[None])}
 
 
-def poses_of(output, bodies, frames, places, step):
+def poses_of(cast, bodies, places, step):
     """Displacements and rotation vectors of the bodies, frames x 6 x bodies, in steps. places: 3 x
     bodies, exact ones at rest, in steps; the displacements are from them rounded, so that places at
-    a frame are right to half a step."""
-    found = np.empty((len(frames), 6, len(bodies)), np.int64)
-    for k, time in enumerate(output.times[frames]):
-        moved = places + output.field("bodies_displacement", time)[bodies].T / step
-        found[k, :3] = np.rint(moved) - np.rint(places)
-        found[k, 3:] = np.rint(output.field("bodies_rotation", time)[bodies].T / TURN_STEP)
-    return found
+    a frame are right to half a step. A body that does not exist is where it was last, or will be
+    first."""
+    found = np.empty((len(cast.times), 6, len(bodies)), np.int64)
+    present = np.zeros((len(cast.ice.position), 6))
+    for k, time in enumerate(cast.times):
+        values, rows = cast.values(time)
+        present[rows] = values
+        found[k, :3] = np.rint(places + present[bodies, :3].T / step) - np.rint(places)
+        found[k, 3:] = np.rint(present[bodies, 3:].T / TURN_STEP)
+    if cast.life is None:
+        return found
+    frame = np.maximum(np.arange(len(found))[:, None], cast.life[0, bodies])
+    return np.take_along_axis(found, frame[:, None], axis=0)
 
 
-def beams_of(output, bodies, breaks):
+def in_milliseconds(times):
+    """-1: never."""
+    return np.where(np.isnan(times), -1, np.rint(1000 * np.nan_to_num(times))).astype(int)
+
+
+def beams_of(cast, bodies, breaks):
     """Beams between bodies that are shown: their ends, and the time of their break in ms (-1:
     none)."""
-    pairs = output.beams.get("bodies", np.zeros((0, 2), int)).astype(int)
-    number = np.full(len(output.position), -1)
+    pairs, ended = cast.beams(breaks)
+    number = np.full(len(cast.ice.position), -1)
     number[bodies] = np.arange(len(bodies))
-    ended = np.full(len(pairs), -1, int)
-    if breaks:
-        ended[breaks["beam"]] = np.rint(1000 * breaks["time"]).astype(int)
     ends = number[pairs]
     inside = np.all(ends >= 0, axis=1) if len(pairs) else np.zeros(0, bool)
-    return pack(np.column_stack([ends, ended])[inside].T)
+    return pack(np.column_stack([ends, in_milliseconds(ended)])[inside].T)
 
 
-def breaks_of(folder):
-    """breaks.h5, or nothing if nothing could break or has."""
-    path = folder / "breaks.h5"
-    if not path.exists():
-        return {}
-    with reading(path), h5py.File(path) as file:
-        names = ("time", "beam", "fragments/of_body", "fragments/mass", "fragments/bodies")
-        return {name: file[name][:] for name in names}
-
-
-def cracks_of(output, bodies, breaks, step):
+def cracks_of(cast, bodies, breaks, step):
     """Faces of broken sections, each carried by a body that is shown: four corners about its
     centroid at rest, the body, and the time of the break in ms."""
-    none = {"corners": pack(np.zeros((1, 0))), "of": pack(np.zeros((2, 0)))}
-    frames = frames_of(output.folder)
-    if not breaks or not len(breaks["beam"]) or not frames:
-        return none
-    _, path, group = frames[-1]
-    with reading(path), h5py.File(path) as file:
-        if "cracks" not in file[group]:
-            return none
-        beam, faces, points, shift, turn = (file[group][name][:] for name in (
-            "crack_beam", "cracks", "crack_points", "bodies_displacement", "bodies_rotation"))
-    # two faces per broken beam, the first of its first body
-    carrier = output.beams["bodies"][beam, np.arange(len(beam)) % 2].astype(int)
-    place = output.position[carrier] + shift[carrier]
-    about = points[faces] - place[:, None]
-    corners = np.einsum("fij,fki->fkj", rotations(turn[carrier]), about)  # turned back
-    time = dict(zip(breaks["beam"].tolist(), breaks["time"]))
-    number = np.full(len(output.position), -1)
+    corners, carrier, ended = cast.cracks(breaks)
+    if not len(corners):
+        return {"corners": pack(np.zeros((1, 0))), "of": pack(np.zeros((2, 0)))}
+    number = np.full(len(cast.ice.position) + 1, -1)  # the last: of what is not in the cast
     number[bodies] = np.arange(len(bodies))
     shown = number[carrier] >= 0
-    ended = np.array([1000 * time.get(b, 0) for b in beam.tolist()])
     return {"corners": pack(np.rint(corners[shown] / step).astype(int).reshape(1, -1)),
-            "of": pack(np.rint(np.column_stack([number[carrier], ended])[shown]).astype(int).T)}
+            "of": pack(np.column_stack([number[carrier], in_milliseconds(ended)])[shown].T)}
 
 
 def obstacles_of(output, times):
@@ -148,7 +124,7 @@ def obstacles_of(output, times):
     the ice."""
     if not len(times) or not output.shapes:
         return []
-    places = [output.position + output.field("bodies_displacement", t)
+    places = [output.at(t).position + output.field("bodies_displacement", t)
               for t in (times[0], times[-1])]
     room = 2 * size_of(output)
     low = np.min([p.min(axis=0) for p in places], axis=0) - [room, room, 2]
@@ -174,25 +150,32 @@ def scene_of(output, forces, most):
     frames = chosen(len(output.times), most)
     times = output.times[frames]
     around = obstacles_of(output, times)
-    bodies = kept_bodies(output, [np.mean(o["points"], axis=0) for o in around])
+    cast = Cast(output, frames)
+    ice = cast.ice
+    bodies = kept_bodies(cast, [np.mean(o["points"], axis=0) for o in around])
     size = size_of(output)
-    step, origin = step_of(size), np.round(output.position[bodies].mean(axis=0), 3)
-    places = (output.position[bodies] - origin).T / step
-    breaks = breaks_of(output.folder)
+    step = step_of(size)
+    # about the first ice where more joins, which lies ever farther away at rest
+    middle = output.position if cast.life is not None else ice.position[bodies]
+    origin = np.round(middle.mean(axis=0), 3)
+    places = (ice.position[bodies] - origin).T / step
+    breaks = floe_breaks.at_end(output)
     options = output.options()
+    are_all = len(bodies) == len(ice.position) and cast.life is None
     return {
-        "bodies": len(bodies), "of_bodies": len(output.position), "size": size,
+        "bodies": len(bodies), "of_bodies": len(ice.position), "size": size,
         "step": step, "turn_step": TURN_STEP, "origin": origin.tolist(),
         "times": [round(float(t), 6) for t in times], "of_frames": len(output.times),
         "water": "buoyancy" in options.get("forces", ""),
         "current": [float(v) for v in options.get("water_current", "0, 0, 0").split(",")],
-        "ids": None if len(bodies) == len(output.position) else pack(bodies[None]),
+        "ids": None if are_all else pack(ice.names[bodies][None]),
+        "life": None if cast.life is None else pack(cast.life[:, bodies]),
         "places": pack(np.rint(places).astype(int)),
-        "masses": [float(f"{m:.5g}") for m in output.mass[bodies]],
-        **shapes_of(output, bodies, step),
-        "poses": pack(poses_of(output, bodies, frames, places, step)),
-        "beams": beams_of(output, bodies, breaks),
-        "cracks": cracks_of(output, bodies, breaks, step),
+        "masses": [float(f"{m:.5g}") for m in ice.mass[bodies]],
+        **shapes_of(ice, bodies, step),
+        "poses": pack(poses_of(cast, bodies, places, step)),
+        "beams": beams_of(cast, bodies, breaks),
+        "cracks": cracks_of(cast, bodies, breaks, step),
         "obstacles": [about_origin(o, origin) for o in around],
         "arrows": arrows_of(forces, frames, origin),
     }

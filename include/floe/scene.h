@@ -126,6 +126,10 @@ struct Scene {
     Point3 velocity{};  ///< with absorbs: of the ice behind [m/s]
     Ramp ramp;          ///< of that velocity
     double spring = 0;  ///< with absorbs: length of ice of the spring's stiffness [m]; 0: none
+    /// With absorbs, in place of the velocity: mean pressure of the ice behind on the edge, which
+    /// rises by the ramp, and the time over which the edge's own mean velocity is taken [s].
+    std::optional<double> pressure;  // [Pa]
+    double response = 0;
   } supply;
   std::string mesh_file;  ///< file of the sheet's relaxed generators; empty: none
   double thickness = 1;   ///< of the sheet [m]; the mean of a random field

@@ -41,9 +41,8 @@ std::vector<std::uint8_t> edge_beams(const Lattice& lattice) {
 
 /// exp(4i phi) of a beam's direction phi in the plan.
 std::complex<double> fourfold(const Lattice& lattice, std::size_t m) {
-  const auto [i, j] = lattice.beams.bodies[m];
-  const Point3 &a = item(lattice.bodies.position, i), &b = item(lattice.bodies.position, j);
-  const std::complex<double> along(b[0] - a[0], b[1] - a[1]), square = along * along;
+  const Point3 way = chord(lattice.bodies, lattice.beams, static_cast<std::int32_t>(m));
+  const std::complex<double> along(way[0], way[1]), square = along * along;
   return square * square / std::norm(square);
 }
 

@@ -42,8 +42,8 @@ LatticeRatios lattice_ratios(const Lattice& lattice, Shear shear) {
     const auto i = static_cast<std::size_t>(beams.bodies[k][0]),
                j = static_cast<std::size_t>(beams.bodies[k][1]);
     const double l = beams.length[k], section = beams.area[k];
-    const Point3 &a = lattice.bodies.position[i], &b = lattice.bodies.position[j];
-    const std::complex<double> normal((b[0] - a[0]) / l, (b[1] - a[1]) / l);
+    const Point3 way = chord(lattice.bodies, beams, m);
+    const std::complex<double> normal(way[0] / l, way[1] / l);
     const std::complex<double> square = normal * normal, third = section * square * normal;
     unbalanced[i] += third, unbalanced[j] -= third;
     for (const std::size_t body : {i, j})

@@ -138,7 +138,7 @@ bool ExplicitRun<Space>::look_is_due() {
   // A step costs about one evaluation, the rates less than half of one.
   constexpr std::int64_t now_and_then = 100, least = 1000, share = 100;
   if (this->done() - last_look_ >= std::max(least, share * evaluations_)) return true;
-  if (!this->sampled() && this->done() % now_and_then != 0) return false;
+  if (!this->sampled_when_due() && this->done() % now_and_then != 0) return false;
   if (step_limit().dt < needed()) return true;
   const double rate = rate_estimate();
   return rate > last_rate_ && !(last_stable_ * (last_rate_ / rate) >= needed());

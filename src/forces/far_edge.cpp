@@ -1,6 +1,7 @@
 #include "forces/far_edge.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/collectives.h"
 #include "floe/base/item.h"
@@ -25,6 +26,8 @@ class Dashpots final : public FarEdge<Space>,
       areas_.push_back(edge.area);
     }
     forces_.resize(bodies_.size());
+    means_.resize(2 * bodies_.size());
+    lags_.resize(2 * bodies_.size());
     impulses_.resize(bodies_.size());
   }
 
@@ -36,15 +39,21 @@ class Dashpots final : public FarEdge<Space>,
   void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
     const std::array<double, 6> place = ice_.motion.value(state.time),
                                 rate = ice_.motion.rate(state.velocity_time);
+    const double pressure =
+        ice_.pressure ? *ice_.pressure * ice_.motion.ramp.value(state.time) : 0.0;
+    if (ice_.pressure && !has_means_) begin_means(state);
     power_ = 0;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const auto b = static_cast<std::size_t>(bodies_[k]);
       const Vec3<double> u = displacement(state, b), v = velocity(state, b);
+      const double x = ice_.pressure ? means_[2 * k] : rate[0],
+                   y = ice_.pressure ? means_[2 * k + 1] : rate[1];
       const Vec3<double> force =
-          areas_[k] *
-          Vec3<double>{ice_.normal * (rate[0] - v.x) + ice_.spring * (place[0] + ice_.offset - u.x),
-                       ice_.tangential * (rate[1] - v.y), 0};
+          areas_[k] * Vec3<double>{ice_.normal * (x - v.x) + pressure +
+                                       ice_.spring * (place[0] + ice_.offset - u.x),
+                                   ice_.tangential * (y - v.y), 0};
       forces_[k] = force;
+      lags_[2 * k] = x - v.x, lags_[2 * k + 1] = y - v.y;
       power_ += dot(force, v);
       floe::add(wrenches, b, force, {});
     }
@@ -63,9 +72,16 @@ class Dashpots final : public FarEdge<Space>,
       out.front() += dot(forces_[k], velocity(state, static_cast<std::size_t>(bodies_[k])));
   }
 
-  void commit(const State<Space>&, double dt) override {
+  void commit(const State<Space>& state, double dt) override {
     for (std::size_t k = 0; k < bodies_.size(); ++k) impulses_[k] += dt * forces_[k].x;
     time_ += dt;
+    if (!ice_.pressure) return;
+    const double share = -std::expm1(-dt / ice_.response);  // of dm/dt = (v - m)/response
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Vec3<double> v = velocity(state, static_cast<std::size_t>(bodies_[k]));
+      means_[2 * k] += share * (v.x - means_[2 * k]);
+      means_[2 * k + 1] += share * (v.y - means_[2 * k + 1]);
+    }
   }
 
   void report(const State<Space>&, std::span<const double> works, Columns& columns) const override {
@@ -81,32 +97,63 @@ class Dashpots final : public FarEdge<Space>,
     archive.common("strip", strip);
     archive.common("time", time_, not_negative);
     archive.rows("impulse", bodies_, impulses_, 1);
+    if (ice_.pressure) {
+      archive.rows("mean_velocity", bodies_, means_, 2);
+      archive.common("has_means", has_means_);
+      if (!archive.loading())
+        for (const std::size_t c : {0U, 1U})
+          lag_[c] =
+              sum_over_edge([&](std::size_t k) { return areas_[k] * lags_[2 * k + c]; }) / whole_;
+      archive.common("lag_x", lag_[0]);
+      archive.common("lag_y", lag_[1]);
+    }
     if (strip == ice_.strip) return;
     time_ = 0;  // of an edge that is no more
     std::fill(impulses_.begin(), impulses_.end(), 0.0);
+    has_means_ = false;
   }
 
   double mean_pressure() const override {
+    const double sum = sum_over_edge([&](std::size_t k) { return impulses_[k]; });
+    return time_ > 0 ? sum / (time_ * whole_) : 0;
+  }
+
+ private:
+  /// Sums over the bodies of the edge in their order, whatever the ranks. Collective.
+  template <class Value>
+  double sum_over_edge(Value&& value) const {
     std::vector<double> mine;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       mine.push_back(item(part_.global, bodies_[k]));
-      mine.push_back(impulses_[k]);
+      mine.push_back(value(k));
     }
     const std::vector<double> all = all_gathered(mine, part_.comm);
     std::vector<std::array<double, 2>> in_order(all.size() / 2);
     for (std::size_t k = 0; k < in_order.size(); ++k) in_order[k] = {all[2 * k], all[2 * k + 1]};
     std::sort(in_order.begin(), in_order.end());
     double sum = 0;
-    for (const auto& [body, impulse] : in_order) sum += impulse;
-    return time_ > 0 ? sum / (time_ * whole_) : 0;
+    for (const auto& [body, of_body] : in_order) sum += of_body;
+    return sum;
   }
 
- private:
+  /// To bodies that have just become the edge the ice behind goes as it went to the edge before.
+  void begin_means(const State<Space>& state) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Vec3<double> v = velocity(state, static_cast<std::size_t>(bodies_[k]));
+      means_[2 * k] = v.x + lag_[0], means_[2 * k + 1] = v.y + lag_[1];
+    }
+    has_means_ = true;
+  }
+
   const Part& part_;
   FarIce ice_;
   double whole_ = 0;                  ///< area of the edge [m^2]
   std::vector<std::int32_t> bodies_;  ///< owned ones at the edge
   std::vector<double> areas_, impulses_;
+  std::vector<double> means_;    ///< of velocities along x and y, with a pressure [m/s]
+  std::vector<double> lags_;     ///< of the velocities in the last evaluation [m/s]
+  std::array<double, 2> lag_{};  ///< mean over the edge when the strip before joined [m/s]
+  bool has_means_ = false;
   std::vector<Vec3<double>> forces_;  ///< in the last evaluation
   double power_ = 0, time_ = 0;
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "floe/forces/boundary.h"
@@ -18,16 +19,21 @@ struct EdgeArea {
 
 /// The ice behind the far edge.
 struct FarIce {
-  Boundary motion;         ///< its x and y
-  double normal = 0;       ///< impedance along x, rho c [Pa s/m]
-  double tangential = 0;   ///< the same along y
-  double spring = 0;       ///< stiffness along x of the ice behind [Pa/m]
-  double offset = 0;       ///< by which it is ahead of its motion, since it is compressed [m]
+  Boundary motion;        ///< its x and y
+  double normal = 0;      ///< impedance along x, rho c [Pa s/m]
+  double tangential = 0;  ///< the same along y
+  double spring = 0;      ///< stiffness along x of the ice behind [Pa/m]
+  double offset = 0;      ///< by which it is ahead of its motion, since it is compressed [m]
+  /// In place of the motion: mean pressure on the edge, times the motion's ramp [Pa], and the time
+  /// over which the edge's mean velocity is taken [s].
+  std::optional<double> pressure;
+  double response = 0;
   std::int64_t strip = 0;  ///< whose edge it is
 };
 
 /// Dashpots that do not reflect waves of the sheet (Lysmer & Kuhlemeyer 1969), on velocities
-/// relative to those of the ice behind, beside a spring to its place.
+/// relative to those of the ice behind, beside a spring to its place; or to the mean velocity of
+/// the edge itself, beside a pressure.
 template <class Space>
 class FarEdge : public Force<Space> {
  public:

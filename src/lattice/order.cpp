@@ -70,6 +70,7 @@ std::vector<std::int32_t> reorder(Lattice& lattice) {
       lattice.beams.axis_y[m] = -lattice.beams.axis_y[m];
       if (!lattice.beams.offsets.empty())
         std::swap(lattice.beams.offsets[m][0], lattice.beams.offsets[m][1]);
+      if (!lattice.beams.image.empty()) lattice.beams.image[m] = -lattice.beams.image[m];
     }
   }
   std::vector<std::int32_t> beams(lattice.beams.bodies.size());

@@ -72,7 +72,7 @@ void append_beam(Beams& beams, const Bodies& bodies, const Facet& facet, double 
   const auto [i, j] = facet.cells;
   const double w = facet.width;
   const double x = bodies.position[j][0] - bodies.position[i][0];
-  const double y = bodies.position[j][1] - bodies.position[i][1];
+  const double y = bodies.position[j][1] - bodies.position[i][1] + facet.shift;
   const double length = std::hypot(x, y);
   const double out_of_plane = w * h * h * h / 12, in_plane = h * w * w * w / 12;
   beams.bodies.push_back(facet.cells);
@@ -134,6 +134,10 @@ Lattice make_sheet(const Tessellation& cells, const SheetSection& section,
     eccentric = eccentric || face.middle != zi || face.middle != zj;
   }
   if (!eccentric) lattice.beams.offsets.clear();
+  const auto crosses_seam = [](const Facet& facet) { return facet.shift != 0; };
+  if (std::any_of(cells.facets.begin(), cells.facets.end(), crosses_seam)) {
+    for (const Facet& facet : cells.facets) lattice.beams.image.push_back({0, facet.shift, 0});
+  }
 
   constexpr std::pair<const char*, SheetSide> sides[] = {
       {"left", side_left}, {"right", side_right}, {"bottom", side_bottom}, {"top", side_top}};

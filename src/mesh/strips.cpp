@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/relaxation.h"
-#include "mesh/voronoi.h"
+#include "mesh/periodic.h"
 
 namespace floe {
 namespace {
@@ -51,11 +50,7 @@ const Strips::Points& Strips::joint(std::int32_t k) {
   std::vector<std::size_t> near;
   for (std::size_t p = 0; p < points.size(); ++p)
     if (std::abs(points[p][0]) < zone()) near.push_back(p);
-  mesh::Voronoi voronoi(plan, points, mesh::Share(comm_));
-  for (int sweep = 0; sweep < plan.iterations; ++sweep) {
-    for (const std::size_t p : near) points[p] = voronoi.cells()[p].centroid;
-    voronoi.move(points);
-  }
+  mesh::relax_some(plan, points, near, comm_);
   return joints_[k] = std::move(points);
 }
 
@@ -103,10 +98,10 @@ const StripCells& Strips::strip(std::int32_t k) {
     cells.vertices.push_back({around.vertices[v][0] - middle, around.vertices[v][1]});
   cells.sides.assign(around.sides.begin(), around.sides.begin() + static_cast<std::ptrdiff_t>(n));
   const auto own = static_cast<std::int32_t>(n);
-  for (const auto& [pair, width] : around.facets) {
+  for (const auto& [pair, width, shift] : around.facets) {
     const auto [i, j] = pair;
-    if (i < own && j < own) cells.inside.push_back({{i, j}, width});
-    if (i < own && j >= own && j < 2 * own) cells.to_next.push_back({{i, j - own}, width});
+    if (i < own && j < own) cells.inside.push_back({{i, j}, width, shift});
+    if (i < own && j >= own && j < 2 * own) cells.to_next.push_back({{i, j - own}, width, shift});
   }
   return cells_[k] = std::move(cells);
 }

@@ -5,6 +5,7 @@
 #include <random>
 #include <string>
 
+#include "mesh/periodic.h"
 #include "mesh/relaxation.h"
 #include "mesh/voronoi.h"
 
@@ -22,13 +23,6 @@ std::vector<Point2> random_generators(const SheetPlan& plan, std::int64_t n) {
     y = plan.width * (uniform() - 0.5);
   }
   return points;
-}
-
-std::vector<Point2> permuted(const std::vector<Point2>& points,
-                             const std::vector<std::int32_t>& order) {
-  std::vector<Point2> result(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) result[k] = points[order[k]];
-  return result;
 }
 
 }  // namespace
@@ -53,7 +47,7 @@ Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
                      std::to_string(most));
   // Numbered along a space-filling curve once; generators stay near their start during relaxation.
   std::vector<Point2> points = random_generators(plan, n);
-  points = permuted(points, mesh::hilbert_order(points, plan.length, plan.width));
+  points = mesh::permuted(points, mesh::hilbert_order(points, plan.length, plan.width));
   mesh::Voronoi voronoi(plan, std::move(points), mesh::Share(comm));
   const int iterations = plan.relaxation == Relaxation::lloyd
                              ? mesh::lloyd(voronoi, plan, on_iteration)
@@ -61,16 +55,22 @@ Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
   std::vector<std::int32_t> number(static_cast<std::size_t>(n));
   for (std::size_t k = 0; k < number.size(); ++k) number[k] = static_cast<std::int32_t>(k);
   Tessellation result = voronoi.finish(number);
+  if (plan.periodic) {
+    points = std::move(result.generators);
+    mesh::relax_across(plan, points, comm);
+    result = tessellate(plan, std::move(points));
+  }
   result.iterations = iterations;
   return result;
 }
 
 Tessellation tessellate(const SheetPlan& plan, std::vector<std::array<double, 2>> generators) {
+  if (plan.periodic) return mesh::tessellate_periodic(plan, generators);
   for (const auto& [x, y] : generators)
     if (!(std::abs(x) <= plan.length / 2 && std::abs(y) <= plan.width / 2))
       throw InputError("sheet: a generator of the mesh lies outside the plan");
   const auto order = mesh::hilbert_order(generators, plan.length, plan.width);
-  return mesh::Voronoi(plan, permuted(generators, order), mesh::Share()).finish(order);
+  return mesh::Voronoi(plan, mesh::permuted(generators, order), mesh::Share()).finish(order);
 }
 
 }  // namespace floe

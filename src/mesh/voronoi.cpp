@@ -208,4 +208,10 @@ std::vector<std::int32_t> hilbert_order(std::span<const Point2> points, double l
   return order;
 }
 
+std::vector<Point2> permuted(std::span<const Point2> points, std::span<const std::int32_t> order) {
+  std::vector<Point2> result(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) result[k] = points[order[k]];
+  return result;
+}
+
 }  // namespace floe::mesh

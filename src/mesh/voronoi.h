@@ -67,4 +67,7 @@ class Voronoi {
 std::vector<std::int32_t> hilbert_order(std::span<const Point2> points, double length,
                                         double width);
 
+/// Returns the points in an order: points[order[k]].
+std::vector<Point2> permuted(std::span<const Point2> points, std::span<const std::int32_t> order);
+
 }  // namespace floe::mesh

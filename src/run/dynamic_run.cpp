@@ -149,6 +149,8 @@ void DynamicRun<Space>::persist(Archive& archive) {
   archive.common("limited_by", result_.limited_by);
   archive.common("next_sample", next_sample_, not_negative_or_infinite);
   archive.common("sampled_step", sampled_, -1);
+  archive.common("sampled_when_due", sampled_when_due_, -1);
+  if (options_.supply) archive.common("ice_has_changed", ice_has_changed_);
   archive.common("largest_velocity2", largest_, not_negative);
   persist_own(archive);
   if (balance_) {
@@ -258,10 +260,18 @@ void DynamicRun<Space>::divide(const std::function<Renumbering()>& work) {
 template <class Space>
 void DynamicRun<Space>::change_ice_if_due() {
   if (!options_.supply || done_ % options_.supply->every != 0) return;
-  while (options_.supply->is_due(time_)) {
+  while (options_.supply->is_due(way_of_edge())) {
     change_ice();
     options_.supply->end_look();
   }
+}
+
+/// By how much the far edge, or the ice behind it, has come nearer [m]. Collective.
+template <class Space>
+double DynamicRun<Space>::way_of_edge() const {
+  const SupplyOptions& supply = *options_.supply;
+  return supply.free_edge && supply.free_edge->is_pushed ? edge_motion()->shift[0]
+                                                         : supply.edge.value(time_)[0];
 }
 
 /// Takes out what has left the region, and lets the next strip join. The energies of both are the
@@ -290,8 +300,10 @@ void DynamicRun<Space>::change_ice() {
   }
   const std::int32_t bodies = model_.part().global_bodies;
   if (supply.can_join()) {
-    const IceNow rest = ice_now();
+    IceNow rest = ice_now();
     edge_ = edge_motion();
+    const std::array<double, 6> behind = supply.edge.value(time_);
+    rest.edge = edge_ ? edge_->shift : std::array{behind[0], behind[1]};
     const double strain = edge_ ? edge_->strain : 0;
     divide([&] { return supply.join(rest, strain); });
     add_to(ice_.joined, [&](std::int32_t body) { return body >= bodies; });
@@ -682,6 +694,7 @@ bool DynamicRun<Space>::sample(bool last) {
              .last = last,
              .forces = reported});
   sampled_ = done_;
+  if (due()) sampled_when_due_ = done_;
   next_sample_ = std::numeric_limits<double>::infinity();
   for (const double every : sample_every_) {
     if (every > 0)

@@ -166,8 +166,9 @@ class DynamicRun : public Run {
   virtual void evaluate();
   /// Hands the state to the observer if a sample is due at its time. False: the run ends here.
   bool sample_if_due() { return !due() || sample(); }
-  /// Whether the present state was sampled.
-  bool sampled() const { return sampled_ == done_; }
+  /// Whether a sample was due at the present state and was taken; also where a run is in parts,
+  /// each of which samples its last state.
+  bool sampled_when_due() const { return sampled_when_due_ == done_; }
   bool evaluate_and_sample_if_due() {
     if (!due()) return true;
     evaluate();
@@ -214,6 +215,7 @@ class DynamicRun : public Run {
     double strain = 0;
   };
   std::optional<EdgeMotion> edge_motion() const;
+  double way_of_edge() const;
   void begin_joined();
   std::vector<double> places_of_edge(double time) const;
   IceNow ice_now() const;
@@ -259,7 +261,8 @@ class DynamicRun : public Run {
   double time_ = 0, dt_ = 0, next_sample_ = 0, time_base_ = 0, largest_ = 0;
   bool adaptive_ = false;
   // Step step_base_ ended at time_base_; equal steps follow.
-  std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1;
+  std::int64_t steps_ = 0, done_ = 0, before_ = 0, step_base_ = 0, sampled_ = -1,
+               sampled_when_due_ = -1;
   std::string dt_key_ = "time: dt";
   std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
   std::int64_t show_every_ = 1;

@@ -21,6 +21,7 @@ struct IceNow {
   double time = 0;                   ///< [s]
   std::vector<Point3> places;        ///< of centroids [m]
   std::vector<std::int32_t> broken;  ///< beams, sorted
+  std::array<double, 2> edge{};      ///< displacement of the far edge [m]
 };
 
 /// The far edge of a sheet whose motion is not prescribed.
@@ -28,6 +29,8 @@ struct FreeEdge {
   std::function<std::vector<std::int32_t>()> bodies;  ///< at the edge
   /// Strain of the ice by the mean pressure on the edge, > 0 if compressed.
   std::function<double()> strain;
+  /// Whether the edge goes as it is pushed; else ice is due by the motion of the ice behind.
+  bool is_pushed = false;
 };
 
 /// Settings of a run in which ice joins and leaves. Functions are collective, and what they decide
@@ -37,8 +40,8 @@ struct SupplyOptions {
   /// The motion of the far edge, with which ice joins.
   Boundary edge;
   std::optional<FreeEdge> free_edge;  ///< given: ice joins with what the edge does indeed
-  /// Whether the far edge has come so far by a time [s] that ice is to join.
-  std::function<bool(double time)> is_due;
+  /// Whether ice is to join when the far edge has come so far [m].
+  std::function<bool(double way)> is_due;
   /// Bodies that are to leave, sorted.
   std::function<std::vector<std::int32_t>(const IceNow&)> leaving;
   /// Divides the model anew without these bodies.

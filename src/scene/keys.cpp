@@ -40,6 +40,9 @@ constexpr std::array table{
     OptionSpec{"sheet: length", number, "40", "m", ">= 1e-9, <= 1e9",
                "extent in x; the plan is centred on the origin"},
     OptionSpec{"sheet: width", number, "(sheet: length)", "m", ">= 1e-9, <= 1e9", "extent in y"},
+    OptionSpec{"sheet: periodic", flag, "false", "", "",
+               "the sheet goes on beyond its bottom and top side as itself: the model repeats "
+               "itself in y after sheet: width"},
     OptionSpec{"sheet: outline", text, "(none: the rectangle)", "", "",
                "GeoJSON or table of x, y: polygons with holes that the sheet fills, instead of "
                "length and width"},
@@ -95,8 +98,15 @@ constexpr std::array table{
                "to the ice behind"},
     OptionSpec{"supply: velocity", numbers, "(required)", "m/s", ">= -1e6, <= 1e6",
                "absorbing: of the ice behind the far edge", 3},
+    OptionSpec{
+        "supply: pressure", number, "(none)", "Pa", ">= 0, <= 1e9",
+        "absorbing, in place of the velocity: mean pressure with which the ice behind pushes "
+        "the far edge, as fast as that goes"},
+    OptionSpec{"supply: response", number, "1", "s", ">= 1e-9, <= 1e12",
+               "absorbing, with a pressure: dashpots are relative to the mean motion of the edge "
+               "over this time; waves longer than it come back"},
     OptionSpec{"supply: ramp", number, "0", "s", ">= 0, <= 1e12",
-               "absorbing: that velocity rises linearly over this time"},
+               "absorbing: that velocity or pressure rises linearly over this time"},
     OptionSpec{
         "supply: spring", number, "0", "m", ">= 0, <= 1e12",
         "absorbing: a spring as stiff as so much ice holds the edge to the ice behind, or it "

@@ -100,6 +100,10 @@ void read_plan(Options& options, Scene& scene) {
   if (!has_outline) {
     plan.length = options.number("sheet: length");
     plan.width = options.number("sheet: width", {}, plan.length);
+    plan.periodic = options.flag("sheet: periodic");
+  } else {
+    options.refuse("sheet: periodic",
+                   "does not go with 'sheet: outline': a rectangle repeats itself");
   }
   plan.seed = static_cast<std::uint64_t>(options.integer("sheet: seed"));
   const double shorter = std::min(plan.length, plan.width);
@@ -107,6 +111,20 @@ void read_plan(Options& options, Scene& scene) {
     throw InputError("sheet: element_size: " + text_of(plan.element_size) + " must be <= " +
                      (plan.width < plan.length ? "sheet: width " : "sheet: length ") +
                      text_of(shorter) + " [m]");
+}
+
+/// Refuses what a sheet that repeats itself does not go with, as far as the sheet's keys say.
+void check_periodic(const Scene& scene) {
+  const auto refuse = [](const std::string& key, const std::string& why) {
+    throw InputError(key + ": does not go with 'sheet: periodic': " + why);
+  };
+  if (scene.integrator == Integrator::quasistatic)
+    refuse("integrator",
+           "it must be explicit or implicit: statics look for free rigid motions of bodies that do "
+           "not repeat themselves");
+  if (!scene.mesh_file.empty()) refuse("sheet: mesh_file", "it keeps sheets that end");
+  if (scene.thickness_field.deviation > 0)
+    refuse("sheet: thickness_deviation", "the random field does not repeat itself");
 }
 
 void read_sheet(Options& options, Scene& scene) {
@@ -120,6 +138,7 @@ void read_sheet(Options& options, Scene& scene) {
     scene.inputs.emplace_back("sheet: mesh_file", scene.mesh_file);
   }
   read_thickness(options, scene);
+  if (plan.periodic) check_periodic(scene);
   scene.limit.memory = options.number("limit: memory", {}, 0.0);
 
   constexpr double most_bodies = 1e8;  // indices of beams and facets have 32 bits
@@ -235,7 +254,11 @@ void read_bonds(Options& options, Scene& scene) {
 void read_regions_and_cuts(Options& options, Scene& scene) {
   for (const std::string& name : options.names("region")) {
     Region region{name, options.numbers<6>("region: NAME: box", name)};
-    if (scene.has_sheet)
+    if (scene.sheet.periodic)
+      options.refuse_one(
+          "region: NAME: edge", name,
+          "does not go with 'sheet: periodic': its ends are the sets left and right");
+    else if (scene.has_sheet)
       region.edge = options.flag("region: NAME: edge", name);
     else
       options.refuse_one("region: NAME: edge", name, "needs 'sheet': a lattice file has no edges");
@@ -263,6 +286,9 @@ void read_regions_and_cuts(Options& options, Scene& scene) {
     if (cut.from == cut.to) throw InputError("cut: " + name + ": from and to are the same point");
     scene.cuts.push_back(cut);
   }
+  if (scene.sheet.periodic && !scene.cuts.empty())
+    throw InputError("cut: " + scene.cuts[0].name +
+                     ": does not go with 'sheet: periodic': a cut ends at the sheet's sides");
   if (scene.cuts.empty())
     options.refuse("sheet: fit_cuts", "would have no effect: the scene has no 'cut'");
   else if (scene.has_sheet)

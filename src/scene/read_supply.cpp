@@ -36,7 +36,7 @@ void check_company(const Scene& scene) {
 
 /// Refuses boundaries that ice cannot join or leave. \throws InputError
 void check_boundaries(const Scene& scene) {
-  if (scene.supply.absorbs) {
+  if (scene.supply.absorbs && !scene.supply.pressure) {
     if (!(scene.supply.velocity.x > 0))
       throw InputError("supply: velocity: " + text_of(scene.supply.velocity.x) +
                        " along x must be > 0 [m/s], towards the sheet");
@@ -95,13 +95,21 @@ void read_supply(Options& options, Scene& scene) {
   if (options.given("supply: region")) supply.region = options.numbers<6>("supply: region");
   enum class Edge { prescribed, absorbing };
   supply.absorbs = options.choice<Edge>("supply: edge") == Edge::absorbing;
-  if (supply.absorbs) {
+  if (!supply.absorbs) {
+    for (const auto* key : {"supply: velocity", "supply: ramp", "supply: spring",
+                            "supply: pressure", "supply: response"})
+      options.refuse(key, "would have no effect: 'supply: edge' is prescribed, by a boundary");
+  } else if (options.given("supply: pressure")) {
+    supply.pressure = options.number("supply: pressure");
+    supply.response = options.number("supply: response");
+    supply.ramp.seconds = options.number("supply: ramp");
+    for (const auto* key : {"supply: velocity", "supply: spring"})
+      options.refuse(key, "does not go with 'supply: pressure', by which the far edge moves");
+  } else {
     supply.velocity = options.vector("supply: velocity");
     supply.ramp.seconds = options.number("supply: ramp");
     supply.spring = options.number("supply: spring");
-  } else {
-    for (const auto* key : {"supply: velocity", "supply: ramp", "supply: spring"})
-      options.refuse(key, "would have no effect: 'supply: edge' is prescribed, by a boundary");
+    options.refuse("supply: response", "would have no effect: there is no 'supply: pressure'");
   }
   check_company(scene);
   check_boundaries(scene);

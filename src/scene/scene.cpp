@@ -37,13 +37,19 @@ void read_periods(Options& options, Scene& scene) {
                    "of bodies that do not repeat themselves");
     return;
   }
-  if (!scene.forces.contact && !scene.bonds.given) {
+  if (!scene.forces.contact && !scene.bonds.given && !scene.sheet.periodic) {
     options.refuse("model: periodic",
                    "would have no effect: bodies neither touch ('forces': contact) nor freeze "
                    "together ('bonds')");
     return;
   }
-  const auto [x, y] = options.numbers<2>("model: periodic");
+  auto [x, y] = options.numbers<2>("model: periodic");
+  if (scene.sheet.periodic) {
+    if (y != 0 && y != scene.sheet.width)
+      throw InputError("model: periodic: " + text_of(y) + " along y must be sheet: width " +
+                       text_of(scene.sheet.width) + " [m], since 'sheet: periodic' is true");
+    y = scene.sheet.width;
+  }
   scene.periods.length = {x, y, 0};
 }
 

@@ -295,7 +295,14 @@ void check_periods(const Scene& scene, const Lattice& lattice) {
   }
 }
 
-/// \param around  set for a sheet with an outline whose strength is to be found
+/// The rectangle of a sheet that repeats itself, with sides along which its strength is found.
+Rectangle one_that_ends(SheetPlan plan, MPI_Comm comm) {
+  plan.periodic = false;
+  return {plan, tessellate(plan, comm)};
+}
+
+/// \param around  set for a sheet with an outline, or one that repeats itself, whose strength is to
+///   be found
 Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
                    std::vector<FittedCut>& cuts, std::optional<Rectangle>& around) {
   const SheetSection section = section_of(scene);
@@ -305,6 +312,7 @@ Lattice mesh_sheet(const Scene& scene, MPI_Comm comm, MeshReport& report,
   {
     const Timed timed(Event::mesh);
     std::vector<Tessellation> relaxed = relax(scene, comm, report);
+    if (scene.sheet.periodic && finds_strength(scene)) around = one_that_ends(scene.sheet, comm);
     for (const Tessellation& t : relaxed) {
       report.largest_move = std::max(report.largest_move, t.largest_move);
       report.iterations = std::max(report.iterations, t.iterations);
@@ -352,7 +360,7 @@ Lattice mesh_strips(const Scene& scene, MPI_Comm comm, MeshReport& report,
   Lattice lattice = report.ice->lattice();
   report.energy_ratio = report.ice->energy_ratio();
   report.iterations = scene.sheet.iterations;
-  if (finds_strength(scene)) around = {scene.sheet, tessellate(scene.sheet, comm)};
+  if (finds_strength(scene)) around = one_that_ends(scene.sheet, comm);
   return lattice;
 }
 

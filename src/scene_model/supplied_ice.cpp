@@ -88,9 +88,9 @@ Tessellation SuppliedIce::cells() {
       if (item(open, c) > 0) edge_areas_.push_back({item(own, c), item(open, c)});
     }
     const auto join = [&](const std::vector<Facet>& facets, const std::vector<std::int32_t>& to) {
-      for (const auto& [pair, width] : facets) {
+      for (const auto& [pair, width, shift] : facets) {
         const std::int32_t a = item(own, pair[0]), b = item(to, pair[1]);
-        if (a >= 0 && b >= 0) cells.facets.push_back({{a, b}, width});
+        if (a >= 0 && b >= 0) cells.facets.push_back({{a, b}, width, shift});
       }
     };
     join(strip.inside, own);
@@ -117,8 +117,8 @@ Lattice SuppliedIce::lattice() {
   return lattice;
 }
 
-bool SuppliedIce::is_due(double time) const {
-  return edge_.value(time)[0] >= static_cast<double>(looks_ + 1) * scene_.supply.strip;
+bool SuppliedIce::is_due(double way) const {
+  return way >= static_cast<double>(looks_ + 1) * scene_.supply.strip;
 }
 
 bool SuppliedIce::can_join() const {

@@ -34,8 +34,9 @@ class SuppliedIce {
   /// Energy ratio of the mesh, the mean of the present strips (Tessellation::energy_ratio).
   double energy_ratio();
 
-  /// Whether the far edge has come a strip's length nearer since the last look.
-  bool is_due(double time) const;
+  /// Whether the far edge, which has come so far [m], has come a strip's length nearer since the
+  /// last look.
+  bool is_due(double way) const;
   void end_look() { ++looks_; }
   bool can_join() const;
   /// Pieces that whole beams hold together, all of whose bodies are outside the region.
@@ -55,7 +56,7 @@ class SuppliedIce {
   double offset() const { return offset_; }
   /// The strip of the far edge.
   std::int32_t last_strip() const { return next_ - 1; }
-  /// The motion of the far edge, or of the ice behind it.
+  /// The motion of the far edge, or of the ice behind it; none with a pressure.
   const Boundary& edge() const { return edge_; }
 
   /// Saves or loads the bodies that exist. Collective.

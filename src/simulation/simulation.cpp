@@ -235,6 +235,8 @@ void RunningIn<Space>::add_far_edge() {
                       .tangential = std::sqrt(density * m.shear * scene_.ice.young),
                       .spring = scene_.supply.spring > 0 ? young_ / scene_.supply.spring : 0,
                       .offset = ice.offset(),
+                      .pressure = scene_.supply.pressure,
+                      .response = scene_.supply.response,
                       .strip = ice.last_strip()};
   auto edge = make_far_edge<Space>(model_->part(), ice.edge_areas(), behind);
   far_edge_ = edge.get();
@@ -278,7 +280,7 @@ std::optional<SupplyOptions> RunningIn<Space>::supply() {
   SuppliedIce& ice = *setting_.mesh.ice;
   SupplyOptions options;
   options.edge = ice.edge();
-  options.is_due = [&ice](double time) { return ice.is_due(time); };
+  options.is_due = [&ice](double way) { return ice.is_due(way); };
   options.leaving = [&ice](const IceNow& now) { return ice.leaving(now); };
   options.leave = [this, &ice](const IceNow& now, const std::vector<std::int32_t>& gone) {
     return change(ice.leave(gone), now);
@@ -295,7 +297,8 @@ std::optional<SupplyOptions> RunningIn<Space>::supply() {
                                  bodies.push_back(edge.body);
                                return bodies;
                              },
-                         .strain = [this] { return far_edge_->mean_pressure() / young_; }};
+                         .strain = [this] { return far_edge_->mean_pressure() / young_; },
+                         .is_pushed = scene_.supply.pressure.has_value()};
   options.end_look = [&ice] { ice.end_look(); };
   options.persist = [this](Archive& archive) { persist_ice(archive); };
   return options;
@@ -305,8 +308,7 @@ std::optional<SupplyOptions> RunningIn<Space>::supply() {
 template <class Space>
 Renumbering RunningIn<Space>::change(SuppliedIce::Change change, const IceNow& now) {
   std::vector<Point3> at = change.lattice.bodies.position;
-  const auto moved = setting_.mesh.ice->edge().value(now.time);
-  for (Point3& p : at) p = p + Vec3<double>{moved[0], moved[1], 0};  // where they join
+  for (Point3& p : at) p = p + Vec3<double>{now.edge[0], now.edge[1], 0};  // where they join
   const std::vector<std::int32_t>& after = change.indices.bodies;
   for (std::size_t b = 0; b < after.size(); ++b)
     if (after[b] >= 0) item(at, after[b]) = now.places[b];

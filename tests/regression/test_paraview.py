@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -16,7 +17,12 @@ import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 
+from test_supply import SCENE
+
 REPOSITORY = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPOSITORY / "tools"))
+from floe_output import Output  # noqa: E402
+
 FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
 
 # Runs inside pvpython: per time and grid the counts, bounds and ranges of the cell data, as JSON.
@@ -70,6 +76,11 @@ def count_polygons(topology):
     return cells
 
 
+def version_of_paraview():
+    said = subprocess.run(["pvpython", "--version"], capture_output=True, text=True)
+    return tuple(map(int, re.findall(r"(\d+)\.(\d+)", said.stdout + said.stderr)[0]))
+
+
 @unittest.skipUnless(shutil.which("pvpython") and shutil.which("xvfb-run"),
                      "ParaView is not installed (tools/setup --pictures)")
 class ParaView(unittest.TestCase):
@@ -114,12 +125,51 @@ class ParaView(unittest.TestCase):
             self.assertEqual(numbers[0], 0)
             self.assertGreater(numbers[-1], 10)
 
+    def test_ice_joins_and_leaves(self):
+        """fields.xmf shows the bodies, beams and cracks of each time; so does floe vtkhdf's file in
+        ParaView 5.12 and later. floe render draws them."""
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "scene.yaml").write_text(SCENE)
+            run = subprocess.run([FLOE, f"{folder}/scene.yaml", "-output_fields", "0.5",
+                                  "-output_dir", f"{folder}/out"], capture_output=True, text=True)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            output = Output(Path(folder, "out"))
+            self.assertTrue(output.changes)
+            made = subprocess.run([str(REPOSITORY / "tools/vtkhdf"), f"{folder}/out"],
+                                  capture_output=True, text=True)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            seen = self.look(Path(folder), Path(folder, "out/fields.xmf"))
+            self.assertEqual([sample["time"] for sample in seen], output.times.tolist())
+            self.is_of_the_frames(seen, output, 1e-6)
+            for sample, time in zip(seen, output.times):
+                beams = output.at(time).beams["bodies"]
+                self.assertEqual(sample["blocks"]["beams"]["cells"], len(beams))
+                broken = int(np.sum(output.field("damage", time) >= 1))
+                self.assertEqual(sample["blocks"].get("cracks", {"cells": 0})["cells"], 2 * broken)
+            if version_of_paraview() >= (5, 12):
+                self.is_of_the_frames(self.look(Path(folder), Path(folder, "out/bodies.vtkhdf")),
+                                      output, 1e-5)
+            drawn = subprocess.run([str(REPOSITORY / "tools/render"), f"{folder}/out", "--size",
+                                    "320", "200", "--time", "1.5", "2", "--file",
+                                    f"{folder}/a.png"], capture_output=True, text=True)
+            self.assertEqual(drawn.returncode, 0, drawn.stdout + drawn.stderr)
+            for k in (0, 1):
+                pixels = plt.imread(f"{folder}/a_{k}.png")
+                self.assertGreater(np.sum((pixels[:, :, 0] > 0.6) & (pixels[:, :, 2] < 0.96)), 2000)
+
+    def is_of_the_frames(self, seen, output, tolerance):
+        """Number of polygons, and bounds of the bodies [m]."""
+        for sample, time in zip(seen, output.times):
+            bodies, shapes = sample["blocks"]["bodies"], output.at(time).shapes
+            self.assertEqual(bodies["cells"], len(shapes["corner_of"]) - 1)
+            points = output.field("points", time)
+            bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
+            np.testing.assert_allclose(bodies["bounds"], bounds, atol=tolerance)
+
     def test_opens_vtkhdf(self):
         """ParaView 5.12 and later read floe vtkhdf's files: the same points and values at every
         time, and cracks that open."""
-        version = subprocess.run(["pvpython", "--version"], capture_output=True, text=True)
-        number = tuple(map(int, re.findall(r"(\d+)\.(\d+)", version.stdout + version.stderr)[0]))
-        if number < (5, 12):
+        if version_of_paraview() < (5, 12):
             self.skipTest("VTKHDF with time needs ParaView 5.12")
         with tempfile.TemporaryDirectory() as folder:
             run = subprocess.run([FLOE, str(REPOSITORY / "input/notch.yaml"), "-sheet_element_size",

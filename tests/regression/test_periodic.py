@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 """Models that repeat themselves: what happens across the ends is what happens in the middle."""
+import re
 import sys
 import unittest
 
+import h5py
 import numpy as np
 
 from launch import REPOSITORY
@@ -107,7 +109,6 @@ class Periodic(SceneTest):
         dips = {}
         for name in ("endless", "sides"):
             frame = last_frame(self.folder / "out" / name)
-            import h5py
             with h5py.File(self.folder / f"out/{name}/lattice.h5") as file:
                 x = file["bodies/position"][:]
             near = np.abs(x[:, 0]) < 1.2
@@ -121,6 +122,25 @@ class Periodic(SceneTest):
         bonds = self.summary("endless")["bonds"]
         self.assertAlmostEqual(bonds["area"], 24 * 0.5, delta=1e-4)
 
+    def test_a_periodic_sheet(self):
+        """`sheet: periodic` does the same with its own mesh, from any seam: the line dips as one,
+        as deep as with bonds across the seam; beams broken there break as elsewhere."""
+        width = float(re.search(r"width: ([0-9.]+)", SHEET)[1])
+        whole = SHEET.replace("sheet: {", "sheet: {periodic: true, ")
+        self.run_scene(whole, name="wraps")
+        self.run_scene(SHEET + PERIODIC + SEAM, name="bonded")
+        dip = {}
+        for name in ("wraps", "bonded"):
+            frame = last_frame(self.folder / "out" / name)
+            with h5py.File(self.folder / f"out/{name}/lattice.h5") as file:
+                at, image = file["bodies/position"][:], file["beams/image"][:]
+            near = np.abs(at[:, 0]) < 1.2
+            z = frame["bodies_displacement"][near, 2]
+            dip[name] = (z.mean(), np.ptp(z))
+            self.assertEqual(set(np.unique(image[:, 1])), {-width, 0, width})
+        self.assertLess(dip["wraps"][1], 0.15 * abs(dip["wraps"][0]))  # cells are not on one line
+        self.assertAlmostEqual(dip["wraps"][0] / dip["bonded"][0], 1, delta=0.05)
+
     def test_refusals(self):
         heap().write(self.folder / "heap.h5")
         for scene, part in (
@@ -131,7 +151,18 @@ class Periodic(SceneTest):
                 (SHEET.replace("explicit", "quasistatic").replace("time: {end: 6}\n", "")
                  .replace("beam: {damping_ratio: 1}\n", "") + PERIODIC + SEAM,
                  "model: periodic: needs 'integrator' explicit or implicit"),
-                (HEAP.replace("[5, 4]", "[5, -4]"), "model: periodic")):
+                (HEAP.replace("[5, 4]", "[5, -4]"), "model: periodic"),
+                (SHEET.replace("sheet: {", "sheet: {periodic: true, mesh_file: m.h5, "),
+                 "sheet: mesh_file: does not go with 'sheet: periodic'"),
+                (SHEET.replace("sheet: {", "sheet: {periodic: true, thickness_deviation: 0.1, "
+                               "thickness_correlation: [2, 2], "),
+                 "sheet: thickness_deviation: does not go with 'sheet: periodic'"),
+                (SHEET.replace("sheet: {", "sheet: {periodic: true, ")
+                 + "cut: {names: [c], c: {from: [0, -9], to: [0, 9]}}\n",
+                 "cut: c: does not go with 'sheet: periodic'"),
+                (SHEET.replace("sheet: {", "sheet: {periodic: true, ")
+                 + "model: {periodic: [0, 7]}\n",
+                 "model: periodic: 7 along y must be sheet: width")):
             done = self.run_scene(scene, code=2)
             self.assertIn(part, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)

@@ -19,7 +19,7 @@ sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_report_map as force_map  # noqa: E402
 import floe_report_scene as scenes  # noqa: E402
 from floe_lattice import Shapes  # noqa: E402
-from floe_output import Output, matrices  # noqa: E402
+from floe_output import Output, matrices, rotations  # noqa: E402
 from floe_report_arrays import pack, unpack  # noqa: E402
 from floe_report_page import data_in  # noqa: E402
 from floe_report_series import thinned  # noqa: E402
@@ -214,7 +214,7 @@ class Run(FolderTest):
         # all of it together: where the run says that the corners are in its last frame
         poses = unpack(scene["poses"])[-1]
         centres = (unpack(scene["places"]) + poses[:3]).T * scene["step"] + scene["origin"]
-        turn = scenes.rotations(poses[3:].T * scene["turn_step"])
+        turn = rotations(poses[3:].T * scene["turn_step"])
         points = centres[body] + np.einsum("vij,vj->vi", turn[body],
                                            unpack(scene["corners"]).T * scene["step"])
         reach = np.linalg.norm(exact, axis=1).max() * scene["turn_step"]
@@ -233,7 +233,7 @@ class Run(FolderTest):
         points = output.field("crack_points", time)[output.field("cracks", time)]
         self.assertEqual(len(corners), 2 * output.summary["beams_broken"])
         place = output.position + output.field("bodies_displacement", time)
-        turn = scenes.rotations(output.field("bodies_rotation", time))
+        turn = rotations(output.field("bodies_rotation", time))
         placed = place[carrier][:, None] + np.einsum("fij,fkj->fki", turn[carrier], corners)
         np.testing.assert_allclose(placed, points, atol=scene["step"])
         self.assertTrue(np.all((ended > 0) & (ended <= 1000 * time + 1)))

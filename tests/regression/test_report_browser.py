@@ -4,16 +4,19 @@ it, play, turn, pick; on a telephone's width.
 
 Needs chromium and python3-websocket (tools/setup --pictures); skipped where they are not there.
 """
+import subprocess
 import sys
 import unittest
 
 import numpy as np
 
 import browser
-from launch import REPOSITORY, FolderTest
+from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest
 from report_scenes import make_report, run_cone
+from test_supply import SCENE
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+from floe_output import rows_of  # noqa: E402
 from floe_report_arrays import unpack  # noqa: E402
 from floe_report_page import data_in  # noqa: E402
 
@@ -159,6 +162,41 @@ class InBrowser(FolderTest):
             self.browser.run(f"(e => {{ e.value = '{colour}'; e.dispatchEvent(new Event('change'))"
                              "; })(document.getElementById('colour'))")
             self.assertEqual(self.browser.run(f"{VIEW}.colour"), colour)
+
+    def test_ice_joins_and_leaves(self):
+        """Bodies are drawn, picked and counted in the frames between which they exist."""
+        (self.folder / "scene.yaml").write_text(SCENE)
+        subprocess.run([FLOE, "scene.yaml", "-output_history", "0.1", "-output_fields", "0.5",
+                        "-output_dir", "a"], cwd=self.folder, check=True, capture_output=True,
+                       env=ENVIRONMENT)
+        make_report(self.folder / "a")
+        file = self.folder / "a/report.html"
+        self.open(file, 1200)
+        scene = data_in(file.read_text())["scene"]
+        ids, life = unpack(scene["ids"])[0], unpack(scene["life"])
+        rows = {round(float(row["time"]), 6): row for row in rows_of(self.folder / "a")}
+        for k, time in enumerate(scene["times"]):
+            self.browser.run(f"{VIEW}.setFrame({k})")
+            shown = self.browser.run(f"Array.from({{length: {scene['bodies']}}}, "
+                                     f"(_, b) => {VIEW}.poses.data[12 * b + 3])")
+            there = (life[0] <= k) & (k <= life[1])
+            np.testing.assert_array_equal(np.array(shown) == 1, there)
+            self.assertEqual(sum(shown), float(rows[time]["bodies"]))
+            body = int(np.flatnonzero(there)[-1])
+            numbers = self.browser.run(f"{VIEW}.numbersOf({body})")
+            self.assertEqual(numbers["fragments"], float(rows[time]["fragments"]))
+            self.assertEqual(numbers["body"], ids[body])
+            if not np.all(there):
+                gone = int(np.flatnonzero(~there)[0])
+                self.assertIsNone(self.browser.run(f"{VIEW}.numbersOf({gone})"))
+        # between two frames: who leaves after the first or joins at the second is in neither
+        k = int(np.flatnonzero(np.bincount(life[0], minlength=2)[1:])[0]) + 1
+        self.browser.run(f"{VIEW}.setFrame({k - 0.5})")
+        drawn = self.browser.run(f"Array.from({{length: {scene['bodies']}}}, "
+                                 f"(_, b) => {VIEW}.poses.data[12 * b + 3])")
+        np.testing.assert_array_equal(np.array(drawn) == 1, (life[0] < k) & (life[1] >= k))
+        self.shows_colours()
+        self.assertEqual(self.browser.complaints, [])
 
     def test_telephone_and_ensemble(self):
         for seed in (1, 2):

@@ -76,6 +76,16 @@ time: {end: 4, dt: 5e-4}
 output: {history: 0.01}
 checkpoint: {every: 1000}
 """
+# The same sheet, pushed by a pressure that sees no water: it goes ever faster.
+PUSHED = """integrator: explicit
+forces: [beam]
+sheet: {length: 48, width: 12, thickness: 0.5, element_size: 1.5, iterations: 20}
+supply: {strip: 12, length: 84, edge: absorbing, pressure: 4e6, ramp: 0.5, response: 0.2}
+boundary: {names: [below, above], below: {set: bottom, fix: y}, above: {set: top, fix: y}}
+beam: {damping_ratio: 0.1}
+time: {end: 3}
+output: {history: 0.01}
+"""
 
 
 def rows_of(folder):
@@ -89,6 +99,33 @@ class SupplyTest(RestartTest):
         super().setUp()
         (self.folder / "scene.yaml").write_text(SCENE)
         (self.folder / "calm.yaml").write_text(CALM)
+
+    def same_end(self, a, b):
+        rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
+        for row in (a / "history.csv").read_text().split("\n"):
+            self.assertTrue(row in rows, row)
+        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
+        self.assertEqual(set(first), set(second))
+        for key in set(first) - {"options", "supply/mesh_frame"}:
+            if not key.startswith("output/"):
+                np.testing.assert_array_equal(first[key], second[key], key)
+
+    def stopped(self, steps, dir, ranks=1):
+        resume = []
+        for step in steps:
+            self.run_whole("-ts_max_steps", str(step), *resume, dir=dir, ranks=ranks)
+            resume = ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
+        return self.go_on(dir=dir, ranks=ranks)
+
+    def restarts_and_ranks(self, steps):
+        """Runs stopped at steps, and on two ranks, have the bits of one in one piece."""
+        a = self.run_whole(dir="a")
+        self.same_end(a, self.stopped(steps, "b"))
+        two = self.stopped(steps[:1], "c", ranks=2)
+        one, other = contents(a / "checkpoint.h5"), contents(two / "checkpoint.h5")
+        for key in ("bodies/records", "supply/names"):
+            np.testing.assert_array_equal(one[key], other[key], key)
+        return a
 
 
 class Account(SupplyTest):
@@ -183,24 +220,78 @@ class AbsorbingEdge(SupplyTest):
                         1e-6 * np.max(rows["energy_kinetic"]))
 
 
+class PushedEdge(SupplyTest):
+    def test_no_wave_comes_back(self):
+        """A pressure p sends a wave of p/2, which comes back from the free right side and leaves
+        with all of p; the edge's own mean velocity is of much more time."""
+        (self.folder / "wave.yaml").write_text(WAVE.replace(
+            "velocity: [0.4, 0, 0]", "pressure: 8e5, response: 100"))
+        rows = rows_of(self.run_whole(dir="a", scene="wave.yaml"))
+        time, force = rows["time"], rows["far_edge_force_x"] / (8e5 * 6)
+        way = 240 / np.sqrt(4e9 / 920)
+        self.assertAlmostEqual(np.mean(force[(time > 0.04) & (time < 1.5 * way)]), 0.5, delta=0.03)
+        back = force[time > 2 * way + 0.06]
+        self.assertGreater(len(back), 50)
+        self.assertLess(np.sqrt(np.mean(back ** 2)), 0.5 * 0.03)
+
+    def test_mean_load(self):
+        """The edge bears its pressure however fast it goes, but for the ice behind, which speeds up
+        with it: that of the length c times the response. All momentum is the edge's impulse."""
+        (self.folder / "pushed.yaml").write_text(PUSHED)
+        folder = self.run_whole(dir="a", scene="pushed.yaml")
+        rows = rows_of(folder)
+        with h5py.File(folder / "lattice.h5") as file:
+            mass = float(np.sum(file["bodies/mass"][:]))
+        time, force, push = rows["time"], rows["far_edge_force_x"], 4e6 * 6
+        behind = 0.2 * np.sqrt(4e9 * 920) * 6  # rho c A response [kg]
+        alone = (time > 1) & (rows["bodies_supplied"] == 0)
+        self.assertGreater(np.count_nonzero(alone), 20)
+        self.assertAlmostEqual(np.mean(force[alone]) / push / (mass / (mass + behind)), 1,
+                               delta=0.1)
+        present = mass + rows["mass_supplied"]
+        momentum = (np.sqrt(2 * rows["energy_kinetic"] * present)
+                    - rows["momentum_supplied_x"])
+        impulse = np.concatenate([[0], np.cumsum(np.diff(time) * (force[1:] + force[:-1]) / 2)])
+        # Where no ice has just joined, all goes at one speed.
+        at = [*np.flatnonzero(np.diff(rows["bodies_supplied"])), -1]
+        np.testing.assert_allclose(momentum[at], impulse[at], rtol=0.01)
+        self.assertEqual(len(np.unique(rows["bodies_supplied"])), 4)  # three strips have joined
+        self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                        1e-3 * np.max(rows["energy_kinetic"]))
+
+    def test_restarts_and_ranks(self):
+        (self.folder / "scene.yaml").write_text(PUSHED.replace("end: 3", "end: 2.2")
+                                                + "checkpoint: {every: 1000}\n")
+        self.restarts_and_ranks((37, 900, 1100))
+
+
+class PeriodicSides(SupplyTest):
+    def test_wave(self):
+        """Without sides it is that of a sheet that is confined, and none comes back."""
+        text = WAVE.replace("iterations: 40", "iterations: 40, periodic: true")
+        (self.folder / "wave.yaml").write_text(
+            "\n".join(line for line in text.split("\n") if "boundary" not in line))
+        rows = rows_of(self.run_whole(dir="a", scene="wave.yaml"))
+        time, force = rows["time"], rows["far_edge_force_x"]
+        way = 240 / np.sqrt(4e9 / 920)
+        sent = np.mean(force[(time > 0.04) & (time < 1.5 * way)])
+        self.assertAlmostEqual(sent / (0.2 * 6 * np.sqrt(920 * 4e9)), 1, delta=0.12)
+        back = force[time > 2 * way + 0.06]
+        self.assertLess(np.sqrt(np.mean(back ** 2)), 0.03 * sent)
+
+    def test_restarts_and_ranks(self):
+        """Of ice that breaks; its sides meet."""
+        text = SCENE.replace("width: 6,", "width: 9, periodic: true,")
+        (self.folder / "scene.yaml").write_text(text)
+        folder = self.restarts_and_ranks((1111, 3050, 6200))
+        rows = rows_of(folder)
+        self.assertGreater(rows["beams_broken"][-1], 5)
+        self.assertEqual(rows["bodies_supplied"][-1] % 3, 0)
+        with h5py.File(folder / "lattice.h5") as file:
+            self.assertGreater(np.count_nonzero(file["beams/image"][:, 1]), 10)
+
+
 class Restarts(SupplyTest):
-    def same_end(self, a, b):
-        rows = set((b / "history.csv").read_text().split("\n"))  # and one at the end of each part
-        for row in (a / "history.csv").read_text().split("\n"):
-            self.assertTrue(row in rows, row)
-        first, second = contents(a / "checkpoint.h5"), contents(b / "checkpoint.h5")
-        self.assertEqual(set(first), set(second))
-        for key in set(first) - {"options", "supply/mesh_frame"}:
-            if not key.startswith("output/"):
-                np.testing.assert_array_equal(first[key], second[key], key)
-
-    def stopped(self, steps, dir, ranks=1):
-        resume = []
-        for step in steps:
-            self.run_whole("-ts_max_steps", str(step), *resume, dir=dir, ranks=ranks)
-            resume = ["-checkpoint_restart", f"{dir}/checkpoint.h5"]
-        return self.go_on(dir=dir, ranks=ranks)
-
     def test_near_changes(self):
         """Of ice that breaks: at the steps of changes and beside them."""
         a = self.run_whole(dir="a")
@@ -327,6 +418,11 @@ class Refused(SupplyTest):
                 (("-boundary_push_velocity", "-1 0 0"), "a velocity along +x"),
                 (("-boundary_push_set", "right"), "'set: left'"),
                 (("-supply_spring", "10"), "supply: spring: would have no effect"),
+                (("-supply_pressure", "1e5"), "supply: pressure: would have no effect"),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0", "-supply_response",
+                  "2"), "supply: response: would have no effect: there is no 'supply: pressure'"),
+                (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0", "-supply_pressure",
+                  "1e5"), "supply: velocity: does not go with 'supply: pressure'"),
                 (("-supply_edge", "absorbing"), "supply: velocity: "),
                 (("-supply_edge", "absorbing", "-supply_velocity", "8 0 0"),
                  "boundary: push: fix: x and y of 'set: left' do not go with"),

@@ -317,6 +317,8 @@
       `${scene.of_bodies.toLocaleString('en')} bodies nearest to the obstacles. ` : '';
     element(made, 'p', 'soft', `Drag to turn, wheel or two fingers to zoom (after a click into ` +
       `the scene), right button or two fingers to move, click a body for its numbers. ${seen}` +
+      (scene.life ? `Ice joins and leaves: in all frames together ${scene.of_bodies.toLocaleString(
+        'en')} bodies exist, each from its first frame to its last. ` : '') +
       `${scene.times.length} of ${scene.of_frames} frames; centres are right to ` +
       `${short(500 * scene.step)} mm, rotations to ${short(500 * scene.turn_step)} mrad about ` +
       'each axis; between frames they are interpolated. Velocities are differences of places ' +

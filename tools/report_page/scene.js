@@ -26,7 +26,8 @@ const floeScene = (() => {
       at = world;
       vec4 seen = viewMatrix * vec4(world, 1.0);
       gl_Position = projectionMatrix * seen;
-      if (since > now) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // not yet
+      // not yet, or of a body that does not exist
+      if (since > now || place.w == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     }`;
 
   // The light comes from above, from behind the eye and from the side.
@@ -66,6 +67,7 @@ const floeScene = (() => {
       scene[key] = await floeArrays.unpack(packed[key]);
     }
     scene.ids = packed.ids ? await floeArrays.unpack(packed.ids) : null;
+    scene.life = packed.life ? await floeArrays.unpack(packed.life) : null;
     scene.crackCorners = await floeArrays.unpack(packed.cracks.corners);
     scene.crackOf = await floeArrays.unpack(packed.cracks.of);
     return scene;
@@ -115,6 +117,17 @@ const floeScene = (() => {
     }
     const size = Math.hypot(...n) || 1;
     return [...n.map(v => v / size), (n[0] * a[0] + n[1] * a[1] + n[2] * a[2]) / size];
+  }
+
+  // First and last frame of a body: all, or those between which it exists.
+  function lifeOf(scene, b) {
+    return scene.life ? [scene.life[b], scene.life[scene.bodies + b]] :
+      [0, scene.times.length - 1];
+  }
+
+  // Whether a body exists at a frame, which may lie between two.
+  function exists(scene, frame, b) {
+    return !scene.life || scene.life[b] <= frame && frame <= scene.life[scene.bodies + b];
   }
 
   // -- poses ----------------------------------------------------------------------------------
@@ -172,7 +185,7 @@ const floeScene = (() => {
         data[at + i] = (scene.places[i * n + k] + here + f * (p[b + i * n + k] - here)) *
           scene.step;
       }
-      data[at + 3] = 1;
+      data[at + 3] = exists(scene, frame + f, k) ? 1 : 0;
       turnInto(data, at + 4, p, a + 3 * n + k, b + 3 * n + k, n, s, f);
     }
   }
@@ -192,20 +205,23 @@ const floeScene = (() => {
   }
 
   // -- fragments ------------------------------------------------------------------------------
-  // Pieces joined by beams that are whole at a time: per body its piece, and each piece's bodies
-  // and mass, the heaviest first.
-  function fragmentsAt(scene, time) {
+  // Pieces joined by beams that are whole at a frame: per body its piece (-1: the body does not
+  // exist), and each piece's bodies and mass, the heaviest first.
+  function fragmentsAt(scene, frame) {
+    const time = scene.times[frame], there = b => exists(scene, frame, b);
     const n = scene.bodies, m = scene.beams.length / 3, parent = new Int32Array(n).map((_, k) => k);
     const root = k => { while (parent[k] !== k) k = parent[k] = parent[parent[k]]; return k; };
     for (let k = 0; k < m; ++k) {
       const ended = scene.beams[2 * m + k];
-      if (ended < 0 || ended > 1000 * time) {
+      if ((ended < 0 || ended > 1000 * time) && there(scene.beams[k]) &&
+          there(scene.beams[m + k])) {
         const a = root(scene.beams[k]), b = root(scene.beams[m + k]);
         if (a !== b) parent[Math.max(a, b)] = Math.min(a, b);
       }
     }
     const found = new Map();
     for (let k = 0; k < n; ++k) {
+      if (!there(k)) continue;
       const r = root(k), one = found.get(r) || {root: r, bodies: 0, mass: 0};
       one.bodies += 1;
       one.mass += scene.masses[k];
@@ -213,7 +229,8 @@ const floeScene = (() => {
     }
     const pieces = [...found.values()].sort((a, b) => b.mass - a.mass || a.root - b.root);
     const number = new Map(pieces.map((one, k) => [one.root, k]));
-    return {of: Int32Array.from(parent, (_, k) => number.get(root(k))), pieces};
+    const of = Int32Array.from(parent, (_, k) => (there(k) ? number.get(root(k)) : -1));
+    return {of, pieces};
   }
 
   function hue(k, light) {
@@ -229,6 +246,7 @@ const floeScene = (() => {
     return stops[k].map((c, i) => c + f * (stops[k + 1][i] - c));
   }
 
-  return {unpackScene, meshOf, planeThrough, bodyPose, between, quaternionOfMatrix, textureFor, put,
-          fillBodies, fragmentsAt, hue, speedColour, vertexShader, litShader, plainShader};
+  return {unpackScene, meshOf, planeThrough, lifeOf, exists, bodyPose, between, quaternionOfMatrix,
+          textureFor, put, fillBodies, fragmentsAt, hue, speedColour, vertexShader, litShader,
+          plainShader};
 })();

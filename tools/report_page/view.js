@@ -193,6 +193,7 @@ class FloeView {
     const low = [Infinity, Infinity, Infinity], high = low.map(v => -v), {scene} = this;
     for (const frame of [0, scene.times.length - 1]) {
       for (let b = 0; b < scene.bodies; ++b) {
+        if (!floeScene.exists(scene, frame, b)) continue;
         const {place} = floeScene.bodyPose(scene, frame, b);
         for (let i = 0; i < 3; ++i) {
           low[i] = Math.min(low[i], place[i] - scene.size);
@@ -277,9 +278,9 @@ class FloeView {
     this.painted = k;
     const put = (b, rgb) => { for (let i = 0; i < 3; ++i) data[12 * b + 8 + i] = rgb[i]; };
     if (this.colour === 'fragment') {
-      const {of} = floeScene.fragmentsAt(this.scene, this.scene.times[k]);
+      const {of} = floeScene.fragmentsAt(this.scene, k);
       for (let b = 0; b < n; ++b) {
-        put(b, of[b] === 0 ? [0.80, 0.86, 0.91] : floeScene.hue(of[b], 0.66));
+        put(b, of[b] <= 0 ? [0.80, 0.86, 0.91] : floeScene.hue(of[b], 0.66));
       }
       return;
     }
@@ -290,15 +291,17 @@ class FloeView {
 
   fastSpeed() {  // that 99 of 100 bodies keep below at the last frame but one
     const k = Math.max(0, this.scene.times.length - 2);
-    const all = Array.from({length: this.scene.bodies},
-                           (_, b) => Math.hypot(...this.velocityOf(b, k))).sort((a, b) => a - b);
+    const all = Array.from({length: this.scene.bodies}, (_, b) => b).filter(
+      b => floeScene.exists(this.scene, k, b)).map(
+      b => Math.hypot(...this.velocityOf(b, k))).sort((a, b) => a - b);
     return all[Math.floor(0.99 * (all.length - 1))] || 1;
   }
 
   // Mean velocity [m/s] from the frame before to the one after.
   velocityOf(b, k) {
-    const {times} = this.scene, a = Math.max(0, k - 1), z = Math.min(times.length - 1, k + 1);
-    if (a === z) return [0, 0, 0];
+    const {times} = this.scene, [first, last] = floeScene.lifeOf(this.scene, b);
+    const a = Math.max(first, k - 1), z = Math.min(last, k + 1);
+    if (a >= z) return [0, 0, 0];
     const from = floeScene.bodyPose(this.scene, a, b), to = floeScene.bodyPose(this.scene, z, b);
     return to.place.map((v, i) => (v - from.place[i]) / (times[z] - times[a]));
   }
@@ -441,6 +444,7 @@ class FloeView {
     let best = Infinity, found = -1;
     for (let b = 0; b < this.scene.bodies; ++b) {
       const at = 12 * b;
+      if (data[at + 3] === 0) continue;  // it does not exist
       o.set(origin.x - data[at], origin.y - data[at + 1], origin.z - data[at + 2]);
       const along = o.dot(direction), radius = this.mesh.radius[b];
       if (o.lengthSq() - along * along > radius * radius) continue;
@@ -492,10 +496,11 @@ class FloeView {
 
   // Numbers of a body at the nearest frame, or null.
   numbersOf(b) {
-    if (b < 0) return null;
-    const k = Math.round(this.frame), {scene} = this, pose = floeScene.bodyPose(scene, k, b);
+    const k = Math.round(this.frame), {scene} = this;
+    if (b < 0 || !floeScene.exists(scene, k, b)) return null;
+    const pose = floeScene.bodyPose(scene, k, b);
     if (!this.pieces || this.pieces.frame !== k) {
-      this.pieces = {frame: k, ...floeScene.fragmentsAt(scene, scene.times[k])};
+      this.pieces = {frame: k, ...floeScene.fragmentsAt(scene, k)};
     }
     const number = this.pieces.of[b], n = scene.bodies, p = scene.poses, at = 6 * n * k + b;
     const turn = [3, 4, 5].map(i => p[at + i * n] * scene.turn_step);

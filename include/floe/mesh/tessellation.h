@@ -48,6 +48,9 @@ struct SheetPlan {
   Outline outline{};     ///< the sheet; empty: the rectangle
   /// of each polygon of the outline; empty: all have element_size and seed
   std::vector<PolygonPlan> of_polygon{};
+  /// The rectangle goes on beyond its bottom and top sides, as itself: cells next to one of them
+  /// have facets with images of cells next to the other, and reach across the side.
+  bool periodic = false;
 
   /// Element size in a polygon of the outline [m].
   double size_of(std::int32_t polygon) const {
@@ -66,7 +69,8 @@ enum SheetSide : std::uint8_t { side_left = 1, side_right = 2, side_bottom = 4, 
 /// A straight edge shared by two cells, cells[0] < cells[1].
 struct Facet {
   std::array<std::int32_t, 2> cells;
-  double width;  ///< [m]
+  double width;      ///< [m]
+  double shift = 0;  ///< along y, from cells[1] to its image at the facet, of a periodic plan [m]
 };
 
 /// A tessellation of the plan. Cell k has the convex polygon vertices[offset[k]] ...
@@ -92,14 +96,17 @@ struct Tessellation {
 /// options of the quasi-Newton solver have the prefix mesh_ (-mesh_tao_monitor). \param
 /// on_iteration  called after each sweep with its number and the largest move over l; by
 /// quasi_newton after each accepted step, with the number of evaluations so far (may be empty)
-/// \throws InputError if there would be more than 1e8 cells
+/// \throws InputError if there would be more than 1e8 cells, or if a periodic plan is so narrow
+/// that
+///   cells meet others at both sides
 Tessellation tessellate(const SheetPlan& plan, MPI_Comm comm,
                         const std::function<void(int, double)>& on_iteration = {});
 
 /// Returns the tessellation of given generators, without relaxation. Degenerate arrangements are
 /// allowed. Cell k is that of generator k. Not collective.
-/// \param plan  length, width and element_size are used
-/// \throws InputError if two generators coincide or one lies outside the plan
+/// \param plan  length, width, element_size and periodic are used
+/// \throws InputError if two generators coincide or one lies outside the plan (beyond its left and
+///   right sides, if it is periodic), or as above
 Tessellation tessellate(const SheetPlan& plan, std::vector<std::array<double, 2>> generators);
 
 /// An edge of a cell that no other cell shares, with the cell to its left.
