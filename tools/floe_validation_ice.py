@@ -214,13 +214,13 @@ def porosity(runs, settings):
 def shear_box(runs, settings):
     """Shear stress in a box, the force on its held blocks over its area: the largest mean over some
     time, which is the shear strength, and the mean over the last part. settings: mean [s], last
-    (share of the time), allowed [Pa], labels {point: text}."""
+    (share of the time), allowed [kPa], labels {point: text}."""
     lines, series = [], []
     for point, drawn in by_point(runs).items():
         strengths, last, curves = [], [], []
         for run in drawn:
             area = np.prod(run.option("model_periodic"))
-            time, stress = run.column("time"), np.abs(run.column("bottom_force_x")) / area
+            time, stress = run.column("time"), np.abs(run.column("bottom_force_x")) / area / 1e3
             step = (time[-1] - time[0]) / (len(time) - 1)
             number = max(1, round(settings["mean"] / step))
             passed = np.convolve(stress, np.ones(number) / number, "valid")
@@ -228,19 +228,19 @@ def shear_box(runs, settings):
             last.append(float(stress[time >= (1 - settings["last"]) * time[-1]].mean()))
             curves.append(passed)
         label = settings["labels"][point]
-        lines += [Line(f"{label}: shear strength [Pa]", strengths, None, settings["allowed"]),
-                  Line(f"{label}: shear stress of the last part [Pa]", last, None,
+        lines += [Line(f"{label}: shear strength [kPa]", strengths, None, settings["allowed"]),
+                  Line(f"{label}: shear stress of the last part [kPa]", last, None,
                        settings["allowed"])]
         short = min(map(len, curves))
         series.append((label, list(time[number - 1:][:short]),
-                       list(np.mean([one[:short] for one in curves], axis=0) / 1e3), None, "line"))
+                       list(np.mean([one[:short] for one in curves], axis=0)), None, "line"))
     return Found(lines, "time [s]", "shear stress, mean over the seeds [kPa]", series)
 
 
 def keel_punch(runs, settings):
     """Shear strength of a keel from the largest force F of a punch, (F - F_b)/(pi D H): F_b the
     buoyancy of the blocks under the plate of diameter D, H the rubble's mean thickness there, both
-    at the start. settings: filter [s], allowed [Pa], labels {point: text}."""
+    at the start. settings: filter [s], allowed [kPa], labels {point: text}."""
     lines, series = [], []
     for point, drawn in by_point(runs).items():
         strengths, forces, curves = [], [], []
@@ -259,10 +259,10 @@ def keel_punch(runs, settings):
             record = np.abs(floe_signals.Filter("mean", length=settings["filter"]).apply(
                 table.forces["plate"], table.dt)[2])
             forces.append(float(record.max()))
-            strengths.append((forces[-1] - net) / (2 * np.pi * radius * high))
+            strengths.append((forces[-1] - net) / (2 * np.pi * radius * high) / 1e3)
             curves.append((np.arange(len(record)) * table.dt, record))
         label = settings["labels"][point]
-        lines += [Line(f"{label}: shear strength [Pa]", strengths, None, settings["allowed"]),
+        lines += [Line(f"{label}: shear strength [kPa]", strengths, None, settings["allowed"]),
                   Line(f"{label}: largest force", forces, unit="N")]
         short = min(len(record) for _, record in curves)
         series.append((label, list(curves[0][0][:short]),

@@ -106,13 +106,14 @@ class Made(EnsembleTest):
     def test_a_command_that_fails(self):
         for command, why in (("make_lattice rubble --columns 0 1 1", "argument --columns: 0 is "
                               "not at least 1"),
-                             ("make_lattice settled --of none", "none/options.yaml: ")):
-            (self.folder / "e.yaml").write_text(f"scene: run.yaml\nmake: {{lattice_file: "
-                                                f"{command}}}\n")
-            _, said = self.ensemble("--dir", "x", code=2)
-            last = said.splitlines()[-1]
-            self.assertTrue(last.startswith(f"floe ensemble: make: '{command}': exit code 2: "),
-                            said)
+                             ("make_lattice settled --of {here}/none", "/sub/none/")):
+            (self.folder / "sub").mkdir(exist_ok=True)
+            (self.folder / "sub/e.yaml").write_text("scene: ../run.yaml\nmake:\n  lattice_file: "
+                                                    f"{command}\n")
+            _, said = self.ensemble("--dir", "x", name=self.folder / "sub/e", code=2)
+            last = said.splitlines()[-1].replace("'", "")  # {here} in quotes, as for a shell
+            self.assertTrue(last.startswith(f"floe ensemble: make: {command}: exit code 2: "), said)
+            self.assertIn(why.replace("'", ""), last)
         # what floe says of the scene comes once its file is there, and before any run
         (self.folder / "e.yaml").write_text("scene: run.yaml\noptions: {time_end: -1}\nmake: "
                                             "{lattice_file: make_lattice stack}\n")
