@@ -126,8 +126,8 @@ class Contacts {
   void release(const BodyPair& pair) { list_.release(pair); }
 
   /// Returns the force [N] and the moment about the origin of its frame [N m] on obstacle k in the
-  /// last evaluation: of the bodies of this rank, or, if a body carries it, of all bodies where this
-  /// rank needs that body's wrench and else nothing. Obstacles of one body share its wrench.
+  /// last evaluation: of the bodies of this rank, or, if a body carries it, of all bodies where
+  /// this rank needs that body's wrench and else nothing. Obstacles of one body share its wrench.
   ContactWrench on_obstacle(std::size_t k) const {
     const std::int32_t body = solids_.obstacles()[k].body;
     if (body < 0) return active_.on_obstacle(k);
@@ -207,7 +207,7 @@ class Contacts {
   Crushing crushing_;
   Wear wear_;
   CapFinder caps_;
-  std::vector<WearCut> cuts_;  ///< of the last commit
+  std::vector<WearCut> cuts_;         ///< of the last commit
   std::vector<std::uint8_t> needed_;  ///< per body, where some carry obstacles
   StoredAtStart start_;
   ContactEvents events_;

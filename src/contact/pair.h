@@ -26,13 +26,13 @@ constexpr std::int32_t obstacle_index(std::size_t k) { return -1 - static_cast<s
 
 /// A pair of the list. Every step looks at all of them, so they are small.
 struct Pair {
-  std::int32_t a = 0, b = 0;              ///< global bodies; b < 0: obstacle -1 - b
+  std::int32_t a = 0, b = 0;  ///< global bodies; b < 0: obstacle -1 - b
   /// slots of the bodies, of that which carries an obstacle too; -1 for an obstacle on its own
   std::int32_t slot_a = -1, slot_b = -1;
-  bool counted : 1 = false;               ///< this rank owns A, and so counts the pair's energies
-  bool newly_eligible : 1 = false;        ///< the first overlap of the pair counts as stress-free
-  bool broken : 1 = false;                ///< a beam between A and B broke: they have new faces
-  bool offloaded : 1 = false;             ///< another rank computes the overlap of the pair
+  bool counted : 1 = false;         ///< this rank owns A, and so counts the pair's energies
+  bool newly_eligible : 1 = false;  ///< the first overlap of the pair counts as stress-free
+  bool broken : 1 = false;          ///< a beam between A and B broke: they have new faces
+  bool offloaded : 1 = false;       ///< another rank computes the overlap of the pair
   std::int16_t face = -1;  ///< of the last gap: number of a plane of B, then of A; -1: axis
   std::int32_t cuts = -1;  ///< place of the record of its cuts (NarrowPhase); -1: none
   Vec3<double> axis{};     ///< of the last gap that no face had, a unit vector from B to A

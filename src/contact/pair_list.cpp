@@ -54,9 +54,8 @@ void PairList::list_bodies(const Search& search) {
   std::vector<double> radii;
   radii.reserve(centres.size());
   for (std::int32_t b = 0; b < solids.bodies(); ++b)
-    radii.push_back((intact && !eligibility_.on_surface(b)) || solids.carries(b)
-                        ? -1
-                        : solids.radius(b));
+    radii.push_back(
+        (intact && !eligibility_.on_surface(b)) || solids.carries(b) ? -1 : solids.radius(b));
   std::vector<BodyPair> near;
   near_pairs(centres, radii, reach_, search.here, near, periods_);
   for (const auto& [a, b] : near) {
@@ -86,9 +85,8 @@ void PairList::list_obstacles(const Search& search) {
   for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
     const std::int32_t index = obstacle_index(k);
     const std::int32_t carrier = solids.obstacle(index).body;
-    const Placed obstacle = carrier < 0
-                                ? place_of(solids.obstacle(index), search.time, search.time)
-                                : item(search.bodies, carrier);
+    const Placed obstacle = carrier < 0 ? place_of(solids.obstacle(index), search.time, search.time)
+                                        : item(search.bodies, carrier);
     // The rank of a structure needs all contacts with it, as that of a body does.
     const bool carrier_is_here = carrier >= 0 && search.is_here(carrier);
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {

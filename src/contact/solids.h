@@ -133,8 +133,8 @@ class Solids {
   std::vector<EdgeGraph> graphs_;  ///< different ones: most bodies share one with others
   std::vector<HalfSpace> planes_;
   std::vector<Body> bodies_;
-  std::vector<Faces> faces_;      ///< per body
-  std::vector<Extents> extents_;  ///< per obstacle
+  std::vector<Faces> faces_;            ///< per body
+  std::vector<Extents> extents_;        ///< per obstacle
   std::vector<std::uint8_t> carries_;   ///< per body; empty: none does
   std::vector<std::int32_t> carriers_;  ///< sorted
   double thinnest_ = std::numeric_limits<double>::infinity();

@@ -55,12 +55,10 @@ class Supports final : public Force<Spatial>,
       const SupportWrench spring = spring_wrench(held.support.stiffness, held.shift, held.turn);
       const Vec3<double> arm = arm_of(state, held);
       const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
-      const auto [force, moment] =
-          product_of(held.support.damping, v + cross(w, arm), w);
+      const auto [force, moment] = product_of(held.support.damping, v + cross(w, arm), w);
       held.damping = {-force, -moment + cross(arm, -force)};
       held.wrench = {spring.force - force, spring.moment - moment};
-      floe::add(wrenches, b, held.wrench.force,
-                held.wrench.moment + cross(arm, held.wrench.force));
+      floe::add(wrenches, b, held.wrench.force, held.wrench.moment + cross(arm, held.wrench.force));
     }
     power_ = power_with(state);
   }
@@ -83,8 +81,8 @@ class Supports final : public Force<Spatial>,
       for (std::size_t row = 0; row < 6; ++row) {
         double sum = 0;
         for (std::size_t k = 0; k < 6; ++k) {
-          const double unit = (row < 3 ? 1 : 1 / std::sqrt(gyration2)) *
-                              (k < 3 ? 1 : 1 / std::sqrt(gyration2));
+          const double unit =
+              (row < 3 ? 1 : 1 / std::sqrt(gyration2)) * (k < 3 ? 1 : 1 / std::sqrt(gyration2));
           sum += std::abs(held.support.stiffness[6 * row + k]) * unit;
         }
         bound = std::max(bound, sum * (1 + arm2 / gyration2));

@@ -22,9 +22,9 @@ std::vector<T> pick(const std::vector<T>& values, std::span<const std::int32_t> 
 }
 
 inline Bodies pick(const Bodies& b, std::span<const std::int32_t> order) {
-  return {pick(b.position, order),         pick(b.orientation, order), pick(b.mass, order),
-          pick(b.inertia, order),          pick(b.velocity, order),
-          pick(b.angular_velocity, order), pick(b.dry, order)};
+  return {pick(b.position, order), pick(b.orientation, order), pick(b.mass, order),
+          pick(b.inertia, order),  pick(b.velocity, order),    pick(b.angular_velocity, order),
+          pick(b.dry, order)};
 }
 
 inline Beams pick(const Beams& b, std::span<const std::int32_t> order) {

@@ -1,8 +1,8 @@
 // Reading of structures: obstacles that forces move.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <Eigen/Eigenvalues>
 #include <string>
 
 #include "reading.h"
@@ -94,19 +94,20 @@ void read_support(Options& options, const std::string& name, Structure& structur
 Structure read_structure(Options& options, const Obstacle& obstacle) {
   const std::string& name = obstacle.name;
   if (obstacle.vertices.empty())
-    throw InputError("obstacle: " + name + ": mass: a halfspace is no body; box, cone, cylinder "
+    throw InputError("obstacle: " + name +
+                     ": mass: a halfspace is no body; box, cone, cylinder "
                      "and file can be");
   for (const auto* last : {"velocity", "angular_velocity", "amplitude", "frequency", "ramp"})
     options.refuse_one(key(last), name,
                        "does not go with 'mass': forces move it; a 'boundary' or 'initial' with "
-                       "'set: " + name + "' prescribes or begins its motion");
+                       "'set: " +
+                           name + "' prescribes or begins its motion");
   if (std::find(sheet_sets.begin(), sheet_sets.end(), name) != sheet_sets.end())
     throw InputError("obstacle: names: '" + name +
                      "' is the name of a set, which that of a structure must not be");
   Structure structure;
   structure.mass = options.number(key("mass"), name);
-  if (options.given(key("inertia"), name))
-    structure.inertia = options.vector(key("inertia"), name);
+  if (options.given(key("inertia"), name)) structure.inertia = options.vector(key("inertia"), name);
   if (structure.inertia) {
     if (options.given(key("centre_of_mass"), name))
       structure.centre = options.vector(key("centre_of_mass"), name);

@@ -180,8 +180,8 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
     ContactOptions options = scene.contact;
     options.inertia_factor = scene.inertia_factor;
     options.periods = scene.periods;
-    auto contact = make_contact(model.part(), lattice, options,
-                                obstacles_on(scene, lattice), std::move(motion));
+    auto contact = make_contact(model.part(), lattice, options, obstacles_on(scene, lattice),
+                                std::move(motion));
     const std::string& overlap = contact->overlap_at_start();
     if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
     model.add_force(std::move(contact));

@@ -1,8 +1,8 @@
 #include "scene_model/structures.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <Eigen/Eigenvalues>
 #include <utility>
 
 #include "floe/base/item.h"
@@ -30,8 +30,8 @@ Placement placement(const Obstacle& obstacle, const Structure& structure) {
     for (Eigen::Index column = 0; column < 3; ++column)
       tensor(row, column) = structure.mass / volume.volume *
                             volume.inertia[static_cast<std::size_t>(3 * row + column)];
-  const double off = std::max({std::abs(tensor(0, 1)), std::abs(tensor(0, 2)),
-                               std::abs(tensor(1, 2))});
+  const double off =
+      std::max({std::abs(tensor(0, 1)), std::abs(tensor(0, 2)), std::abs(tensor(1, 2))});
   constexpr double rounding = 1e-12;
   if (off <= rounding * tensor.trace()) {  // axes of the world, whatever the order of moments
     p.moments = {tensor(0, 0), tensor(1, 1), tensor(2, 2)};
@@ -141,21 +141,19 @@ void add_supports(const Scene& scene, Model<Spatial>& model) {
       const Vec3<double> arm = p.centre - support.point;
       const auto& [mx, my, mz, mrx, mry, mrz] = s.added_mass;
       const Point3 about = moments_in_world(p);
-      const std::array<double, 6> inertia{
-          s.mass + mx,
-          s.mass + my,
-          s.mass + mz,
-          about.x + mrx + s.mass * (arm.y * arm.y + arm.z * arm.z),
-          about.y + mry + s.mass * (arm.x * arm.x + arm.z * arm.z),
-          about.z + mrz + s.mass * (arm.x * arm.x + arm.y * arm.y)};
+      const std::array<double, 6> inertia{s.mass + mx,
+                                          s.mass + my,
+                                          s.mass + mz,
+                                          about.x + mrx + s.mass * (arm.y * arm.y + arm.z * arm.z),
+                                          about.y + mry + s.mass * (arm.x * arm.x + arm.z * arm.z),
+                                          about.z + mrz + s.mass * (arm.x * arm.x + arm.y * arm.y)};
       for (std::size_t c = 0; c < 6; ++c)
-        support.damping[7 * c] =
-            2 * *s.damping_ratio * std::sqrt(s.stiffness[7 * c] * inertia[c]);
+        support.damping[7 * c] = 2 * *s.damping_ratio * std::sqrt(s.stiffness[7 * c] * inertia[c]);
     }
     supports.push_back(std::move(support));
     const std::int32_t local = part.local_index(supports.back().body);
-    const bool has_added = std::any_of(s.added_mass.begin(), s.added_mass.end(),
-                                       [](double m) { return m > 0; });
+    const bool has_added =
+        std::any_of(s.added_mass.begin(), s.added_mass.end(), [](double m) { return m > 0; });
     any = any || has_added;
     if (has_added && p.axes.w != 1)
       throw InputError("obstacle: " + obstacle.name +

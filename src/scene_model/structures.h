@@ -15,7 +15,8 @@ namespace floe {
 /// Appends the structures of a scene to its lattice, each as a body behind all others and as a set
 /// of its name. They are not in the set all.
 void add_structures(const Scene& scene, Lattice& lattice);
-/// Returns the obstacles of a scene, those that bodies of its lattice carry in these bodies' frames.
+/// Returns the obstacles of a scene, those that bodies of its lattice carry in these bodies'
+/// frames.
 std::vector<Obstacle> obstacles_on(const Scene& scene, const Lattice& lattice);
 /// Adds supports and added masses of structures, after all other added masses.
 void add_supports(const Scene& scene, Model<Spatial>& model);

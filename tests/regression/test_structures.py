@@ -213,6 +213,76 @@ class Ice(StructureTest):
         self.assertLess(peak["soft"], 0.8 * peak["fixed"])
 
 
+LOCK = """integrator: explicit
+forces: [contact]
+lattice_file: slab.h5
+contact: {young: 6.36e8, plastic_limit: 2e5, FAST restitution: 1}
+obstacle:
+  names: [leg]
+  leg:
+    shape: box
+    centre: [10.001, 0, 0]
+    size: [20, 0.1, 1]
+    mass: 500
+    support_stiffness: [1.5e5, 0, 0, 0, 0, 0]
+    support_damping_ratio: 0.025
+boundary:
+  names: [ice, guide]
+  ice: {set: all, fix: x y z rx ry rz, velocity: [SPEED, 0, 0]}
+  guide: {set: leg, fix: y z rx ry rz}
+time: {end: 14}
+output: {history: 2e-3}
+"""
+
+
+def peak_of_one_degree(speed, contact, end=14.0, dt=2e-4):
+    """Largest velocity of a leg of one degree of freedom in ice that crushes at 2 kN where slow and
+    1 kN where fast, in the second half of a run, over the ice's [1]: the contact is a spring up to
+    that force. Symplectic Euler."""
+    stiffness, mass = 1.5e5, 500
+    damping = 2 * 0.025 * np.sqrt(stiffness * mass)
+    x = u = crushed = largest = 0.0
+    for step in range(round(end / dt)):
+        pressed = speed * step * dt - 0.001 - x
+        force = contact * (pressed - crushed)
+        limit = 1000 * (1 + np.exp(-max(speed - u, 0) / 0.05))
+        if force > limit:
+            force, crushed = limit, pressed - limit / contact
+        u += dt * (max(force, 0.0) - damping * u - stiffness * x) / mass
+        x += dt * u
+        if 2 * step * dt > end:
+            largest = max(largest, u)
+    return largest / speed
+
+
+class LockIn(StructureTest):
+    def test_against_one_degree_of_freedom(self):
+        """Peak speed over ice speed: 2 % of an integration of the one equation, 10 % of published
+        numbers, out of lock where it is fast, and never in with a constant limit."""
+        fl.blocks(np.array([[20.0, 3, 0.1]]), np.array([[-10.0, 0, 0]])).write(
+            self.folder / "slab.h5")
+        contact = 0.01 * 6.36e8 / (0.5 * 6 ** (1 / 3))  # A E_c/L [N/m]
+        fast = "plastic_fast: 0.5, plastic_speed: 0.05,"
+        for speed, published in ((0.01, 3.35), (0.03, 1.87), (0.06, 1.5), (0.1, 1.27),
+                                 (0.15, 1.21), (0.25, 0)):
+            scene = LOCK.replace("FAST", fast)
+            if published == 0:  # what it begins with dies away slowly
+                scene = scene.replace("end: 14", "end: 30")
+            ratio = self.peak(scene, speed)
+            if published == 0:
+                self.assertLess(ratio, 0.03)
+                continue
+            self.assertAlmostEqual(ratio / published, 1, delta=0.1, msg=speed)
+            self.assertAlmostEqual(ratio / peak_of_one_degree(speed, contact), 1, delta=0.02,
+                                   msg=speed)
+        self.assertLess(self.peak(LOCK.replace("FAST", ""), 0.06), 0.2)
+
+    def peak(self, scene, speed):
+        rows = self.rows(scene.replace("SPEED", str(speed)), "-output_overwrite")
+        late = rows["time"] > rows["time"][-1] / 2
+        return np.max(rows["leg_velocity_x"][late]) / speed
+
+
 class Floats(StructureTest):
     def test_heave_and_roll(self):
         """A box of half the water's density: heave by rho g A/(m + added), roll by rho g (I -

@@ -36,8 +36,8 @@ TEST(Support, WrenchIsTheGradientOfItsPotential) {
     for (std::size_t c = 0; c < 3; ++c) {
       Vec3<double> d{};
       d[c] = step;
-      const double along = (spring_energy(k, shift + d, turn) - spring_energy(k, shift - d, turn)) /
-                           (2 * step);
+      const double along =
+          (spring_energy(k, shift + d, turn) - spring_energy(k, shift - d, turn)) / (2 * step);
       EXPECT_NEAR(wrench.force[c], -along, 1e-8);
       const auto turned = [&](double sign) {
         return log_rotation(product(exp_rotation(sign * d), exp_rotation(turn)));

@@ -49,6 +49,22 @@ def check_endless_slope(test, run):
     expect_ledger(test, output, 1e-3)
 
 
+def check_monopile_lockin(test, run):
+    """The first 12 s, three times as fast: at 0.24 m/s the pile goes with the ice."""
+    output = run("-time_end", "12", "-boundary_push_ramp", "20")
+    time, speed = output.history("time"), output.history("pile_velocity_x")
+    ice = 0.4 / 20 * time
+    locked = (time > 5) & (time < 11)
+    test.assertGreater(np.max(speed[locked] / ice[locked]), 1.05)
+    test.assertLess(np.max(speed[locked] / ice[locked]), 2)
+    test.assertGreater(np.mean(speed[locked] > 0.9 * ice[locked]), 0.08)
+    load = output.history("pile_force_x")[locked]
+    test.assertTrue(6e5 < load.mean() < 9e5, load.mean())
+    test.assertLess(load.max(), 1.4e6)
+    offset = output.history("pile_x")[locked].mean() * 3.158e7
+    test.assertAlmostEqual(offset / load.mean(), 1, delta=0.05)
+
+
 def check_ice_cone(test, run):
     output = run("-time_end", "2")
     test.assertGreater(output.summary["beams_broken"], 10)
