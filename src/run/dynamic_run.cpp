@@ -280,6 +280,7 @@ template <class Space>
 void DynamicRun<Space>::change_ice() {
   const SupplyOptions& supply = *options_.supply;
   evaluate();
+  supply.before_change(column_names());
   double before = energy_balance();
   const IceNow now = ice_now();
   const std::vector<std::int32_t> gone = supply.leaving(now);

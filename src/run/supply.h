@@ -42,6 +42,8 @@ struct SupplyOptions {
   std::optional<FreeEdge> free_edge;  ///< given: ice joins with what the edge does indeed
   /// Whether ice is to join when the far edge has come so far [m].
   std::function<bool(double way)> is_due;
+  /// Called before a change, with the names of the run's columns.
+  std::function<void(const std::vector<std::string>& columns)> before_change = [](const auto&) {};
   /// Bodies that are to leave, sorted.
   std::function<std::vector<std::int32_t>(const IceNow&)> leaving;
   /// Divides the model anew without these bodies.

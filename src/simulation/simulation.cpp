@@ -281,6 +281,8 @@ std::optional<SupplyOptions> RunningIn<Space>::supply() {
   SupplyOptions options;
   options.edge = ice.edge();
   options.is_due = [&ice](double way) { return ice.is_due(way); };
+  // After a restart the files are open from the first sample on only; they follow all changes.
+  options.before_change = [this](const auto& columns) { prepare_output(columns); };
   options.leaving = [&ice](const IceNow& now) { return ice.leaving(now); };
   options.leave = [this, &ice](const IceNow& now, const std::vector<std::int32_t>& gone) {
     return change(ice.leave(gone), now);

@@ -18,7 +18,7 @@ from test_restart import RestartTest, contents
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_fields import Bodies  # noqa: E402
-from floe_output import Output  # noqa: E402
+from floe_output import Output, frames_of  # noqa: E402
 
 SCENE = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]
@@ -376,6 +376,32 @@ class Files(SupplyTest):
             (folder / href).read_text().count("<Grid Name=\"sheet\"")
             for href in (part.split('"')[0] for part in text.split('href="')[1:]))
         self.assertEqual(grids, len(frames))
+
+    def test_ice_that_changes_before_the_first_sample_after_a_restart(self):
+        """Frames after it have their mesh, as those of a run in one piece have."""
+        (self.folder / "scene.yaml").write_text(
+            SCENE.replace("history: 0.101, fields: 0.37", "history: 0.1, fields: 0.5"))
+        whole = self.run_whole(dir="a")
+        self.run_whole("-ts_max_steps", "3000", dir="b")
+        parts = self.go_on(dir="b")
+        frames = {}
+        for folder in (whole, parts):
+            for time, path, group in frames_of(folder):
+                with h5py.File(path) as file:
+                    first = int(file[group].attrs.get("mesh", 0))
+                    name = path.with_name(f"mesh_{first:06d}.h5")
+                    names = []
+                    if first:
+                        with h5py.File(name) as mesh:
+                            names = list(mesh["mesh/name"][:])
+                    frames.setdefault(round(time, 6), []).append(
+                        (len(file[group]["centres"]), names))
+        changed = 0
+        for found in frames.values():
+            if len(found) == 2:  # each part has a frame of its own last state too
+                self.assertEqual(*found)
+                changed += bool(found[0][1])
+        self.assertGreater(changed, 5)
 
     def test_summary(self):
         folder = self.run_whole(dir="a")
