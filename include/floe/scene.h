@@ -18,6 +18,7 @@
 #include "floe/contact_laws/contact_options.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/load.h"
+#include "floe/forces/mooring_line.h"
 #include "floe/forces/support.h"
 #include "floe/fracture/fracture_options.h"
 #include "floe/lattice/lattice.h"
@@ -111,6 +112,12 @@ struct Structure {
   std::optional<Point3> support_point;   ///< at rest [m]; none: its centre of mass
 };
 
+/// A mooring line of a structure, whose body is known once there is a lattice.
+struct SceneLine {
+  std::size_t structure = 0;  ///< number of the structure
+  MooringLine line;
+};
+
 /// The input of a run.
 struct Scene {
   std::string path;  ///< the scene file
@@ -170,6 +177,7 @@ struct Scene {
   ContactOptions contact;
   std::vector<Obstacle> obstacles;
   std::vector<Structure> structures;
+  std::vector<SceneLine> lines;
   std::vector<Boundary> boundaries;
   std::vector<Load> loads;
   struct {

@@ -387,6 +387,25 @@ constexpr std::array table{
     OptionSpec{"obstacle: NAME: support_point", numbers, "(its centre of mass)", "m",
                ">= -1e9, <= 1e9", "structure: where its support holds it, at rest", 3},
 
+    OptionSpec{"line: names", names, "(none)", "", "",
+               "mooring lines of structures: one section each"},
+    OptionSpec{"line: NAME: structure", text, "(required)", "", "",
+               "the obstacle with a mass that it holds"},
+    OptionSpec{"line: NAME: fairlead", numbers, "(required)", "m", ">= -1e9, <= 1e9",
+               "its end on the structure, at rest", 3},
+    OptionSpec{"line: NAME: anchor", numbers, "(required)", "m", ">= -1e9, <= 1e9",
+               "its fixed end", 3},
+    OptionSpec{"line: NAME: table", text, "(stiffness)", "", "",
+               "file of length, tension [m, N]: lengths rise, tensions do not fall; straight in "
+               "between and beyond, never below 0"},
+    OptionSpec{"line: NAME: stiffness", number, "(required)", "N/m", ">= 1e-9, <= 1e15",
+               "without a table: of a line whose tension is its pretension and this times how much "
+               "longer it is"},
+    OptionSpec{"line: NAME: pretension", number, "(required)", "N", ">= 0, <= 1e12",
+               "tension at rest; optional with a table, whose lengths move to it"},
+    OptionSpec{"line: NAME: damping", number, "0", "N s/m", ">= 0, <= 1e12",
+               "of a dashpot along the line while it is taut"},
+
     OptionSpec{"boundary: names", names, "(none)", "", "", "prescribed motions: one section each"},
     OptionSpec{"boundary: NAME: set", text, "(required)", "", "", "the set of bodies"},
     OptionSpec{"boundary: NAME: fix", choices, "(required)", "", "x | y | z | rx | ry | rz",

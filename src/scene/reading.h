@@ -64,6 +64,8 @@ void read_path_control(Options& options, Scene& scene);
 Structure read_structure(Options& options, const Obstacle& obstacle);
 /// Refuses the keys of a structure where an obstacle has no mass.
 void refuse_structure(Options& options, const std::string& name);
+/// Reads the mooring lines of structures.
+void read_lines(Options& options, Scene& scene);
 /// Checks structures against the rest of the scene, when all is read. \throws InputError
 void check_structures(const Scene& scene);
 

@@ -225,6 +225,7 @@ Scene read_all(Options& options, const std::string& path) {
   read_dynamics(options, scene);
   read_supply(options, scene);
   check_structures(scene);
+  read_lines(options, scene);
   read_report(options, scene);
   read_output(options, scene);
   check_one_sheet(scene);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "floe/base/item.h"
+#include "forces/mooring_line.h"
 #include "forces/support.h"
 
 namespace floe {
@@ -165,6 +166,12 @@ void add_supports(const Scene& scene, Model<Spatial>& model) {
   }
   if (any) model.set_added_inertia(std::move(added));
   model.add_force(make_supports(part, std::move(supports)));
+  std::vector<MooringLine> lines;
+  for (const SceneLine& line : scene.lines) {
+    lines.push_back(line.line);
+    lines.back().body = part.global_bodies - count + static_cast<std::int32_t>(line.structure);
+  }
+  if (!lines.empty()) model.add_force(make_mooring_lines(part, std::move(lines)));
 }
 
 }  // namespace floe

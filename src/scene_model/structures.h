@@ -18,7 +18,7 @@ void add_structures(const Scene& scene, Lattice& lattice);
 /// Returns the obstacles of a scene, those that bodies of its lattice carry in these bodies'
 /// frames.
 std::vector<Obstacle> obstacles_on(const Scene& scene, const Lattice& lattice);
-/// Adds supports and added masses of structures, after all other added masses.
+/// Adds supports, mooring lines and added masses of structures, after all other added masses.
 void add_supports(const Scene& scene, Model<Spatial>& model);
 
 }  // namespace floe

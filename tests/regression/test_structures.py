@@ -6,7 +6,7 @@ import unittest
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.optimize import curve_fit
+from scipy.optimize import brentq, curve_fit
 
 from launch import REPOSITORY
 from scene_runs import SceneTest
@@ -313,6 +313,138 @@ class Floats(StructureTest):
         rows = self.rows(scene.replace("SUPPORT", DIAGONAL))
         for column in ("leg_x", "leg_z", "leg_rx", "leg_support_force_z"):
             self.assertEqual(np.max(np.abs(rows[column])), 0, column)
+
+
+# A floating box between four lines.
+MOORED = """integrator: explicit
+forces: [gravity, buoyancy, contact]
+lattice_file: block.h5
+contact: {young: 1e6}
+water: {density: 1010}
+obstacle:
+  names: [box]
+  box: {shape: box, centre: [20, 0, 0], size: [4, 4, 2], mass: 16160, floats: true}
+line:
+  names: [east, west, north, south]
+  east: {structure: box, fairlead: [22, 0, 0], anchor: [62, 0, 0], EAST}
+  west: {structure: box, fairlead: [18, 0, 0], anchor: [-22, 0, 0], EAST}
+  north: {structure: box, fairlead: [20, 2, 0], anchor: [20, 42, 0], EAST}
+  south: {structure: box, fairlead: [20, -2, 0], anchor: [20, -42, 0], EAST}
+load: {names: [pull], pull: {set: box, force: [2e4, 0, 0], ramp: 5}}
+time: {end: 60, dt: 2e-3}
+output: {history: 0.05}
+checkpoint: {every: 10000}
+"""
+
+
+class Lines(StructureTest):
+    def test_offset_against_statics(self):
+        """Four lines of a stiffness, and of a table that stiffens: the offset under a load is that
+        of the forces' balance, to 1e-6."""
+        table = np.array([[39.0, 0], [40, 1e4], [41, 3e4], [42, 9e4]])
+        with open(self.folder / "line.csv", "w") as file:
+            file.write("length, tension\n")
+            for row in table:
+                file.write(f"{row[0]}, {row[1]}\n")
+
+        def tension(length, of):
+            if of == "table":
+                return max(0.0, np.interp(length, *table.T) if length < 42 else
+                           9e4 + 6e4 * (length - 42))
+            return max(0.0, 1e4 + 2e4 * (length - 40))
+
+        for of, words in (("table", "table: line.csv, damping: 2e4"),
+                          ("stiffness", "stiffness: 2e4, pretension: 1e4, damping: 2e4")):
+            rows = self.rows(MOORED.replace("EAST", words), name=of)
+
+            def balance(x, of=of):
+                side = np.hypot(40, x)
+                return (2e4 + tension(40 - x, of) - tension(40 + x, of)
+                        - 2 * tension(side, of) * x / side)
+            found = brentq(balance, 0, 4, xtol=1e-14)
+            # The fairleads of north and south go along; the box does not turn.
+            self.assertAlmostEqual(rows["box_x"][-1] / found, 1, delta=1e-6)
+            self.assertAlmostEqual(rows["west_tension"][-1] / tension(40 + found, of), 1,
+                                   delta=1e-6)
+            self.assertAlmostEqual(rows["north_length"][-1] / np.hypot(40, found), 1, delta=1e-6)
+            self.assertAlmostEqual(rows["west_tension"][0], 1e4, delta=1e-6)
+            self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
+                            1e-4 * np.max(rows["energy_lines"]))
+
+    def test_a_pretension_moves_a_table(self):
+        with open(self.folder / "line.csv", "w") as file:
+            file.write("0 0  # length, tension\n1 1e4\n2 5e4\n")
+        rows = self.rows(MOORED.replace("EAST", "table: line.csv, pretension: 3e4")
+                         .replace("end: 60", "end: 0.1"))
+        self.assertAlmostEqual(rows["east_tension"][0], 3e4, delta=1e-6)
+        self.assertAlmostEqual(rows["east_length"][0], 40, delta=1e-9)
+
+    def test_period_and_ranks(self):
+        """Sway on two lines of stiffness k and two across of tension T: m w^2 = 2 k + 2 T/L."""
+        scene = MOORED.replace("EAST", "stiffness: 2e4, pretension: 1e4").replace(
+            "force: [2e4, 0, 0], ramp: 5", "force: [0, 0, 0]").replace("end: 60", "end: 20") + (
+            "initial: {names: [kick], kick: {set: box, velocity: [0.01, 0, 0]}}\n")
+        rows = self.rows(scene)
+        rate = np.sqrt((2 * 2e4 + 2 * 1e4 / 40) / 16160)
+        found, _ = curve_fit(lambda t, a, w: a * np.sin(w * t), rows["time"], rows["box_x"],
+                             p0=[0.01 / rate, rate])
+        self.assertAlmostEqual(found[1] / rate, 1, delta=1e-4)
+        self.run_scene(scene, name="two", ranks=2)
+        two = rows_of(self.folder / "out/two")
+        for column in ("box_x", "east_tension", "energy_lines"):
+            np.testing.assert_array_equal(rows[column], two[column])
+
+    def test_refusals(self):
+        with open(self.folder / "line.csv", "w") as file:
+            file.write("length, tension\n1, 5\n2, 4\n")
+        for words, part in (
+                ("stiffness: 1", "line: east: pretension"),
+                ("pretension: 1", "line: east: stiffness"),
+                ("table: line.csv", "'line.csv': row 2: tension 4 must be no less than"),
+                ("table: none.csv", "line: east: table: 'none.csv'"),
+                ("table: line.csv, stiffness: 2", "line: east: stiffness: 'table' says it")):
+            done = self.run_scene(MOORED.replace("EAST", words), code=2)
+            self.assertIn(part, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        scene = MOORED.replace("EAST", "stiffness: 1, pretension: 1")
+        for scene, part in (
+                (scene.replace("east: {structure: box", "east: {structure: hull"),
+                 "line: east: structure: 'hull' is no obstacle with a mass"),
+                (scene.replace("[62, 0, 0]", "[22, 0, 0]"), "line: east: anchor: is where")):
+            done = self.run_scene(scene, code=2)
+            self.assertIn(part, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+
+
+class Wall(StructureTest):
+    def test_of_a_given_stress(self):
+        """A wall that a load pushes, guided by a boundary, keeps its stress on a pile of blocks
+        between it and a wall at rest, while it follows the pile."""
+        random = np.random.default_rng(2)
+        places = np.array([[0.62 * i, 0.62 * j, 0.62 * k] for i in range(6) for j in range(3)
+                           for k in range(3)])
+        lattice = fl.blocks(np.full((len(places), 3), 0.5), places)
+        turn = 0.3 * random.normal(size=(len(places), 3))
+        lattice.orientation = np.column_stack([np.ones(len(places)), turn / 2])
+        lattice.orientation /= np.linalg.norm(lattice.orientation, axis=1)[:, None]
+        lattice.write(self.folder / "blocks.h5")
+        walls = {"floor": ([0, 0, -0.5], [0, 0, 1]), "south": ([0, -0.5, 0], [0, 1, 0]),
+                 "north": ([0, 1.74, 0], [0, -1, 0]), "end": ([-0.5, 0, 0], [1, 0, 0])}
+        scene = ("integrator: explicit\nforces: [gravity, contact]\nlattice_file: blocks.h5\n"
+                 "contact: {young: 1e6, restitution: 0.3, friction: 0.1}\nobstacle:\n"
+                 f"  names: [{', '.join(walls)}, lid]\n")
+        for name, (point, normal) in walls.items():
+            scene += f"  {name}: {{shape: halfspace, point: {point}, normal: {normal}}}\n"
+        scene += ("  lid: {shape: box, centre: [5, 0.6, 1], size: [1, 4, 5], mass: 500, "
+                  "support_damping: [2000, 0, 0, 0, 0, 0]}\n"
+                  "boundary: {names: [guide], guide: {set: lid, fix: y z rx ry rz}}\n"
+                  "load: {names: [press], press: {set: lid, force: [-5000, 0, 0], ramp: 1}}\n"
+                  "time: {end: 8}\noutput: {history: 0.02}\n")
+        rows = self.rows(scene)
+        late = rows["time"] > 6
+        self.assertLess(rows["lid_x"][-1], -0.8)
+        self.assertAlmostEqual(np.mean(rows["lid_force_x"][late]) / 5000, 1, delta=0.01)
+        self.assertAlmostEqual(np.mean(rows["end_force_x"][late]) / -5000, 1, delta=0.3)
 
 
 class Refused(StructureTest):

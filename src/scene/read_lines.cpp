@@ -1,0 +1,91 @@
+// Reading of mooring lines.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reading.h"
+#include "scene/table_file.h"
+
+namespace floe {
+namespace {
+
+std::string key(const char* last) { return "line: NAME: " + std::string(last); }
+
+TensionCurve read_curve(Options& options, const std::string& name, Scene& scene) {
+  const std::string file = options.text(key("table"), name), label = "line: " + name + ": table";
+  scene.inputs.emplace_back(label, file);
+  std::vector<TensionCurve::Row> rows;
+  for (const auto& row : read_table(file, label, {"length", "tension"}, 2)) {
+    const auto refuse = [&](const std::string& why) {
+      throw InputError(label + ": '" + file + "': row " + std::to_string(rows.size() + 1) + ": " +
+                       why);
+    };
+    if (row[1] < 0) refuse("tension " + text_of(row[1]) + " must be >= 0 [N]");
+    if (!rows.empty() && !(row[0] > rows.back().length))
+      refuse("length " + text_of(row[0]) + " must be more than that of the row before, " +
+             text_of(rows.back().length) + " [m]");
+    if (!rows.empty() && row[1] < rows.back().tension)
+      refuse("tension " + text_of(row[1]) + " must be no less than that of the row before, " +
+             text_of(rows.back().tension) + " [N]");
+    rows.push_back({row[0], row[1]});
+  }
+  return TensionCurve(std::move(rows));
+}
+
+/// A straight line through a length and its tension.
+TensionCurve straight(double length, double tension, double stiffness) {
+  const double slack = length - tension / stiffness;
+  return TensionCurve({{slack, 0}, {slack + 1, stiffness}});
+}
+
+void read_line(Options& options, const std::string& name, Scene& scene) {
+  const auto given = [&](const char* last) { return options.given(key(last), name); };
+  const std::string of = options.text(key("structure"), name);
+  const auto structure =
+      std::find_if(scene.structures.begin(), scene.structures.end(),
+                   [&](const Structure& s) { return scene.obstacles[s.obstacle].name == of; });
+  if (structure == scene.structures.end())
+    throw InputError("line: " + name + ": structure: '" + of + "' is no obstacle with a mass");
+  SceneLine line{.structure = static_cast<std::size_t>(structure - scene.structures.begin()),
+                 .line = {.name = name}};
+  line.line.fairlead = options.vector(key("fairlead"), name);
+  line.line.anchor = options.vector(key("anchor"), name);
+  const double length = floe::length(line.line.anchor - line.line.fairlead);
+  if (!(length > 0))
+    throw InputError("line: " + name + ": anchor: is where the fairlead is; it must be elsewhere");
+  if (given("table")) {
+    options.refuse_one(key("stiffness"), name, "'table' says it");
+    line.line.curve = read_curve(options, name, scene);
+    if (given("pretension")) {
+      const double wanted = options.number(key("pretension"), name);
+      if (!(wanted > 0) || !(line.line.curve.steepest() > 0))
+        throw InputError("line: " + name + ": pretension: " + text_of(wanted) +
+                         " must be > 0 [N] with a table whose tension rises");
+      const double at = line.line.curve.length_at(wanted);
+      if (!std::isfinite(at))
+        throw InputError("line: " + name + ": pretension: " + text_of(wanted) +
+                         " is more than the table reaches [N]");
+      line.line.curve.lengthen(length - at);
+    }
+  } else {
+    line.line.curve = straight(length, options.number(key("pretension"), name),
+                               options.number(key("stiffness"), name));
+  }
+  line.line.damping = options.number(key("damping"), name);
+  scene.lines.push_back(std::move(line));
+}
+
+}  // namespace
+
+void read_lines(Options& options, Scene& scene) {
+  for (const std::string& name : options.names("line")) {
+    for (const Obstacle& o : scene.obstacles)
+      if (o.name == name)
+        throw InputError("line: names: '" + name + "' is the name of an obstacle too");
+    read_line(options, name, scene);
+  }
+}
+
+}  // namespace floe
