@@ -299,7 +299,7 @@ void DynamicRun<Space>::change_ice() {
     divide([&] { return supply.leave(now, gone); });
     take(ice_.left, -1);
   }
-  const std::int32_t bodies = model_.part().global_bodies;
+  const std::int32_t bodies = model_.part().global_bodies - supply.others;  // of ice
   if (supply.can_join()) {
     IceNow rest = ice_now();
     edge_ = edge_motion();
@@ -307,7 +307,8 @@ void DynamicRun<Space>::change_ice() {
     rest.edge = edge_ ? edge_->shift : std::array{behind[0], behind[1]};
     const double strain = edge_ ? edge_->strain : 0;
     divide([&] { return supply.join(rest, strain); });
-    add_to(ice_.joined, [&](std::int32_t body) { return body >= bodies; });
+    const std::int32_t after = model_.part().global_bodies - supply.others;
+    add_to(ice_.joined, [&](std::int32_t body) { return body >= bodies && body < after; });
     take(ice_.joined, 1);
   }
 }

@@ -37,6 +37,7 @@ struct FreeEdge {
 /// is the same on all ranks.
 struct SupplyOptions {
   std::int64_t every = 50;  ///< steps between looks
+  std::int32_t others = 0;  ///< bodies behind the ice, which neither join nor leave
   /// The motion of the far edge, with which ice joins.
   Boundary edge;
   std::optional<FreeEdge> free_edge;  ///< given: ice joins with what the edge does indeed

@@ -138,7 +138,6 @@ void check_structures(const Scene& scene) {
     for (const Floe& floe : scene.floes)
       if (floe.name == name)
         throw InputError("obstacle: names: '" + name + "' is the name of a floe too");
-    if (scene.supply.on) refuse("mass", "structures do not go with 'supply' yet");
     if (scene.drag.faces) refuse("mass", "structures do not go with 'water: drag' faces");
     if (!s.floats) continue;
     if (!scene.forces.buoyancy || !scene.forces.gravity)

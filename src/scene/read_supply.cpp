@@ -71,9 +71,14 @@ void check_boundaries(const Scene& scene) {
         "none has in 'fix':" +
         missing);
   for (const Boundary& b : scene.boundaries) {
+    const bool is_of_structure =
+        std::any_of(scene.structures.begin(), scene.structures.end(), [&](const Structure& s) {
+          return scene.obstacles[s.obstacle].name == b.set;
+        });
+    if (is_of_structure) continue;
     if (b.set != "left" && b.set != "bottom" && b.set != "top")
       throw InputError("boundary: " + b.name + ": set: '" + b.set +
-                       "' does not go with 'supply', must be left, bottom or top");
+                       "' does not go with 'supply', must be left, bottom, top or a structure");
     if (b.set == "left" && scene.supply.absorbs && (b.fixed[0] || b.fixed[1]))
       throw InputError("boundary: " + b.name +
                        ": fix: x and y of 'set: left' do not go with 'supply: edge' absorbing, "

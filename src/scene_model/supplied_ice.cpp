@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
 #include "base/union_find.h"
 #include "floe/base/item.h"
 #include "scene_model/scene_model.h"
+#include "scene_model/structures.h"
 
 namespace floe {
 namespace {
@@ -45,6 +47,14 @@ std::vector<std::int32_t> SuppliedIce::present_strips() const {
   for (const std::int32_t name : names_)
     if (strips.empty() || strips.back() != name / each_) strips.push_back(name / each_);
   return strips;
+}
+
+std::vector<std::int32_t> SuppliedIce::names_of_bodies() const {
+  std::vector<std::int32_t> names = names_;
+  const auto structures = static_cast<std::int32_t>(scene_.structures.size());
+  for (std::int32_t k = 0; k < structures; ++k)
+    names.push_back(std::numeric_limits<std::int32_t>::max() - structures + k);
+  return names;
 }
 
 double SuppliedIce::energy_ratio() {
@@ -114,6 +124,7 @@ Lattice SuppliedIce::lattice() {
   if (scene_.inertia_factor != 1) {
     for (Point3& moments : lattice.bodies.inertia) moments = scene_.inertia_factor * moments;
   }
+  add_structures(scene_, lattice);
   return lattice;
 }
 
@@ -162,6 +173,8 @@ SuppliedIce::Change SuppliedIce::changed(Work&& work) {
                : -1;
   };
   for (const std::int32_t name : names) after.bodies.push_back(place(names_, name));
+  for (std::size_t k = 0; k < scene_.structures.size(); ++k)  // behind all ice
+    after.bodies.push_back(static_cast<std::int32_t>(names_.size() + k));
   for (const auto& [i, j] : beams) {
     const std::int32_t a = item(after.bodies, i), b = item(after.bodies, j);
     after.beams.push_back(a < 0 || b < 0 ? -1 : place(beams_, std::array<std::int32_t, 2>{a, b}));

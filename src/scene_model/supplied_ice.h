@@ -27,10 +27,11 @@ class SuppliedIce {
   SuppliedIce(const Scene& scene, MPI_Comm comm);
 
   /// Makes the lattice of the present bodies, with the sets left (the bodies at the far edge),
-  /// right, bottom, top and all, and the scene's factor on moments of inertia.
+  /// right, bottom, top and all, and the scene's factor on moments of inertia; structures come
+  /// behind the ice.
   Lattice lattice();
-  /// Names of the present bodies.
-  const std::vector<std::int32_t>& names() const { return names_; }
+  /// Names of all bodies of that lattice: of the ice, then of structures, which are the largest.
+  std::vector<std::int32_t> names_of_bodies() const;
   /// Energy ratio of the mesh, the mean of the present strips (Tessellation::energy_ratio).
   double energy_ratio();
 

@@ -280,6 +280,7 @@ std::optional<SupplyOptions> RunningIn<Space>::supply() {
   SuppliedIce& ice = *setting_.mesh.ice;
   SupplyOptions options;
   options.edge = ice.edge();
+  options.others = static_cast<std::int32_t>(scene_.structures.size());
   options.is_due = [&ice](double way) { return ice.is_due(way); };
   // After a restart the files are open from the first sample on only; they follow all changes.
   options.before_change = [this](const auto& columns) { prepare_output(columns); };
@@ -327,7 +328,7 @@ void RunningIn<Space>::divide(Lattice lattice, const std::vector<std::int32_t>& 
   equip(lattice);
   release_setup(scene_, *model_);
   if (output_) {
-    output_->follow(lattice, setting_.mesh.ice->names());
+    output_->follow(lattice, setting_.mesh.ice->names_of_bodies());
   } else {
     packed_ = {};
     setting_.lattice = lattice;
@@ -397,7 +398,7 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
 template <class Space>
 PresentMesh RunningIn<Space>::present_mesh() const {
   if (mesh_frame_ == 0) return {};
-  return {.first = mesh_frame_, .names = setting_.mesh.ice->names()};
+  return {.first = mesh_frame_, .names = setting_.mesh.ice->names_of_bodies()};
 }
 
 template <class Space>

@@ -291,6 +291,39 @@ class PeriodicSides(SupplyTest):
             self.assertGreater(np.count_nonzero(file["beams/image"][:, 1]), 10)
 
 
+class Structures(SupplyTest):
+    def test_ice_without_end_against_a_leg_on_springs(self):
+        """The leg stays behind all ice that joins and leaves: the same bits after stops and on two
+        ranks, and its name in the frames."""
+        text = SCENE.replace("names: [slope]", "names: [slope, leg]").replace(
+            "boundary: {names: [push],", "  leg: {shape: box, centre: [12.5, 0, 0], size: [1, 1, "
+            "4], mass: 2e4, support_stiffness: [4e6, 4e6, 4e7, 4e7, 4e7, 4e7], "
+            "support_damping_ratio: 0.05}\nboundary: {names: [push, guide], "
+            "guide: {set: leg, fix: z rx ry},")
+        (self.folder / "scene.yaml").write_text(text)
+        folder = self.restarts_and_ranks((1111, 3050, 3200, 6200))
+        rows = rows_of(folder)
+        with h5py.File(folder / "lattice.h5") as file:
+            ice = len(file["bodies/mass"]) - 1
+        self.assertGreater(rows["bodies_removed"][-1], 0)
+        self.assertEqual(rows["bodies_supplied"][-1], 1.5 * ice)
+        np.testing.assert_array_equal(
+            rows["bodies"], ice + 1 + rows["bodies_supplied"] - rows["bodies_removed"])
+        # Static under the mean load, to the share that is in the leg's own motion.
+        late = rows["time"] > 2
+        self.assertGreater(np.max(np.abs(rows["leg_force_x"])), 2e4)
+        self.assertAlmostEqual(np.mean(rows["leg_x"][late]) * 4e6
+                               / np.mean(rows["leg_force_x"][late]), 1, delta=0.1)
+        error = rows["energy_balance_error"]
+        self.assertLess(np.max(np.abs(error)), 1e-2 * np.max(np.abs(rows["energy_kinetic"])))
+        last = frames_of(folder)[-1]
+        with h5py.File(last[1]) as file:
+            first = int(file[last[2]].attrs["mesh"])
+            names = h5py.File(last[1].with_name(f"mesh_{first:06d}.h5"))["mesh/name"][:]
+        self.assertEqual(names[-1], 2 ** 31 - 2)
+        self.assertLess(names[-2], 10 ** 6)
+
+
 class Restarts(SupplyTest):
     def test_near_changes(self):
         """Of ice that breaks: at the steps of changes and beside them."""
