@@ -142,7 +142,7 @@ class MooringLines final : public Force<Spatial>,
     MooringLine line;
     std::int32_t local = -1;  ///< owned body; -1: on another rank
     Vec3<double> rest{}, arm{};
-    double length = 0, tension = 0;           ///< in the last evaluation [m, N]
+    double length = 0, tension = 0;            ///< in the last evaluation [m, N]
     Vec3<double> damping{}, damping_moment{};  ///< of the dashpot, about the centroid
   };
 

@@ -393,8 +393,8 @@ constexpr std::array table{
                "the obstacle with a mass that it holds"},
     OptionSpec{"line: NAME: fairlead", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "its end on the structure, at rest", 3},
-    OptionSpec{"line: NAME: anchor", numbers, "(required)", "m", ">= -1e9, <= 1e9",
-               "its fixed end", 3},
+    OptionSpec{"line: NAME: anchor", numbers, "(required)", "m", ">= -1e9, <= 1e9", "its fixed end",
+               3},
     OptionSpec{"line: NAME: table", text, "(stiffness)", "", "",
                "file of length, tension [m, N]: lengths rise, tensions do not fall; straight in "
                "between and beyond, never below 0"},

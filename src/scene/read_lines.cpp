@@ -48,8 +48,9 @@ void read_line(Options& options, const std::string& name, Scene& scene) {
                    [&](const Structure& s) { return scene.obstacles[s.obstacle].name == of; });
   if (structure == scene.structures.end())
     throw InputError("line: " + name + ": structure: '" + of + "' is no obstacle with a mass");
-  SceneLine line{.structure = static_cast<std::size_t>(structure - scene.structures.begin()),
-                 .line = {.name = name}};
+  SceneLine line;
+  line.structure = static_cast<std::size_t>(structure - scene.structures.begin());
+  line.line.name = name;
   line.line.fairlead = options.vector(key("fairlead"), name);
   line.line.anchor = options.vector(key("anchor"), name);
   const double length = floe::length(line.line.anchor - line.line.fairlead);

@@ -72,9 +72,8 @@ void check_boundaries(const Scene& scene) {
         missing);
   for (const Boundary& b : scene.boundaries) {
     const bool is_of_structure =
-        std::any_of(scene.structures.begin(), scene.structures.end(), [&](const Structure& s) {
-          return scene.obstacles[s.obstacle].name == b.set;
-        });
+        std::any_of(scene.structures.begin(), scene.structures.end(),
+                    [&](const Structure& s) { return scene.obstacles[s.obstacle].name == b.set; });
     if (is_of_structure) continue;
     if (b.set != "left" && b.set != "bottom" && b.set != "top")
       throw InputError("boundary: " + b.name + ": set: '" + b.set +

@@ -12,7 +12,8 @@ namespace {
 
 /// The words of a line, separated by commas, semicolons or blanks.
 std::vector<std::string> words_of(std::string line) {
-  std::replace_if(line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
   std::istringstream in(line);
   std::vector<std::string> words;
   for (std::string word; in >> word;) words.push_back(word);
@@ -44,8 +45,8 @@ std::vector<std::vector<double>> read_table(const std::string& file, const std::
     is_first = false;
     if (is_heading) continue;
     if (!is_row)
-      throw InputError(label + ": line " + std::to_string(number) + ": must be " + wanted +
-                       ": " + std::to_string(columns.size()) + " numbers");
+      throw InputError(label + ": line " + std::to_string(number) + ": must be " + wanted + ": " +
+                       std::to_string(columns.size()) + " numbers");
     rows.push_back(std::move(row));
   }
   if (rows.size() < least)

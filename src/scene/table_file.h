@@ -1,5 +1,6 @@
 /// \file
-/// Tables of numbers in text files: rows of equal length, separated by commas, semicolons or blanks;
+/// Tables of numbers in text files: rows of equal length, separated by commas, semicolons or
+/// blanks;
 /// "#" begins a comment, and the first line may be a heading.
 #pragma once
 

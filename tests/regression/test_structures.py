@@ -381,8 +381,9 @@ class Lines(StructureTest):
 
     def test_period_and_ranks(self):
         """Sway on two lines of stiffness k and two across of tension T: m w^2 = 2 k + 2 T/L."""
-        scene = MOORED.replace("EAST", "stiffness: 2e4, pretension: 1e4").replace(
-            "force: [2e4, 0, 0], ramp: 5", "force: [0, 0, 0]").replace("end: 60", "end: 20") + (
+        scene = "\n".join(
+            line for line in MOORED.replace("EAST", "stiffness: 2e4, pretension: 1e4")
+            .replace("end: 60", "end: 20").split("\n") if not line.startswith("load")) + (
             "initial: {names: [kick], kick: {set: box, velocity: [0.01, 0, 0]}}\n")
         rows = self.rows(scene)
         rate = np.sqrt((2 * 2e4 + 2 * 1e4 / 40) / 16160)
@@ -421,10 +422,10 @@ class Wall(StructureTest):
         """A wall that a load pushes, guided by a boundary, keeps its stress on a pile of blocks
         between it and a wall at rest, while it follows the pile."""
         random = np.random.default_rng(2)
-        places = np.array([[0.62 * i, 0.62 * j, 0.62 * k] for i in range(6) for j in range(3)
+        places = np.array([[0.7 * i, 0.6 * j, 0.6 * k] for i in range(6) for j in range(3)
                            for k in range(3)])
         lattice = fl.blocks(np.full((len(places), 3), 0.5), places)
-        turn = 0.3 * random.normal(size=(len(places), 3))
+        turn = 0.08 * random.normal(size=(len(places), 3))
         lattice.orientation = np.column_stack([np.ones(len(places)), turn / 2])
         lattice.orientation /= np.linalg.norm(lattice.orientation, axis=1)[:, None]
         lattice.write(self.folder / "blocks.h5")
@@ -436,15 +437,15 @@ class Wall(StructureTest):
         for name, (point, normal) in walls.items():
             scene += f"  {name}: {{shape: halfspace, point: {point}, normal: {normal}}}\n"
         scene += ("  lid: {shape: box, centre: [5, 0.6, 1], size: [1, 4, 5], mass: 500, "
-                  "support_damping: [2000, 0, 0, 0, 0, 0]}\n"
+                  "support_damping: [2e4, 0, 0, 0, 0, 0]}\n"
                   "boundary: {names: [guide], guide: {set: lid, fix: y z rx ry rz}}\n"
-                  "load: {names: [press], press: {set: lid, force: [-5000, 0, 0], ramp: 1}}\n"
+                  "load: {names: [press], press: {set: lid, force: [-5e4, 0, 0], ramp: 1}}\n"
                   "time: {end: 8}\noutput: {history: 0.02}\n")
         rows = self.rows(scene)
         late = rows["time"] > 6
         self.assertLess(rows["lid_x"][-1], -0.8)
-        self.assertAlmostEqual(np.mean(rows["lid_force_x"][late]) / 5000, 1, delta=0.01)
-        self.assertAlmostEqual(np.mean(rows["end_force_x"][late]) / -5000, 1, delta=0.3)
+        self.assertAlmostEqual(np.mean(rows["lid_force_x"][late]) / 5e4, 1, delta=0.01)
+        self.assertAlmostEqual(np.mean(rows["end_force_x"][late]) / -5e4, 1, delta=0.3)
 
 
 class Refused(StructureTest):

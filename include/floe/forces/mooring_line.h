@@ -40,7 +40,7 @@ class TensionCurve {
 /// A line from a structure to the ground.
 struct MooringLine {
   std::string name;
-  std::int32_t body = -1;      ///< global index of the structure
+  std::int32_t body = -1;       ///< global index of the structure
   Point3 fairlead{}, anchor{};  ///< ends, the fairlead at rest [m]
   TensionCurve curve;
   double damping = 0;  ///< along the taut line [N s/m]

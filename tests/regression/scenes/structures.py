@@ -65,6 +65,21 @@ def check_monopile_lockin(test, run):
     test.assertAlmostEqual(offset / load.mean(), 1, delta=0.05)
 
 
+def check_moored_floater(test, run):
+    """The first 12 s: the lines bear what ice and water push."""
+    output = run("-time_end", "12")
+    late = output.history("time") > 8
+    offset = output.history("hull_x")[late].mean()
+    test.assertTrue(0.5 < offset < 2, offset)
+    test.assertGreater(output.history("hull_force_x")[late].mean(), 2e4)
+    test.assertGreater(output.summary["beams_broken"], 20)
+    west, east = (output.history(f"{name}_tension")[late].mean() for name in ("nw", "ne"))
+    test.assertTrue(1.6e5 < west < 2.6e5, west)
+    test.assertTrue(0.7e5 < east < 1.4e5, east)
+    test.assertLess(abs(output.history("hull_y")[late].mean()), 0.3 * offset)
+    expect_ledger(test, output)
+
+
 def check_ice_cone(test, run):
     output = run("-time_end", "2")
     test.assertGreater(output.summary["beams_broken"], 10)
