@@ -9,7 +9,7 @@ import numpy as np
 import floe_breaks
 import floe_loads
 import floe_program
-from floe_obstacles import obstacles
+from floe_obstacles import obstacles_of_run
 from floe_output import Output
 from floe_program import BadInput
 
@@ -115,7 +115,7 @@ def obstacle_of(output, name, times):
     ice."""
     low, high = output.box()
     low, high = low - [10, 10, 10], high + [10, 10, 10]
-    return next(o for o in obstacles(output.options(), low, high, times) if o["name"] == name)
+    return next(o for o in obstacles_of_run(output, low, high, times) if o["name"] == name)
 
 
 def pressures(output, name, start):

@@ -13,8 +13,8 @@ def numbers(options, key, default):
 
 
 def frustum(base, radius, top_radius, height, facets):
-    """Points and faces of an upright frustum."""
-    angle = 2 * np.pi * np.arange(facets) / facets
+    """Points and faces of an upright frustum; one side faces along x."""
+    angle = 2 * np.pi * (np.arange(facets) + 0.5) / facets
     ring = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
     points = np.concatenate([base + radius * ring, base + top_radius * ring + [0, 0, height]])
     k = np.arange(facets)
@@ -134,4 +134,36 @@ def obstacles(options, low, high, times):
                       "origin": origin.tolist(),
                       "placements": [placement(way, turn, origin) for way, turn in ways],
                       "plane": shape == "halfspace"})
+    return found
+
+
+def structures(options):
+    """Names of the obstacles that are structures: those with a mass. They are the last bodies of
+    the lattice, in this order."""
+    return [name for name in options.get("obstacle_names", "").replace(",", " ").split()
+            if f"obstacle_{name}_mass" in options]
+
+
+def obstacles_of_run(output, low, high, times):
+    """As obstacles(), of a run: structures are where its history has them, and their origin is
+    their centre of mass, about which history.csv has moments."""
+    options = output.options()
+    found = obstacles(options, low, high, times)
+    names = structures(options)
+    for body, name in enumerate(names, len(output.position) - len(names)):
+        obstacle = next(o for o in found if o["name"] == name)
+        centre = output.position[body]
+        arm = numbers(options, f"obstacle_{name}_support_point", centre) - centre
+        time = output.history("time")
+
+        def at(what, time=time, name=name):
+            return np.column_stack([np.interp(times, time, output.history(f"{name}_{what}{axis}"))
+                                    for axis in "xyz"])
+        turns = [about(vector) for vector in at("r")]
+        ways = [shift - (turn @ arm - arm) for shift, turn in zip(at(""), turns)]
+        obstacle.update(origin=centre.tolist(),
+                        motions=[(way.tolist(), turn.tolist())
+                                 for way, turn in zip(ways, turns)],
+                        placements=[placement(way, turn, centre)
+                                    for way, turn in zip(ways, turns)])
     return found

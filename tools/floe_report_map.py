@@ -9,7 +9,7 @@ them.
 import numpy as np
 
 from floe_fields import clipped
-from floe_obstacles import obstacles
+from floe_obstacles import obstacles_of_run
 from floe_report_series import rounded
 
 LEAST = 0.02    # rows with less than this share of the largest force are left out: their line of
@@ -110,7 +110,7 @@ def pressure_map(output, history, name, start):
     table = {key: values[rows] for key, values in history.items()}
     low, high = output.box()
     low, high = low - 10, high + 10
-    obstacle = next(o for o in obstacles(output.options(), low, high, table["time"])
+    obstacle = next(o for o in obstacles_of_run(output, low, high, table["time"])
                     if o["name"] == name)
     _, at, force = action(obstacle, table, name)
     known, size = np.isfinite(at[:, 0]), np.linalg.norm(force, axis=1)

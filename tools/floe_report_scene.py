@@ -7,7 +7,7 @@ a frame is a displacement of its centroid and a rotation vector from rest.
 import numpy as np
 
 import floe_breaks
-from floe_obstacles import obstacles
+from floe_obstacles import obstacles_of_run, structures
 from floe_output import matrices
 from floe_report_arrays import pack
 from floe_report_cast import Cast
@@ -31,13 +31,14 @@ def triangles_of(shapes):
 
 
 def kept_bodies(cast, places):
-    """Indices of the bodies that are shown: all, or those nearest to obstacles where their
-    triangles would be too many."""
+    """Indices of the bodies that are shown: all but structures, which are shown as obstacles, or
+    those nearest to obstacles where their triangles would be too many."""
     triangles = triangles_of(cast.ice.shapes)
+    triangles = triangles[:len(triangles) - len(structures(cast.output.options()))]
     if triangles.sum() <= TRIANGLES:
         return np.arange(len(triangles))
     centres = np.array(places) if len(places) else cast.output.position.mean(axis=0)[None]
-    order = np.argsort(cast.nearest(centres), kind="stable")
+    order = np.argsort(cast.nearest(centres)[:len(triangles)], kind="stable")
     number = np.searchsorted(np.cumsum(triangles[order]), TRIANGLES, side="right")
     return np.sort(order[:number])
 
@@ -129,7 +130,7 @@ def obstacles_of(output, times):
     room = 2 * size_of(output)
     low = np.min([p.min(axis=0) for p in places], axis=0) - [room, room, 2]
     high = np.max([p.max(axis=0) for p in places], axis=0) + [room, room, 2]
-    return obstacles(output.options(), low, high, times)
+    return obstacles_of_run(output, low, high, times)
 
 
 def about_origin(obstacle, origin):
@@ -161,9 +162,10 @@ def scene_of(output, forces, most):
     places = (ice.position[bodies] - origin).T / step
     breaks = floe_breaks.at_end(output)
     options = output.options()
-    are_all = len(bodies) == len(ice.position) and cast.life is None
+    of_bodies = len(ice.position) - len(structures(options))
+    are_all = len(bodies) == of_bodies and cast.life is None
     return {
-        "bodies": len(bodies), "of_bodies": len(ice.position), "size": size,
+        "bodies": len(bodies), "of_bodies": of_bodies, "size": size,
         "step": step, "turn_step": TURN_STEP, "origin": origin.tolist(),
         "times": [round(float(t), 6) for t in times], "of_frames": len(output.times),
         "water": "buoyancy" in options.get("forces", ""),

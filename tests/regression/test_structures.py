@@ -14,6 +14,9 @@ from test_restart import contents
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
+from floe_fields import placed  # noqa: E402
+from floe_obstacles import obstacles_of_run  # noqa: E402
+from floe_output import Output  # noqa: E402
 
 # A leg beside ice that it never meets.
 ALONE = """integrator: explicit
@@ -199,6 +202,24 @@ class Ice(StructureTest):
                                    atol=1e-6)
         self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
                         1e-2 * np.max(rows["energy_boundary"]))
+
+    def test_tools_draw_it_where_its_body_is(self):
+        """Corners of the obstacle that reports show, against those of the body in the frames."""
+        self.run_scene(ICE.replace("LEG", SOFT.replace("1e7, 1e7, 1e7", "1e5, 1e5, 1e5")
+                                   + ", support_point: [7.6, 0, -3]")
+                       .replace("history: 0.02", "history: 0.004"), name="one")
+        output = Output(self.folder / "out/one")
+        obstacle = obstacles_of_run(output, *output.box(), output.times)[0]
+        of = output.shapes["vertex_of"]
+        most = 0
+        for k, time in enumerate(output.times):
+            corners = output.field("points", time)[of[-2]:of[-1]]
+            drawn = placed(obstacle, k)
+            apart = np.linalg.norm(corners[:, None] - drawn[None], axis=2).min(axis=1)
+            self.assertEqual(len(corners), len(drawn))
+            self.assertLess(apart.max(), 2e-3)
+            most = max(most, np.abs(drawn - np.array(obstacle["points"])).max())
+        self.assertGreater(most, 0.03)  # it has turned and shifted
 
     def test_stiff_and_soft(self):
         """A support of a thousand times the ice's stiffness bears what the fixed leg bears until
