@@ -9,7 +9,7 @@ import numpy as np
 import floe_breaks
 import floe_loads
 import floe_program
-from floe_obstacles import obstacles_of_run
+from floe_obstacles import obstacles_of_run, structures
 from floe_output import Output
 from floe_program import BadInput
 
@@ -22,13 +22,16 @@ FINE = 4                         # columns of a pile along the side of a body
 
 
 class Bodies:
-    """The bodies' polyhedra in a frame: planes n x <= d of all faces, one body after another."""
+    """The polyhedra of the ice in a frame: planes n x <= d of all faces, one body after another.
+    Structures, the last bodies of a run, are obstacles here."""
 
     def __init__(self, output, time):
         shapes = output.at(time).shapes
-        self.vertex_of, self.face_of = shapes["vertex_of"], shapes["face_of"]
-        self.points = output.field("points", time)
-        corner_of, corners = shapes["corner_of"], shapes["corners"]
+        ice = len(shapes["vertex_of"]) - 1 - len(structures(output.options()))
+        self.vertex_of, self.face_of = (shapes[name][:ice + 1] for name in ("vertex_of", "face_of"))
+        self.points = output.field("points", time)[:self.vertex_of[-1]]
+        corner_of = shapes["corner_of"][:self.face_of[-1] + 1]
+        corners = shapes["corners"][:corner_of[-1]]
         first = self.points[corners[corner_of[:-1]]]
         # twice the area vector of each face (Newell's method)
         following = np.arange(1, len(corners) + 1)

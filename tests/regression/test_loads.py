@@ -321,6 +321,10 @@ class Blocks:
     def field(self, _name, _time):
         return self.points
 
+    @staticmethod
+    def options():
+        return {}
+
 
 class Ice(Checks):
     def test_columns(self):

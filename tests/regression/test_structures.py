@@ -14,7 +14,7 @@ from test_restart import contents
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
-from floe_fields import placed  # noqa: E402
+from floe_fields import Bodies, contact_area, placed  # noqa: E402
 from floe_obstacles import obstacles_of_run  # noqa: E402
 from floe_output import Output  # noqa: E402
 
@@ -220,6 +220,10 @@ class Ice(StructureTest):
             self.assertLess(apart.max(), 2e-3)
             most = max(most, np.abs(drawn - np.array(obstacle["points"])).max())
         self.assertGreater(most, 0.03)  # it has turned and shifted
+        ice = Bodies(output, output.times[-1])
+        self.assertEqual(len(ice), len(of) - 2)  # without the leg, which would touch itself
+        touched = contact_area(ice, placed(obstacle, -1), obstacle["faces"])
+        self.assertLess(touched, 1.5 * np.pi * 0.5)
 
     def test_stiff_and_soft(self):
         """A support of a thousand times the ice's stiffness bears what the fixed leg bears until
