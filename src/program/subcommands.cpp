@@ -21,6 +21,7 @@ constexpr std::array table{
     Subcommand{"plot_deflection", "draws deflections against those of an infinite plate"},
     Subcommand{"plot_fragments", "draws the pieces of a sheet that broke"},
     Subcommand{"plot_load", "draws the forces on obstacles against time"},
+    Subcommand{"plot_motion", "draws the motion of a structure and the spectrum of its velocity"},
     Subcommand{"loads", "a load's mean, maxima, Gumbel's law, peaks; of one run or of many"},
     Subcommand{"netcdf", "writes runs as netCDF-4 by the CF conventions"},
     Subcommand{"vtkhdf", "writes the frames of a run as VTKHDF with time"},

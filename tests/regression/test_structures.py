@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Structures: obstacles with a mass, which contacts, supports, loads and water move."""
 import csv
+import re
+import subprocess
 import sys
 import unittest
 
@@ -8,6 +10,7 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq, curve_fit
 
+import launch
 from launch import REPOSITORY
 from scene_runs import SceneTest
 from test_restart import contents
@@ -94,6 +97,27 @@ class OneDegree(StructureTest):
             self.assertLess(np.max(np.abs(rows["energy_balance_error"])),
                             1e-9 * np.max(rows["energy_kinetic"]))
             self.assertGreater(rows["energy_damping"][-1], 0.5 * rows["energy_kinetic"][0])
+
+    def test_plot_motion(self):
+        scene = ALONE.replace("SUPPORT", DIAGONAL) + (
+            "initial: {names: [kick], kick: {set: leg, velocity: [0.01, 0.02, 0]}}\n")
+        self.run_scene(scene.replace("end: 6", "end: 20"), name="s")
+
+        def said(*words, code=0):
+            done = subprocess.run([launch.FLOE, "plot_motion", "out/s", *words], cwd=self.folder,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            return done.stdout + done.stderr
+        rate = np.sqrt(3e6 / 5e4)  # y moves most
+        text = said()
+        found = [float(x) for x in re.findall(r"[\d.e+-]+(?= (?:m|Hz))", text)]
+        for value, expected, delta in zip(found, (0.02 / rate, 0.02, 0.02 * rate,
+                                                  rate / (2 * np.pi)), (1e-3, 1e-3, 2e-3, 0.15)):
+            self.assertAlmostEqual(value / expected, 1, delta=delta, msg=text)
+        self.assertTrue((self.folder / "out/s/motion.png").stat().st_size > 10000)
+        self.assertIn("leg rz: largest displacement 0 rad", said("--component", "rz"))
+        self.assertIn("must be one of leg", said("--structure", "hull", code=2))
+        self.assertIn("fewer than 16", said("--start", "19.99", code=2))
 
     def test_offset_under_a_load(self):
         scene = (ALONE.replace("SUPPORT", DIAGONAL + ", support_damping_ratio: 1")
