@@ -459,6 +459,20 @@ class Length(SupplyTest):
         self.assertLess(sizes[1] - sizes[0], 4)
 
 
+    def test_ten_kilometres_cost_what_the_window_costs(self):
+        """Ice of 10 km, of 48 m and without end: the same run until the shortest ends, in the same
+        memory."""
+        sizes, rows = [], []
+        for length in ("48", "10000", None):
+            words = () if length is None else ("-supply_length", length)
+            folder = self.run_whole("-time_end", "2", *words, dir=f"l{length}")
+            sizes.append(json.loads((folder / "summary.json").read_text())["peak_memory_mb"])
+            rows.append((folder / "history.csv").read_text())
+        self.assertEqual(rows[0], rows[1])
+        self.assertEqual(rows[0], rows[2])
+        self.assertLess(max(sizes) - min(sizes), 2)
+
+
 class Refused(SupplyTest):
     def says(self, *words, **how):
         said = self.finish(self.begin(*words, dir="bad", **how), 2)
