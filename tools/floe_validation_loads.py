@@ -337,3 +337,25 @@ def floe_shape(runs, settings):
                [v / 1e3 for v in found[point]["deviation in time"]], None, "points")
               for point in points]
     return Found(lines, "mean load of a run [kN]", "deviation in time [kN]", series)
+
+
+def lock_in(runs, settings):
+    """Largest velocity of a structure in the second half of a run over that of the ice that is
+    driven. settings: structure, published (ratios by the points' names), allowed (the part that a
+    ratio may differ by; a fifth of it where none is published)."""
+    lines, ice, found = [], [], []
+    for run in runs:
+        time, velocity = (run.column(name) for name in
+                          ("time", f"{settings['structure']}_velocity_x"))
+        speed = run.option("boundary_ice_velocity")[0]
+        ratio = velocity[time > time[-1] / 2].max() / speed
+        published, part = settings["published"][run.point], settings["allowed"]
+        allowed = ([published * (1 - part), published * (1 + part)] if published
+                   else [-part / 5, part / 5])
+        lines.append(Line(f"ice at {speed:g} m/s", [ratio], published, allowed))
+        ice.append(speed)
+        found.append(ratio * speed)
+    goal = [settings["published"][run.point] * speed for run, speed in zip(runs, ice)]
+    return Found(lines, "speed of the ice [m/s]", "largest velocity of the leg [m/s]",
+                 [("floe", ice, found, None, "points"), ("published", ice, goal, None, "line"),
+                  ("the ice", ice, ice, None, "line")])
