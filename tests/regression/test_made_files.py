@@ -56,7 +56,7 @@ class Made(EnsembleTest):
         self.assertFalse((self.folder / "out").exists())
         process = self.begin("--jobs", "1")
         started = self.folder / "started"
-        self.wait(process, started.exists)
+        self.wait(process, lambda: started.exists() and started.read_text().endswith("\n"))
         process.send_signal(signal.SIGKILL)
         process.wait()
         loose = self.files()
