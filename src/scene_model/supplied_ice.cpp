@@ -49,14 +49,6 @@ std::vector<std::int32_t> SuppliedIce::present_strips() const {
   return strips;
 }
 
-std::vector<std::int32_t> SuppliedIce::names_of_bodies() const {
-  std::vector<std::int32_t> names = names_;
-  const auto structures = static_cast<std::int32_t>(scene_.structures.size());
-  for (std::int32_t k = 0; k < structures; ++k)
-    names.push_back(std::numeric_limits<std::int32_t>::max() - structures + k);
-  return names;
-}
-
 double SuppliedIce::energy_ratio() {
   double sum = 0;
   const std::vector<std::int32_t> strips = present_strips();
@@ -125,6 +117,10 @@ Lattice SuppliedIce::lattice() {
     for (Point3& moments : lattice.bodies.inertia) moments = scene_.inertia_factor * moments;
   }
   add_structures(scene_, lattice);
+  names_of_bodies_ = names_;
+  const auto structures = static_cast<std::int32_t>(scene_.structures.size());
+  for (std::int32_t k = 0; k < structures; ++k)
+    names_of_bodies_.push_back(std::numeric_limits<std::int32_t>::max() - structures + k);
   return lattice;
 }
 

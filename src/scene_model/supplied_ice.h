@@ -30,8 +30,9 @@ class SuppliedIce {
   /// right, bottom, top and all, and the scene's factor on moments of inertia; structures come
   /// behind the ice.
   Lattice lattice();
-  /// Names of all bodies of that lattice: of the ice, then of structures, which are the largest.
-  std::vector<std::int32_t> names_of_bodies() const;
+  /// Names of all bodies of the last lattice(): of the ice, then of structures, which are the
+  /// largest. Valid until the next.
+  const std::vector<std::int32_t>& names_of_bodies() const { return names_of_bodies_; }
   /// Energy ratio of the mesh, the mean of the present strips (Tessellation::energy_ratio).
   double energy_ratio();
 
@@ -78,7 +79,7 @@ class SuppliedIce {
   std::int64_t looks_ = 0;  ///< how often ice was due
   double offset_ = 0;       ///< [m]
   std::vector<EdgeArea> edge_areas_;
-  std::vector<std::int32_t> names_;
+  std::vector<std::int32_t> names_, names_of_bodies_;
   std::vector<std::array<std::int32_t, 2>> beams_;  ///< of the present lattice
 };
 
