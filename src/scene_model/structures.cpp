@@ -88,7 +88,9 @@ void append_shape(Shapes& to, const Shapes& shape) {
 
 void add_structures(const Scene& scene, Lattice& lattice) {
   Bodies& bodies = lattice.bodies;
-  if (scene.structures.empty() || lattice.shapes.empty()) return;  // contact asks for shapes
+  if (scene.structures.empty()) return;
+  if (lattice.shapes.empty())
+    throw InputError("forces: contact needs bodies with a shape; the lattice file has no /shapes");
   for (const Structure& structure : scene.structures) {
     Obstacle obstacle = scene.obstacles[structure.obstacle];
     const Placement p = placement(obstacle, structure);

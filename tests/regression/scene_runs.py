@@ -1,4 +1,5 @@
 """Scenes that a test runs in a folder of its own, and what became of them."""
+import csv
 import json
 import sys
 
@@ -10,6 +11,13 @@ from launch import REPOSITORY, FolderTest
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 from floe_output import frames_of  # noqa: E402
+
+
+def rows_of(folder):
+    """The columns of history.csv by their names."""
+    with open(folder / "history.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
 def last_frame(folder):

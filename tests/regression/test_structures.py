@@ -1,18 +1,18 @@
 #!/usr/bin/python3
 """Structures: obstacles with a mass, which contacts, supports, loads and water move."""
-import csv
 import re
 import subprocess
 import sys
 import unittest
 
+import h5py
 import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq, curve_fit
 
 import launch
 from launch import REPOSITORY
-from scene_runs import SceneTest
+from scene_runs import SceneTest, rows_of
 from test_restart import contents
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
@@ -53,12 +53,6 @@ checkpoint: {every: 1000}
 """
 SOFT = ("mass: 2e4, support_stiffness: [2e6, 2e6, 1e7, 1e7, 1e7, 1e7], "
         "support_damping_ratio: 0.02")
-
-
-def rows_of(folder):
-    with open(folder / "history.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
 class StructureTest(SceneTest):
@@ -498,6 +492,13 @@ class Wall(StructureTest):
 
 
 class Refused(StructureTest):
+    def test_a_lattice_without_shapes(self):
+        with h5py.File(self.folder / "block.h5", "a") as file:
+            del file["shapes"]
+        done = self.run_scene(ALONE.replace(", SUPPORT", ""), code=2)
+        self.assertEqual(done.stderr, "floe: forces: contact needs bodies with a shape; the "
+                                      "lattice file has no /shapes\n")
+
     def test_what_does_not_go_together(self):
         for support, part in (
                 ("velocity: [1, 0, 0]", "leg: velocity: does not go with 'mass'"),

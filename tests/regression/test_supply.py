@@ -4,7 +4,6 @@
 A sheet drives against a slope so fast that three strips join in a run of seconds, breaks, and some
 of its pieces leave over the slope.
 """
-import csv
 import json
 import random
 import sys
@@ -14,6 +13,7 @@ import h5py
 import numpy as np
 
 from launch import FULL, REPOSITORY
+from scene_runs import rows_of
 from test_restart import RestartTest, contents
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
@@ -86,12 +86,6 @@ beam: {damping_ratio: 0.1}
 time: {end: 3}
 output: {history: 0.01}
 """
-
-
-def rows_of(folder):
-    with open(folder / "history.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
 class SupplyTest(RestartTest):
