@@ -20,7 +20,7 @@ ContactBlock& ActiveContacts::add(std::span<const std::int32_t> pairs, std::int6
 
 void ActiveContacts::begin_forces() {
   std::fill(on_bodies_.begin(), on_bodies_.end(), TermWrenches{});
-  std::fill(on_obstacles_.begin(), on_obstacles_.end(), TermWrenches{});
+  std::fill(on_parts_.begin(), on_parts_.end(), TermWrenches{});
 }
 
 }  // namespace floe

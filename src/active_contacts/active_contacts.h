@@ -75,8 +75,8 @@ struct alignas(64) ContactBlock {
 /// The contacts of the last evaluation, until its step is committed.
 class ActiveContacts {
  public:
-  /// \param obstacles  number of obstacles
-  explicit ActiveContacts(std::size_t obstacles) : on_obstacles_(obstacles) {}
+  /// \param parts  number of parts of obstacles
+  explicit ActiveContacts(std::size_t parts) : on_parts_(parts) {}
 
   /// Begins an evaluation. \param slots  number of involved bodies
   void start(std::size_t slots);
@@ -133,13 +133,13 @@ class ActiveContacts {
   /// Returns the wrench on an involved body.
   const TermWrenches& on_body(std::int32_t slot) const { return item(on_bodies_, slot); }
   /// Returns the force [N] and the moment about the origin of its frame [N m] of the bodies of this
-  /// rank on obstacle k.
-  ContactWrench on_obstacle(std::size_t k) const { return on_obstacles_[k].sum(); }
-  /// Adds the powers of the contacts on obstacle k, and of the obstacle, if it moves so.
-  void add_power_on_obstacle(std::size_t k, const Vec3<double>& velocity, const Vec3<double>& spin,
-                             ContactPower& power) const {
-    on_obstacles_[k].add_power(velocity, spin, power);
-    power.obstacles -= on_obstacles_[k].sum().power(velocity, spin);
+  /// rank on part k of obstacles.
+  ContactWrench on_part(std::size_t k) const { return on_parts_[k].sum(); }
+  /// Adds the powers of the contacts on part k of obstacles, and of the obstacle, if it moves so.
+  void add_power_on_part(std::size_t k, const Vec3<double>& velocity, const Vec3<double>& spin,
+                         ContactPower& power) const {
+    on_parts_[k].add_power(velocity, spin, power);
+    power.obstacles -= on_parts_[k].sum().power(velocity, spin);
   }
 
  private:
@@ -149,10 +149,10 @@ class ActiveContacts {
     return std::span(pairs_).subspan(first, std::min(lanes, pairs_.size() - first));
   }
 
-  std::vector<std::int32_t> pairs_;         ///< of the contacts
-  std::vector<ContactBlock> blocks_;        ///< those of the contacts, then room for more
-  std::vector<TermWrenches> on_bodies_;     ///< by slot
-  std::vector<TermWrenches> on_obstacles_;  ///< about the origins of their frames
+  std::vector<std::int32_t> pairs_;      ///< of the contacts
+  std::vector<ContactBlock> blocks_;     ///< those of the contacts, then room for more
+  std::vector<TermWrenches> on_bodies_;  ///< by slot
+  std::vector<TermWrenches> on_parts_;   ///< of obstacles, about the origins of their frames
   std::int64_t touching_ = 0;
 };
 
@@ -183,8 +183,8 @@ void ActiveContacts::act(const PairList& list, auto force_of) {
       if ((active.enclosed >> lane & 1U) != 0) continue;
       const Pair& pair = list.pair(pairs[lane]);
       on_a.add(lane, item(on_bodies_, pair.slot_a));
-      on_b.subtract(lane, pair.slot_b < 0 ? on_obstacles_[obstacle_number(pair.b)]
-                                          : item(on_bodies_, pair.slot_b));
+      on_b.subtract(
+          lane, pair.slot_b < 0 ? on_parts_[part_number(pair.b)] : item(on_bodies_, pair.slot_b));
     }
   }
 }

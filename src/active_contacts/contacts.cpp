@@ -31,9 +31,9 @@ Contacts::Contacts(const Shapes& shapes, std::span<const double> masses,
       law_(law_of(options)),
       list_(solids_, std::move(joined), options.initial_overlap == InitialOverlap::stress_free,
             options.periods),
-      places_(solids_.obstacles().size(), options.periods),
+      places_(solids_.parts(), options.periods),
       narrow_(options.damping_ratio > 0 || solids_.has_friction(options)),
-      active_(solids_.obstacles().size()) {}
+      active_(solids_.parts()) {}
 
 void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time) {
   list_.build(solids_, narrow_, poses, here, time);
@@ -45,9 +45,21 @@ void Contacts::build(std::span<const Pose> poses, std::span<const std::uint8_t> 
 
 std::vector<BodyPair> Contacts::offload(std::size_t count) {
   std::vector<BodyPair> pairs;
-  for (const ContactHistory::Entry& entry : history_.last(count))
-    pairs.push_back(list_.offload(entry.pair));
+  const std::span<const ContactHistory::Entry> entries = history_.entries();
+  std::size_t first = entries.size();
+  for (std::size_t left = count; left > 0 && first > 0;)
+    left -= list_.pair(entries[--first].pair).one_of_several ? 0 : 1;
+  for (const ContactHistory::Entry& entry : entries.subspan(first))
+    if (!list_.pair(entry.pair).one_of_several) pairs.push_back(list_.offload(entry.pair));
   return pairs;
+}
+
+std::size_t Contacts::offloadable() const {
+  const auto entries = history_.entries();
+  return static_cast<std::size_t>(
+      std::count_if(entries.begin(), entries.end(), [&](const ContactHistory::Entry& entry) {
+        return entry.pair >= 0 && !list_.pair(entry.pair).one_of_several;
+      }));
 }
 
 void Contacts::take_on(std::span<const BodyPair> pairs) {
@@ -114,7 +126,16 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
   std::size_t taken = 0;
   std::int32_t index = 0;
   Placed image;
-  for (Pair& pair : list_.pairs()) {
+  followed_.clear();
+  joined_memory_.clear();
+  const std::span<Pair> pairs = list_.pairs();
+  const auto number = static_cast<std::int32_t>(pairs.size());
+  while (index < number) {
+    Pair& pair = item(pairs, index);
+    if (pair.one_of_several) {
+      index = meet_parts(law, index, histories);
+      continue;
+    }
     const Placed &a = places_.of_a(pair), &b = places_.image_of_b(pair, image);
     const PairHistory* memory = histories.of(index);
     PairOverlap& met = met_.overlaps[met_.number];
@@ -129,6 +150,66 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
     ++index;
   }
   if (met_.number > 0) find_trials(law);
+}
+
+/// Takes over the contacts of a body with an obstacle of several parts.
+/// \param first  index of the first of their pairs
+/// \returns the index behind their last pair
+template <IsContactLaw Law>
+std::int32_t Contacts::meet_parts(const Law& law, std::int32_t first,
+                                  ContactHistory::Cursor& histories) {
+  const std::span<Pair> pairs = list_.pairs();
+  const Pair& one = item(pairs, first);
+  const std::size_t obstacle = solids_.obstacle_number(one.b);
+  Placed image;
+  const Placed &a = places_.of_a(one), &b = places_.image_of_b(one, image);
+  parts_.start();
+  known_.clear();
+  known_memory_.clear();
+  std::int32_t index = first;
+  for (; index < static_cast<std::int32_t>(pairs.size()); ++index) {
+    Pair& pair = item(pairs, index);
+    if (pair.a != one.a || !is_obstacle(pair.b) || solids_.obstacle_number(pair.b) != obstacle)
+      break;
+    if (const PairHistory* memory = histories.of(index)) {
+      known_.push_back(index);
+      known_memory_.push_back(memory);
+    } else if (narrow_.is_apart(solids_, pair, a, b)) {
+      continue;
+    }
+    const PairOverlap met = narrow_.overlap(solids_, wear_, pair, a, b);
+    if (met.overlap.volume > 0) parts_.add(index, met);
+  }
+  for (const PartContacts::Joined& contact :
+       parts_.join(solids_, wear_, narrow_.with_patch(), pairs, a, b, known_)) {
+    const PairHistory* memory = nullptr;
+    for (const std::int32_t pair : contact.known) {
+      const auto k = std::find(known_.begin(), known_.end(), pair) - known_.begin();
+      const PairHistory* of = known_memory_[static_cast<std::size_t>(k)];
+      memory = memory == nullptr ? of : &joined_memory_.emplace_back(joined(*memory, *of));
+      if (pair != contact.pair) followed_.push_back({pair, contact.pair});
+    }
+    met_.overlaps[met_.number] = contact.overlap;
+    touch(law, contact.pair, memory);
+  }
+  return index;
+}
+
+/// Gives histories to the pairs that stand for their contacts now.
+void Contacts::follow_parts() {
+  for (const auto& [from, to] : followed_) {
+    history_.move(from, to, list_.pairs());
+    crushing_.move(list_.pair(from), list_.pair(to));
+  }
+  followed_.clear();
+}
+
+/// Returns the wrench of the bodies of this rank on all parts of an obstacle.
+ContactWrench Contacts::on_parts_of(std::size_t obstacle) const {
+  const auto [first, end] = solids_.parts_of(obstacle);
+  ContactWrench sum = active_.on_part(first);
+  for (std::size_t k = first + 1; k < end; ++k) sum = sum + active_.on_part(k);
+  return sum;
 }
 
 /// Takes over a pair whose overlap is the last of met_, unless there is no overlap.
@@ -210,6 +291,7 @@ StoredEnergy Contacts::stored() const {
 }
 
 void Contacts::commit() {
+  follow_parts();
   history_.start();
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const std::int32_t index = active_.pair(k);

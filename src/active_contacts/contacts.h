@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <span>
 #include <vector>
@@ -28,6 +29,7 @@
 #include "active_contacts/stiffness.h"
 #include "contact/narrow_phase.h"
 #include "contact/pair_list.h"
+#include "contact/part_contacts.h"
 #include "contact/places.h"
 #include "contact/solids.h"
 #include "contact/wear.h"
@@ -81,7 +83,9 @@ class Contacts {
   /// \param here   per body: 1 if this rank needs its wrench
   /// \param time   of the poses [s]
   void build(std::span<const Pose> poses, std::span<const std::uint8_t> here, double time);
-  /// Offloads the last `count` pairs with history: until the next build another rank computes their
+  /// Returns the number of pairs with history whose overlaps another rank may compute.
+  std::size_t offloadable() const;
+  /// Offloads the last `count` of these: until the next build another rank computes their
   /// overlaps, which are most of the work of an evaluation.
   /// \returns these pairs, in list order
   std::vector<BodyPair> offload(std::size_t count);
@@ -130,7 +134,7 @@ class Contacts {
   /// this rank needs that body's wrench and else nothing. Obstacles of one body share its wrench.
   ContactWrench on_obstacle(std::size_t k) const {
     const std::int32_t body = solids_.obstacles()[k].body;
-    if (body < 0) return active_.on_obstacle(k);
+    if (body < 0) return on_parts_of(k);
     return item(needed_, body) != 0 ? active_.on_body(list_.slot_of(body)).sum() : ContactWrench{};
   }
   /// Returns the number of overlapping counted pairs in the last evaluation.
@@ -143,11 +147,11 @@ class Contacts {
   /// Adds the power of these contacts on obstacles, and of the obstacles, whose motions are those
   /// at a time [s].
   void add_power_on_obstacles(double velocity_time, ContactPower& power) const {
-    for (std::size_t k = 0; k < solids_.obstacles().size(); ++k) {
-      if (solids_.obstacles()[k].is_carried()) continue;
-      const ObstacleMotion& motion = solids_.obstacles()[k].motion;
-      active_.add_power_on_obstacle(k, motion.rate(velocity_time), motion.spin(velocity_time),
-                                    power);
+    for (std::size_t k = 0; k < solids_.parts(); ++k) {
+      const Obstacle& obstacle = solids_.obstacle(part_index(k));
+      if (obstacle.is_carried()) continue;
+      active_.add_power_on_part(k, obstacle.motion.rate(velocity_time),
+                                obstacle.motion.spin(velocity_time), power);
     }
   }
   /// Returns the energies of the counted pairs at the last evaluation.
@@ -185,6 +189,10 @@ class Contacts {
   template <IsContactLaw Law>
   void evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded);
   template <IsContactLaw Law>
+  std::int32_t meet_parts(const Law& law, std::int32_t first, ContactHistory::Cursor& histories);
+  void follow_parts();
+  ContactWrench on_parts_of(std::size_t obstacle) const;
+  template <IsContactLaw Law>
   void touch(const Law& law, std::int32_t index, const PairHistory* memory);
   template <IsContactLaw Law>
   void find_trials(const Law& law);
@@ -201,6 +209,12 @@ class Contacts {
   Places places_;
   NarrowPhase narrow_;
   MetPairs met_;
+  PartContacts parts_;
+  std::vector<std::int32_t> known_;               ///< work space of meet_parts()
+  std::vector<const PairHistory*> known_memory_;  ///< the same
+  std::deque<PairHistory> joined_memory_;         ///< of contacts that have become one
+  /// Pairs with history whose contacts another pair stands for since the last evaluation, and this.
+  std::vector<std::array<std::int32_t, 2>> followed_;
   ActiveContacts active_;
   double last_dt_ = 0;  ///< length of the last step [s]
   ContactHistory history_;

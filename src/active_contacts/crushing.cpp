@@ -1,5 +1,6 @@
 #include "active_contacts/crushing.h"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 
@@ -34,6 +35,27 @@ void Crushing::start() {
   records_.clear();
   parted_.clear();
   next_ = 0;
+}
+
+void Crushing::move(const Pair& from, const Pair& to) {
+  const auto is = [](const Pair& pair) {
+    return [&](const Crush& crush) { return crush.a == pair.a && crush.b == pair.b; };
+  };
+  const auto moved = std::find_if(records_.begin(), records_.end(), is(from));
+  if (moved == records_.end()) return;
+  Crush crush = *moved;
+  records_.erase(moved);
+  const auto there = std::find_if(records_.begin(), records_.end(), is(to));
+  if (there != records_.end()) {
+    there->before += crush.before;
+    there->plastic += crush.plastic;
+    return;
+  }
+  crush.b = to.b;
+  const auto after = [&](const Crush& c) {
+    return std::tie(c.a, c.b) > std::tie(crush.a, crush.b);
+  };
+  records_.insert(std::find_if(records_.begin(), records_.end(), after), crush);
 }
 
 void Crushing::take(const Pair& pair, double before, double after, const Vec3<double>& normal,

@@ -30,6 +30,8 @@ class Crushing {
  public:
   /// Begins a commit.
   void start();
+  /// Before a commit: gives what a pair has crushed to another pair of the same body.
+  void move(const Pair& from, const Pair& to);
   /// Takes over a contact of the commit; contacts come in list order.
   /// \param before  V_p of the pair before the step, or that with which it was born [m^3]
   /// \param after   V_p [m^3]

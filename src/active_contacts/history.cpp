@@ -8,8 +8,21 @@
 
 namespace floe {
 
-std::span<const ContactHistory::Entry> ContactHistory::last(std::size_t count) const {
-  return std::span(entries_).last(std::min(count, entries_.size()));
+void ContactHistory::move(std::int32_t from, std::int32_t to, std::span<const Pair> pairs) {
+  const auto of = [&](std::int32_t pair) {
+    return std::lower_bound(entries_.begin(), entries_.end(), pair,
+                            [](const Entry& entry, std::int32_t p) { return entry.pair < p; });
+  };
+  const auto moved = of(from);
+  const PairHistory memory = moved->memory;
+  entries_.erase(moved);
+  const auto there = of(to);
+  if (there != entries_.end() && there->pair == to) {
+    there->memory = joined(there->memory, memory);
+  } else {
+    const Pair& pair = item(pairs, to);
+    entries_.insert(there, {.a = pair.a, .b = pair.b, .pair = to, .memory = memory});
+  }
 }
 
 /// Both the histories and the pairs are sorted by (A, B).

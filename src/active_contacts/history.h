@@ -42,8 +42,6 @@ class ContactHistory {
   std::size_t size() const { return entries_.size(); }
   /// Histories in the order of the list.
   std::span<const Entry> entries() const { return entries_; }
-  /// Returns the last `count` entries, or all if there are fewer.
-  std::span<const Entry> last(std::size_t count) const;
 
   /// Begins a commit.
   void start() {
@@ -53,6 +51,9 @@ class ContactHistory {
   /// Finds the histories before the commit that was begun last.
   Cursor before() const { return Cursor(next_); }
   void add(const Entry& entry) { entries_.push_back(entry); }
+  /// Gives the history of a pair to another pair of the same body, where it joins that which the
+  /// other one may have. \param pairs  of the list
+  void move(std::int32_t from, std::int32_t to, std::span<const Pair> pairs);
   /// Assigns the histories to the pairs of a new list; pairs with history are not newly eligible.
   void take_over(std::span<Pair> pairs);
 

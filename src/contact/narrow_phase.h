@@ -59,6 +59,8 @@ class NarrowPhase {
   /// Sets the same. \param met  overwritten
   void overlap(const Solids& solids, const Wear& wear, Pair& pair, const Placed& a, const Placed& b,
                PairOverlap& met);
+  /// Whether overlaps have their Overlap::patch.
+  bool with_patch() const { return with_patch_; }
   /// Forgets the records of cuts of all pairs, for a new list. No number depends on them.
   void forget_cuts() { records_.clear(); }
 

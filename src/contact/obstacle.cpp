@@ -1,5 +1,9 @@
 #include "floe/contact/obstacle.h"
 
+#include "floe/base/item.h"
+
+#include "geometry/across.h"
+#include "geometry/convex_polygon.h"
 #include "geometry/overlap.h"
 
 #include <algorithm>
@@ -42,35 +46,128 @@ Shapes between(const std::vector<Point3>& low, const std::vector<Point3>& high) 
   return s;
 }
 
-Shapes one_of(const Shapes& shapes, std::int32_t body) {
-  const auto b = static_cast<std::size_t>(body);
-  const std::int32_t first = shapes.vertex_of[b];
-  Shapes one;
-  one.vertices.assign(shapes.vertices.begin() + first,
-                      shapes.vertices.begin() + shapes.vertex_of[b + 1]);
-  for (std::int32_t f = shapes.face_of[b]; f < shapes.face_of[b + 1]; ++f) {
-    std::vector<std::int32_t> corners;
-    for (std::int32_t c = shapes.corner_of[static_cast<std::size_t>(f)];
-         c < shapes.corner_of[static_cast<std::size_t>(f) + 1]; ++c)
-      corners.push_back(shapes.corners[static_cast<std::size_t>(c)] - first);
-    add_face(one, corners);
+double size_of(const Obstacle& obstacle) {
+  double most = 0;
+  for (const ConvexPart& part : obstacle.parts)
+    for (const Vec3<double>& r : part.vertices) most = std::max(most, length(r));
+  return most;
+}
+
+/// Returns the corners of the face in a plane of a part, counter-clockwise seen from outside.
+std::vector<Vec3<double>> face_in(const ConvexPart& part, const HalfSpace& plane, double near) {
+  std::vector<Vec3<double>> corners;
+  Vec3<double> middle{};
+  for (const Vec3<double>& r : part.vertices) {
+    if (std::abs(dot(plane.normal, r) - plane.offset) > near) continue;
+    corners.push_back(r);
+    middle = middle + r;
   }
-  finish(one);
-  return one;
+  if (corners.size() < 3) return {};
+  middle = (1 / static_cast<double>(corners.size())) * middle;
+  const auto [u, v] = basis_across(plane.normal);
+  const auto angle = [&, u = u, v = v](const Vec3<double>& r) {
+    return std::atan2(dot(v, r - middle), dot(u, r - middle));
+  };
+  std::sort(corners.begin(), corners.end(),
+            [&](const Vec3<double>& p, const Vec3<double>& q) { return angle(p) < angle(q); });
+  return corners;
+}
+
+/// Returns what two faces have in common. \param face  of one part
+/// \param plane  of the other part, in which the face lies
+std::vector<Vec3<double>> common(std::vector<Vec3<double>> face, const ConvexPart& other,
+                                 const HalfSpace& plane, double near) {
+  std::vector<Vec3<double>> work;
+  for (const HalfSpace& bound : other.planes) {
+    if (length(bound.normal - plane.normal) > 1e-6) cut(face, bound, work);
+    if (face.size() < 3) return {};
+  }
+  const Vec3<double> apart = face[2] - face[0];
+  if (length(area_vector(face)) <= near * std::max(length(face[1] - face[0]), length(apart)))
+    return {};
+  return face;
+}
+
+/// Finds where two parts meet.
+void find_inner_faces(Obstacle& obstacle, std::size_t i, std::size_t j, double near) {
+  ConvexPart &one = obstacle.parts[i], &other = obstacle.parts[j];
+  std::vector<HalfSpace> seen;
+  for (const HalfSpace& plane : one.planes) {
+    const auto same = [&](const HalfSpace& p) {
+      return length(p.normal - plane.normal) < 1e-6 && std::abs(p.offset - plane.offset) < near;
+    };
+    if (std::any_of(seen.begin(), seen.end(), same)) continue;
+    seen.push_back(plane);
+    const auto opposite =
+        std::find_if(other.planes.begin(), other.planes.end(), [&](const HalfSpace& p) {
+          return length(p.normal + plane.normal) < 1e-6 && std::abs(p.offset + plane.offset) < near;
+        });
+    if (opposite == other.planes.end()) continue;
+    const auto face = common(face_in(one, plane, near), other, *opposite, near);
+    if (face.empty()) continue;
+    one.inner_faces.push_back({.other = static_cast<std::int32_t>(j), .corners = face});
+    other.inner_faces.push_back(
+        {.other = static_cast<std::int32_t>(i), .corners = {face.rbegin(), face.rend()}});
+  }
+}
+
+/// Finds where all parts meet.
+void find_inner_faces(Obstacle& obstacle) {
+  const double near = 1e-9 * size_of(obstacle);
+  std::vector<std::pair<Vec3<double>, double>> spheres;  // around parts
+  for (ConvexPart& part : obstacle.parts) {
+    part.inner_faces.clear();
+    Vec3<double> middle{};
+    for (const Vec3<double>& r : part.vertices) middle = middle + r;
+    middle = (1 / static_cast<double>(part.vertices.size())) * middle;
+    double radius = 0;
+    for (const Vec3<double>& r : part.vertices) radius = std::max(radius, length(r - middle));
+    spheres.emplace_back(middle, radius);
+  }
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (std::size_t j = i + 1; j < spheres.size(); ++j)
+      if (length(spheres[i].first - spheres[j].first) <
+          spheres[i].second + spheres[j].second + near)
+        find_inner_faces(obstacle, i, j, near);
+}
+
+/// Appends the faces of all bodies of `shapes`, moved, to the one body of `to`.
+void append_to_body(Shapes& to, const Shapes& shapes, const Vec3<double>& way) {
+  const auto first = static_cast<std::int32_t>(to.vertices.size());
+  const auto corner = static_cast<std::int32_t>(to.corners.size());
+  for (const Vec3<double>& r : shapes.vertices) to.vertices.push_back(r + way);
+  for (const std::int32_t c : shapes.corners) to.corners.push_back(first + c);
+  for (std::size_t f = 1; f < shapes.corner_of.size(); ++f)
+    to.corner_of.push_back(corner + shapes.corner_of[f]);
+  to.face_of = {0, static_cast<std::int32_t>(to.corner_of.size()) - 1};
+  to.vertex_of = {0, static_cast<std::int32_t>(to.vertices.size())};
+}
+
+/// Returns the parts as bodies of their own.
+Shapes parts_of(const Obstacle& obstacle) {
+  Shapes shapes = obstacle.shape;
+  shapes.face_of = {0};
+  shapes.vertex_of = {0};
+  std::int32_t vertices = 0, face = 0;
+  const auto faces = static_cast<std::int32_t>(shapes.corner_of.size()) - 1;
+  for (const ConvexPart& part : obstacle.parts) {
+    vertices += static_cast<std::int32_t>(part.vertices.size());
+    while (face < faces && item(shapes.corners, item(shapes.corner_of, face)) < vertices) ++face;
+    shapes.face_of.push_back(face);
+    shapes.vertex_of.push_back(vertices);
+  }
+  return shapes;
 }
 
 }  // namespace
 
-double Obstacle::radius() const {
-  double most = 0;
-  for (const Vec3<double>& r : vertices) most = std::max(most, dot(r, r));
-  return std::sqrt(most);
-}
+double Obstacle::radius() const { return size_of(*this); }
 
 Obstacle half_space(const Vec3<double>& point, const Vec3<double>& normal) {
   Obstacle o;
   o.point = point;
-  o.planes = {{(1 / std::sqrt(dot(normal, normal))) * normal, 0}};
+  o.parts.resize(1);
+  o.parts[0].planes = {{(1 / std::sqrt(dot(normal, normal))) * normal, 0}};
   return o;
 }
 
@@ -79,23 +176,61 @@ Vec3<double> way_to_nearest(const std::vector<Obstacle>& obstacles, const Vec3<d
   double least = std::numeric_limits<double>::infinity();
   for (const Obstacle& o : obstacles) {
     Vec3<double> way = o.point - from;
-    if (o.vertices.empty()) way = dot(o.planes[0].normal, way) * o.planes[0].normal;
+    if (o.is_half_space()) {
+      const Vec3<double> normal = o.parts[0].planes[0].normal;
+      way = dot(normal, way) * normal;
+    }
     const double distance = length(way);
     if (distance < least) least = distance, shortest = way;
   }
   return {shortest.x, shortest.y, 0};
 }
 
-Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>& point) {
+Obstacle polyhedra(const Shapes& shapes, const Vec3<double>& point) {
   Obstacle o;
   o.point = point;
-  append_half_spaces(shapes, body, o.planes);
-  const auto b = static_cast<std::size_t>(body);
-  for (auto v = static_cast<std::size_t>(shapes.vertex_of[b]);
-       v < static_cast<std::size_t>(shapes.vertex_of[b + 1]); ++v)
-    o.vertices.push_back(shapes.vertices[v]);
-  o.shape = one_of(shapes, body);
+  for (std::int32_t body = 0; body < shapes.bodies(); ++body) {
+    ConvexPart& part = o.parts.emplace_back();
+    append_half_spaces(shapes, body, part.planes);
+    const auto b = static_cast<std::size_t>(body);
+    part.vertices.assign(shapes.vertices.begin() + shapes.vertex_of[b],
+                         shapes.vertices.begin() + shapes.vertex_of[b + 1]);
+  }
+  append_to_body(o.shape, shapes, {});
+  find_inner_faces(o);
   return o;
+}
+
+void add_parts(Obstacle& obstacle, const Obstacle& further) {
+  const Vec3<double> way = further.point - obstacle.point;
+  for (ConvexPart part : further.parts) {
+    for (HalfSpace& plane : part.planes) plane.offset += dot(plane.normal, way);
+    for (Vec3<double>& r : part.vertices) r = r + way;
+    obstacle.parts.push_back(std::move(part));
+  }
+  append_to_body(obstacle.shape, further.shape, way);
+  find_inner_faces(obstacle);
+}
+
+std::optional<PartsOverlap> overlap_of_parts(const Obstacle& obstacle) {
+  constexpr double rounding = 1e-9;
+  const auto parts = static_cast<std::int32_t>(obstacle.parts.size());
+  if (parts < 2) return std::nullopt;
+  const Shapes shapes = parts_of(obstacle);
+  std::vector<double> volumes;
+  for (std::int32_t k = 0; k < parts; ++k) volumes.push_back(volume_properties(shapes, k).volume);
+  Clipper clipper;
+  for (std::int32_t one = 0; one < parts; ++one) {
+    const auto k = static_cast<std::size_t>(one);
+    for (std::int32_t other = one + 1; other < parts; ++other) {
+      const auto m = static_cast<std::size_t>(other);
+      const double volume =
+          clipper.overlap(shapes, one, obstacle.parts[k].vertices, obstacle.parts[m].planes).volume;
+      if (volume > rounding * std::min(volumes[k], volumes[m]))
+        return PartsOverlap{.one = one, .other = other, .volume = volume};
+    }
+  }
+  return std::nullopt;
 }
 
 Obstacle box(const Vec3<double>& centre, const Vec3<double>& size, const Vec3<double>& rotation) {
@@ -109,7 +244,7 @@ Obstacle box(const Vec3<double>& centre, const Vec3<double>& size, const Vec3<do
       (z < 0 ? low : high).push_back(rotate(q, {x * size.x, y * size.y, z * size.z}));
     }
   }
-  return polyhedron(between(low, high), 0, centre);
+  return polyhedra(between(low, high), centre);
 }
 
 Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double height,
@@ -122,7 +257,7 @@ Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double
       high.push_back({top_radius * std::cos(a), top_radius * std::sin(a), height});
   }
   if (top_radius == 0) high.push_back({0, 0, height});
-  return polyhedron(between(low, high), 0, base);
+  return polyhedra(between(low, high), base);
 }
 
 }  // namespace floe

@@ -82,8 +82,8 @@ bool PairList::is_near(const Solids& solids, std::int32_t body, const Placed& pl
 void PairList::list_obstacles(const Search& search) {
   const Solids& solids = search.solids;
   may_become_near_.clear();
-  for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
-    const std::int32_t index = obstacle_index(k);
+  for (std::size_t k = 0; k < solids.parts(); ++k) {
+    const std::int32_t index = part_index(k);
     const std::int32_t carrier = solids.obstacle(index).body;
     const Placed obstacle = carrier < 0 ? place_of(solids.obstacle(index), search.time, search.time)
                                         : item(search.bodies, carrier);
@@ -116,7 +116,8 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
   Pair pair{.a = bodies[0],
             .b = bodies[1],
             .counted = search.is_here(bodies[0]),
-            .newly_eligible = stress_free_};
+            .newly_eligible = stress_free_,
+            .one_of_several = search.solids.is_one_of_several(bodies[1])};
   if (!is_obstacle(pair.b)) {
     pair.newly_eligible =
         stress_free_ || (changed_ && eligibility_.became_eligible(pair.a, pair.b));

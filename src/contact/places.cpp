@@ -48,9 +48,9 @@ void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
     const InverseInertia inverse = solids.inverse_inertia(involved[s]);
     mobility_[s] = {inverse.mass, SymmetricMatrix::along(to.axes, inverse.moments)};
   }
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const std::int32_t index = obstacle_index(k);
-    Placed& was = obstacles_[k];
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const std::int32_t index = part_index(k);
+    Placed& was = parts_[k];
     Placed to = place_of(solids.obstacle(index), time, motion);
     if (counts_travels_)
       to.travelled = was.travelled + farthest_travel(was, to, solids.radius(index));
@@ -66,9 +66,9 @@ void Places::predict(const Solids& solids, double after,
     predicted_[s] = {.velocity = bodies_[s].velocity + after * accelerations[s].linear,
                      .spin = bodies_[s].spin + after * accelerations[s].angular};
   }
-  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
-    const ObstacleMotion& motion = solids.obstacles()[k].motion;
-    predicted_obstacles_[k] = {.velocity = motion.rate(time_), .spin = motion.spin(time_)};
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
+    const ObstacleMotion& motion = solids.obstacle(part_index(k)).motion;
+    predicted_parts_[k] = {.velocity = motion.rate(time_), .spin = motion.spin(time_)};
   }
 }
 

@@ -66,12 +66,13 @@ RelativeMotionOf<T> relative_motion(const BodyVelocityOf<T>& a, const BodyVeloci
           .spin = a.spin - b.spin};
 }
 
-/// The places of the involved bodies, by slot, and of all obstacles in the last evaluation.
+/// The places of the involved bodies, by slot, and of all parts of obstacles in the last
+/// evaluation.
 class Places {
  public:
-  /// \param obstacles  number of obstacles
-  explicit Places(std::size_t obstacles, const Periods& periods = {})
-      : obstacles_(obstacles), predicted_obstacles_(obstacles), periods_(periods) {}
+  /// \param parts  number of parts of obstacles
+  explicit Places(std::size_t parts, const Periods& periods = {})
+      : parts_(parts), predicted_parts_(parts), periods_(periods) {}
 
   /// Begins to count travels, after a new list or new slots.
   void restart(std::size_t slots);
@@ -92,7 +93,7 @@ class Places {
   }
   const Placed& of_a(const Pair& pair) const { return item(bodies_, pair.slot_a); }
   const Placed& of_b(const Pair& pair) const {
-    return pair.slot_b < 0 ? obstacles_[obstacle_number(pair.b)] : item(bodies_, pair.slot_b);
+    return pair.slot_b < 0 ? parts_[part_number(pair.b)] : item(bodies_, pair.slot_b);
   }
   const Periods& periods() const { return periods_; }
   /// Returns the image of B that is nearest to A. \param room  for its place, if it is not B's own
@@ -108,18 +109,17 @@ class Places {
   /// Return the predicted velocities of A and B.
   const BodyVelocity& predicted_a(const Pair& pair) const { return item(predicted_, pair.slot_a); }
   const BodyVelocity& predicted_b(const Pair& pair) const {
-    return pair.slot_b < 0 ? predicted_obstacles_[obstacle_number(pair.b)]
-                           : item(predicted_, pair.slot_b);
+    return pair.slot_b < 0 ? predicted_parts_[part_number(pair.b)] : item(predicted_, pair.slot_b);
   }
   /// Returns the time of the last evaluation [s].
   double time() const { return time_; }
 
  private:
-  std::vector<Placed> bodies_;                     ///< per slot
-  std::vector<BodyMobility> mobility_;             ///< per slot
-  std::vector<Placed> obstacles_;                  ///< per obstacle
-  std::vector<BodyVelocity> predicted_;            ///< per slot
-  std::vector<BodyVelocity> predicted_obstacles_;  ///< per obstacle
+  std::vector<Placed> bodies_;                 ///< per slot
+  std::vector<BodyMobility> mobility_;         ///< per slot
+  std::vector<Placed> parts_;                  ///< per part of obstacles
+  std::vector<BodyVelocity> predicted_;        ///< per slot
+  std::vector<BodyVelocity> predicted_parts_;  ///< per part of obstacles
   BodyMobility of_obstacle_{};
   Periods periods_;
   double time_ = 0;

@@ -57,10 +57,7 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
     add(b, item(masses, b), graphs);
     faces_.push_back(faces_of(shapes_, b));
   }
-  for (const Obstacle& o : obstacles_)
-    extents_.push_back({.radius = o.radius(),
-                        .width = least_width(o.vertices, o.planes),
-                        .first_coordinate = add_lists(o.vertices)});
+  add_parts();
   for (const Obstacle& o : obstacles_)
     if (o.is_carried()) carriers_.push_back(o.body);
   std::sort(carriers_.begin(), carriers_.end());
@@ -72,7 +69,23 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
     item(carries_, b) = 1;
   }
   for (const Body& body : bodies_) thinnest_ = std::min(thinnest_, body.width);
-  for (const Extents& obstacle : extents_) thinnest_ = std::min(thinnest_, obstacle.width);
+  for (const Part& part : parts_) thinnest_ = std::min(thinnest_, part.width);
+}
+
+void Solids::add_parts() {
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    double radius = 0, thickest = 0;
+    for (const ConvexPart& part : obstacles_[k].parts) {
+      for (const Vec3<double>& r : part.vertices) radius = std::max(radius, length(r));
+      thickest = std::max(thickest, least_width(part.vertices, part.planes));
+    }
+    for (const ConvexPart& part : obstacles_[k].parts)
+      parts_.push_back({.obstacle = k,
+                        .radius = radius,
+                        .width = thickest,
+                        .first_coordinate = add_lists(part.vertices)});
+    first_part_.push_back(parts_.size());
+  }
 }
 
 /// Returns the place of the first coordinate.

@@ -1,7 +1,8 @@
 /// \file
-/// The rigid bodies and obstacles that may touch: shapes, sizes and masses.
+/// The rigid bodies and parts of obstacles that may touch: shapes, sizes and masses.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <map>
 #include <span>
@@ -19,8 +20,8 @@
 
 namespace floe {
 
-/// All bodies of the model, and the obstacles. An index is that of a body, or, below 0, that of an
-/// obstacle (contact/pair.h).
+/// All bodies of the model, and the obstacles. An index is that of a body, or, below 0, that of a
+/// part of an obstacle (contact/pair.h).
 class Solids {
  public:
   /// \param shapes     of all bodies, in their principal axes
@@ -35,18 +36,35 @@ class Solids {
   std::int32_t bodies() const { return shapes_.bodies(); }
   const Shapes& shapes() const { return shapes_; }
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
-  /// Returns the obstacle with an index below 0.
+  /// Returns the number of parts of all obstacles.
+  std::size_t parts() const { return parts_.size(); }
+  /// Returns the numbers of the parts of obstacle k: from the first, up to that of the second.
+  std::array<std::size_t, 2> parts_of(std::size_t k) const {
+    return {first_part_[k], first_part_[k + 1]};
+  }
+  /// Returns the number of the obstacle of a part with an index below 0.
+  std::size_t obstacle_number(std::int32_t index) const { return part_of(index).obstacle; }
+  /// Returns the obstacle of a part with an index below 0.
   const Obstacle& obstacle(std::int32_t index) const { return obstacles_[obstacle_number(index)]; }
+  /// Returns the part with an index below 0.
+  const ConvexPart& part(std::int32_t index) const {
+    const Part& of = part_of(index);
+    return obstacles_[of.obstacle].parts[part_number(index) - first_part_[of.obstacle]];
+  }
+  /// Whether an index is that of one of several parts of an obstacle.
+  bool is_one_of_several(std::int32_t index) const {
+    return is_obstacle(index) && obstacle(index).parts.size() > 1;
+  }
 
   /// Returns the vertices in the frame of the body or obstacle [m]; a half-space has none.
   std::span<const Vec3<double>> vertices(std::int32_t index) const {
-    if (is_obstacle(index)) return obstacle(index).vertices;
+    if (is_obstacle(index)) return part(index).vertices;
     const Body& body = item(bodies_, index);
     return {shapes_.vertices.data() + body.first_vertex, static_cast<std::size_t>(body.vertices)};
   }
   /// Returns the vertices by coordinates.
   VertexLists vertex_lists(std::int32_t index) const {
-    const std::size_t first = is_obstacle(index) ? extents_[obstacle_number(index)].first_coordinate
+    const std::size_t first = is_obstacle(index) ? part_of(index).first_coordinate
                                                  : item(bodies_, index).first_coordinate;
     const std::size_t number = vertices(index).size(), length = VertexLists::padded(number);
     const double* x = coordinates_.data() + first;
@@ -59,7 +77,7 @@ class Solids {
   }
   /// Returns the planes of the faces, in the frame of the body or obstacle.
   std::span<const HalfSpace> planes(std::int32_t index) const {
-    if (is_obstacle(index)) return obstacle(index).planes;
+    if (is_obstacle(index)) return part(index).planes;
     const Body& body = item(bodies_, index);
     return {planes_.data() + body.first_plane, static_cast<std::size_t>(body.planes)};
   }
@@ -68,7 +86,7 @@ class Solids {
   /// Returns the bodies that carry obstacles, sorted.
   const std::vector<std::int32_t>& carriers() const { return carriers_; }
   bool is_half_space(std::int32_t index) const {
-    return is_obstacle(index) && obstacle(index).vertices.empty();
+    return is_obstacle(index) && part(index).vertices.empty();
   }
 
   /// Returns the cube root of the volume of a body [m].
@@ -82,16 +100,15 @@ class Solids {
   }
   /// Whether any pair rubs.
   bool has_friction(const ContactOptions& options) const;
-  /// Returns the distance of the farthest vertex from the centroid of a body or from the origin of
-  /// the frame of an obstacle [m].
+  /// Returns the distance of the farthest vertex from the centroid of a body or, of a part, from
+  /// the origin of the frame of its obstacle [m].
   double radius(std::int32_t index) const {
-    return is_obstacle(index) ? extents_[obstacle_number(index)].radius
-                              : item(bodies_, index).radius;
+    return is_obstacle(index) ? part_of(index).radius : item(bodies_, index).radius;
   }
   /// Returns the least width of a body or obstacle, between planes along its faces [m]; infinite
-  /// for a half-space.
+  /// for a half-space. Of several parts it is that of the thickest part.
   double width(std::int32_t index) const {
-    return is_obstacle(index) ? extents_[obstacle_number(index)].width : item(bodies_, index).width;
+    return is_obstacle(index) ? part_of(index).width : item(bodies_, index).width;
   }
   /// Returns the mean radius of all bodies that carry no obstacle [m].
   double mean_radius() const;
@@ -116,11 +133,15 @@ class Solids {
     double size = 0, mass = 0, radius = 0, width = 0;
     InverseInertia inverse;
   };
-  struct Extents {
+  /// What an evaluation needs of a part of an obstacle.
+  struct Part {
+    std::size_t obstacle = 0;
     double radius = 0, width = 0;
     std::size_t first_coordinate = 0;
   };
 
+  const Part& part_of(std::int32_t index) const { return parts_[part_number(index)]; }
+  void add_parts();
   std::size_t add_lists(std::span<const Vec3<double>> vertices);
   using Graphs = std::map<EdgeGraph, std::int32_t>;
   std::int32_t add_graph(std::int32_t body, Graphs& known);
@@ -133,10 +154,11 @@ class Solids {
   std::vector<EdgeGraph> graphs_;  ///< different ones: most bodies share one with others
   std::vector<HalfSpace> planes_;
   std::vector<Body> bodies_;
-  std::vector<Faces> faces_;            ///< per body
-  std::vector<Extents> extents_;        ///< per obstacle
-  std::vector<std::uint8_t> carries_;   ///< per body; empty: none does
-  std::vector<std::int32_t> carriers_;  ///< sorted
+  std::vector<Faces> faces_;                ///< per body
+  std::vector<Part> parts_;                 ///< of all obstacles
+  std::vector<std::size_t> first_part_{0};  ///< per obstacle, then the number of parts
+  std::vector<std::uint8_t> carries_;       ///< per body; empty: none does
+  std::vector<std::int32_t> carriers_;      ///< sorted
   double thinnest_ = std::numeric_limits<double>::infinity();
 };
 

@@ -94,7 +94,7 @@ LimitsStep<Spatial>::Limit travel_limit(const Solids& solids, const Part& part,
   std::string obstacle;
   for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
     const Obstacle& o = solids.obstacles()[k];
-    const double speed = o.motion.largest_speed(solids.radius(obstacle_index(k)));
+    const double speed = o.motion.largest_speed(solids.radius(part_index(solids.parts_of(k)[0])));
     if (!(speed > obstacle_speed)) continue;
     obstacle_speed = speed;
     obstacle = o.name;

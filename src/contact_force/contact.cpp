@@ -404,10 +404,15 @@ void DistributedContact::restore(const std::vector<double>& rows,
   expiry_ = PairListExpiry(contacts_.solids(), part_);
 }
 
-void check_shapes(const Lattice& lattice) {
+void check_shapes(const Lattice& lattice, const std::vector<Obstacle>& obstacles) {
+  const auto carries = [&](std::int32_t body) {
+    return std::any_of(obstacles.begin(), obstacles.end(),
+                       [&](const Obstacle& o) { return o.body == body; });
+  };
   if (lattice.shapes.empty())
     throw InputError("forces: contact needs bodies with a shape; the lattice file has no /shapes");
   for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
+    if (carries(b)) continue;
     const double size = std::cbrt(volume_properties(lattice.shapes, b).volume);
     constexpr double rounding = 1e-6;
     if (concavity(lattice.shapes, b) > rounding * size)
@@ -422,7 +427,7 @@ std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles,
                                       PrescribedMotion prescribed) {
-  check_shapes(lattice);
+  check_shapes(lattice, obstacles);
   auto contact = std::make_unique<DistributedContact>(part, lattice, options, std::move(obstacles),
                                                       std::move(prescribed));
   contact->check_start();

@@ -75,7 +75,7 @@ std::array<double, 2> PairListExpiry::of_obstacles(const Solids& solids, double 
   for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
     const ObstacleMotion& m = solids.obstacles()[k].motion;
     if (m.at_rest()) continue;
-    const double radius = solids.radius(obstacle_index(k));
+    const double radius = solids.radius(part_index(solids.parts_of(k)[0]));
     const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
     most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
                                     2 * radius * length(Vec3<double>{turn.x, turn.y, turn.z}));

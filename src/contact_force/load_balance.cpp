@@ -54,7 +54,7 @@ ContactLoadBalance::ContactLoadBalance(MPI_Comm comm) : comm_(comm) {}
 void ContactLoadBalance::plan(Contacts& contacts) {
   if (size(comm_) == 1) return;
   const auto shares = shared_pairs(
-      all_gathered(std::vector{static_cast<std::int64_t>(contacts.history().size())}, comm_));
+      all_gathered(std::vector{static_cast<std::int64_t>(contacts.offloadable())}, comm_));
   std::vector<std::int64_t> given;  // number of pairs that each rank offloads
   given.reserve(shares.size());
   for (const auto& row : shares)

@@ -46,6 +46,14 @@ struct PairHistoryOf {
 };
 using PairHistory = PairHistoryOf<double>;
 
+/// Returns the history of two contacts that have become one.
+inline PairHistory joined(const PairHistory& one, const PairHistory& other) {
+  std::array<double, PairHistory::numbers> sum = one.as_numbers();
+  const auto more = other.as_numbers();
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += more[k];
+  return PairHistory::from(sum);
+}
+
 /// Relative motion of the two bodies at a contact.
 template <class T>
 struct RelativeMotionOf {

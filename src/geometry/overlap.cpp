@@ -93,6 +93,17 @@ Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
   return found;
 }
 
+void Clipper::facets_on_b(FacetsOnB& facets) const {
+  facets.clear();
+  for (std::size_t f = 0; f < now_.faces.size(); ++f) {
+    const Face& face = now_.faces[f];
+    if (!face.on_b) continue;
+    for (std::int32_t c = face.begin; c < face.end; ++c)
+      facets.corners.push_back(item(now_.points, item(now_.corners, c)));
+    facets.end.push_back(facets.corners.size());
+  }
+}
+
 /// Sets now_ to the whole body.
 void Clipper::start(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed) {
   const auto b = static_cast<std::size_t>(body);

@@ -65,6 +65,14 @@ void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<Hal
 /// its faces are plane.
 double concavity(const Shapes& shapes, std::int32_t body);
 
+/// Facets of an overlap on B, in B's frame.
+struct FacetsOnB {
+  std::vector<Vec3<double>> corners;  ///< of all, counter-clockwise seen from outside [m]
+  std::vector<std::size_t> end;       ///< per facet: the place behind its corners
+
+  void clear() { corners.clear(), end.clear(); }
+};
+
 /// Further planes that bound A and B.
 struct FurtherPlanes {
   std::span<const HalfSpace> a, b;
@@ -88,6 +96,9 @@ class Clipper {
   Overlap overlap(const Shapes& shapes, std::int32_t body, std::span<const Vec3<double>> placed,
                   std::span<const HalfSpace> planes, bool with_patch = false,
                   const FurtherPlanes& further = {});
+
+  /// Sets the facets on B of the last overlap, which was not zero.
+  void facets_on_b(FacetsOnB& facets) const;
 
  private:
   struct Face {

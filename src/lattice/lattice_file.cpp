@@ -322,14 +322,19 @@ Lattice read_lattice(const std::string& file) {
   return lattice;
 }
 
-Shapes read_polyhedron(const std::string& file, const std::string& key) {
+Shapes read_polyhedra(const std::string& file, const std::string& key) {
   const Reader in(file, key);
-  Shapes shapes = read_shapes(in, 1, Centroid::anywhere);
-  if (shapes.empty()) in.refuse("/shapes", "is not there");
-  const double size = std::cbrt(volume_properties(shapes, 0).volume);
-  constexpr double rounding = 1e-6;
-  if (concavity(shapes, 0) > rounding * size)
-    in.refuse("/shapes", "the polyhedron is not convex, or a face of it is not plane");
+  if (!in.file().has("/shapes/face_of")) in.refuse("/shapes", "is not there");
+  const auto entries = static_cast<std::size_t>(in.file().shape("/shapes/face_of").first);
+  if (entries < 2) in.refuse("/shapes/face_of", "must have two entries or more");
+  Shapes shapes = read_shapes(in, entries - 1, Centroid::anywhere);
+  for (std::int32_t body = 0; body < shapes.bodies(); ++body) {
+    const double size = std::cbrt(volume_properties(shapes, body).volume);
+    constexpr double rounding = 1e-6;
+    if (concavity(shapes, body) > rounding * size)
+      in.refuse("/shapes", (entries > 2 ? "polyhedron " + std::to_string(body) : "the polyhedron") +
+                               " is not convex, or a face of it is not plane");
+  }
   return shapes;
 }
 

@@ -95,8 +95,11 @@ std::string fingerprint(const Lattice& lattice) {
 std::string fingerprint(std::span<const Obstacle> obstacles) {
   Hash hash;
   for (const Obstacle& obstacle : obstacles) {
-    hash.add(obstacle.point), hash.add(obstacle.vertices);
-    for (const HalfSpace& plane : obstacle.planes) hash.add(plane.normal), hash.add(plane.offset);
+    hash.add(obstacle.point);
+    for (const ConvexPart& part : obstacle.parts) {
+      hash.add(part.vertices);
+      for (const HalfSpace& plane : part.planes) hash.add(plane.normal), hash.add(plane.offset);
+    }
   }
   return std::to_string(obstacles.size()) + ", " + hash.text();
 }

@@ -322,9 +322,13 @@ constexpr std::array table{
     OptionSpec{"contact: restitution", number, "1", "", ">= 1e-6, <= 1",
                "part of the speed that a central impact of a face on a plane gives back"},
     OptionSpec{"obstacle: names", names, "(none)", "", "",
-               "rigid convex obstacles: one section each"},
+               "rigid obstacles, and parts of them: one section each"},
     OptionSpec{"obstacle: NAME: shape", choice, "(required)", "",
                "halfspace | box | cone | cylinder | file", "what it is"},
+    OptionSpec{
+        "obstacle: NAME: part_of", text, "(it is an obstacle itself)", "", "",
+        "name of the obstacle of which it is a part: they move as one, and only that one has "
+        "friction, a motion and a mass; parts may meet at faces, not overlap"},
     OptionSpec{"obstacle: NAME: friction", number, "(contact: friction)", "", ">= 0, <= 1e3",
                "Coulomb's coefficient against it"},
     OptionSpec{"obstacle: NAME: friction_wet", number, "(friction)", "", ">= 0, <= 1e3",
@@ -362,7 +366,7 @@ constexpr std::array table{
     OptionSpec{"obstacle: NAME: facets", integer, "24", "", ">= 3, <= 1000",
                "cone, cylinder: sides of the polygon inside the circle"},
     OptionSpec{"obstacle: NAME: file", text, "(required)", "", "",
-               "file: HDF5 file whose /shapes hold one convex polyhedron"},
+               "file: HDF5 file whose /shapes hold convex polyhedra, the parts of the obstacle"},
     OptionSpec{"obstacle: NAME: mass", number, "(it is fixed, or moves as it is told)", "kg",
                ">= 1e-9, <= 1e15",
                "the obstacle is a structure, a body that contacts, its support and loads move; its "

@@ -1,5 +1,9 @@
 // Reading of contacts and obstacles.
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "contact_laws/restitution.h"
 #include "floe/base/petsc.h"
@@ -31,7 +35,7 @@ Obstacle read_shape(Options& options, const std::string& name, Inputs& inputs) {
   if (shape == Shape::file) {
     const std::string file = options.text("obstacle: NAME: file", name);
     inputs.emplace_back("obstacle: " + name + ": file", file);
-    return polyhedron(read_polyhedron(file, "obstacle: " + name + ": file"), 0, of("point"));
+    return polyhedra(read_polyhedra(file, "obstacle: " + name + ": file"), of("point"));
   }
   const Vec3<double> base = of("base");
   const double radius = options.number("obstacle: NAME: radius", name),
@@ -64,6 +68,41 @@ ObstacleMotion read_motion(Options& options, const std::string& name, bool half_
   // Without a motion the key is not read, and so it is refused.
   if (!motion.at_rest()) motion.ramp.seconds = options.number("obstacle: NAME: ramp", name);
   return motion;
+}
+
+/// Joins a part to its obstacle. \param obstacles  those that are parts of no other
+void join_part(Options& options, const Obstacle& part, const std::string& whole,
+               std::vector<Obstacle>& obstacles) {
+  const std::string key = "obstacle: " + part.name + ": part_of: ";
+  const auto found = std::find_if(obstacles.begin(), obstacles.end(),
+                                  [&](const Obstacle& o) { return o.name == whole; });
+  if (found == obstacles.end()) {
+    std::string names;
+    for (const Obstacle& o : obstacles) names += (names.empty() ? "" : ", ") + o.name;
+    throw InputError(key + "there is no obstacle '" + whole + "' of its own" +
+                     (names.empty() ? "" : " (there are " + names + ")"));
+  }
+  if (part.is_half_space() || found->is_half_space())
+    throw InputError(key + "a halfspace has no parts and is none");
+  for (const auto* last : {"friction", "friction_wet", "velocity", "angular_velocity", "amplitude",
+                           "frequency", "ramp", "mass"})
+    options.refuse_one("obstacle: NAME: " + std::string(last), part.name,
+                       "belongs to '" + whole + "', of which it is a part");
+  add_parts(*found, part);
+}
+
+/// Refuses parts that overlap.
+void check_parts(const Obstacle& obstacle, const std::vector<std::string>& names_of_parts) {
+  const auto met = overlap_of_parts(obstacle);
+  if (!met) return;
+  const auto name = [&](std::int32_t part) {
+    return names_of_parts[static_cast<std::size_t>(part)];
+  };
+  const std::string one = name(met->one), other = name(met->other);
+  throw InputError("obstacle: " + obstacle.name + ": " +
+                   (one == other ? "parts of '" + one + "' overlap by "
+                                 : "its parts '" + one + "' and '" + other + "' overlap by ") +
+                   text_of(met->volume) + " m^3; parts may meet at faces, not overlap");
 }
 
 void read_plastic_limit(Options& options, ContactOptions& contact) {
@@ -101,9 +140,21 @@ void read_contact(Options& options, Scene& scene) {
   if (options.given("contact: plastic_limit")) read_plastic_limit(options, contact);
   contact.initial_overlap = options.choice<InitialOverlap>("contact: initial_overlap");
   contact.damping_ratio = damping_ratio_of(options.number("contact: restitution"));
+  struct Joining {
+    Obstacle part;
+    std::string whole;
+  };
+  std::vector<Joining> joining;
+  std::map<std::string, std::vector<std::string>> names_of_parts;  // per obstacle
   for (const std::string& name : options.names("obstacle")) {
     Obstacle obstacle = read_shape(options, name, scene.inputs);
     obstacle.name = name;
+    if (options.given("obstacle: NAME: part_of", name)) {
+      refuse_structure(options, name);
+      joining.push_back({std::move(obstacle), options.text("obstacle: NAME: part_of", name)});
+      continue;
+    }
+    names_of_parts[name].assign(obstacle.parts.size(), name);
     obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
     if (options.given("obstacle: NAME: friction_wet", name)) {
       obstacle.friction_wet = options.number("obstacle: NAME: friction_wet", name);
@@ -115,10 +166,16 @@ void read_contact(Options& options, Scene& scene) {
       scene.structures.back().obstacle = scene.obstacles.size();
     } else {
       refuse_structure(options, name);
-      obstacle.motion = read_motion(options, name, obstacle.vertices.empty());
+      obstacle.motion = read_motion(options, name, obstacle.is_half_space());
     }
     scene.obstacles.push_back(std::move(obstacle));
   }
+  for (const auto& [part, whole] : joining) {
+    join_part(options, part, whole, scene.obstacles);
+    names_of_parts[whole].insert(names_of_parts[whole].end(), part.parts.size(), part.name);
+  }
+  for (const Obstacle& obstacle : scene.obstacles)
+    check_parts(obstacle, names_of_parts[obstacle.name]);
 }
 
 }  // namespace floe

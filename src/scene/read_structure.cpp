@@ -93,7 +93,7 @@ void read_support(Options& options, const std::string& name, Structure& structur
 
 Structure read_structure(Options& options, const Obstacle& obstacle) {
   const std::string& name = obstacle.name;
-  if (obstacle.vertices.empty())
+  if (obstacle.is_half_space())
     throw InputError("obstacle: " + name +
                      ": mass: a halfspace is no body; box, cone, cylinder "
                      "and file can be");

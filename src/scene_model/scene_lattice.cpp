@@ -285,8 +285,8 @@ void check_periods(const Scene& scene, const Lattice& lattice) {
                        " times the radius of the largest body, or 0");
   }
   for (const Obstacle& o : scene.obstacles) {
-    if (!o.vertices.empty()) continue;
-    const Vec3<double> n = o.planes.front().normal;
+    if (!o.is_half_space()) continue;
+    const Vec3<double> n = o.parts[0].planes.front().normal;
     for (const std::size_t k : {0U, 1U}) {
       if (periods[k] > 0 && std::abs(n[k]) > 1e-12)
         throw InputError("obstacle: " + o.name + ": normal: has a part along " +

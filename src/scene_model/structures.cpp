@@ -66,10 +66,16 @@ Point3 moments_in_world(const Placement& p) {
 /// An obstacle in another frame.
 void move_to(Obstacle& obstacle, const Point3& centre, const Triad<double>& axes) {
   const Vec3<double> apart = obstacle.point - centre;
-  for (HalfSpace& plane : obstacle.planes)
-    plane = {axes.to_local(plane.normal), plane.offset + dot(plane.normal, apart)};
-  for (auto* vertices : {&obstacle.vertices, &obstacle.shape.vertices})
-    for (Vec3<double>& r : *vertices) r = axes.to_local(r + apart);
+  const auto move = [&](std::vector<Vec3<double>>& points) {
+    for (Vec3<double>& r : points) r = axes.to_local(r + apart);
+  };
+  for (ConvexPart& part : obstacle.parts) {
+    for (HalfSpace& plane : part.planes)
+      plane = {axes.to_local(plane.normal), plane.offset + dot(plane.normal, apart)};
+    move(part.vertices);
+    for (InnerFace& face : part.inner_faces) move(face.corners);
+  }
+  move(obstacle.shape.vertices);
   obstacle.point = centre;
 }
 

@@ -76,12 +76,13 @@ TEST(NarrowPhase, GapsOfObstacles) {
   Shapes shapes;
   test::append_box(shapes, 1, 1, 1);
   Obstacle floor;
-  floor.planes = {{{0, 0, 1}, 0}};
+  floor.parts.resize(1);
+  floor.parts[0].planes = {{{0, 0, 1}, 0}};
   const std::vector<double> masses{1};
   const Solids solids(shapes, masses, {floor});
   NarrowPhase narrow(false);
   const Placed below = placed_at({}, {1, 0, 0, 0});
-  Pair pair{.a = 0, .b = obstacle_index(0), .slot_a = 0, .axis = {0, 0, 1}};
+  Pair pair{.a = 0, .b = part_index(0), .slot_a = 0, .axis = {0, 0, 1}};
   const Placed on_edge = placed_at({5, 3, 0.8}, exp_rotation({0.25 * std::numbers::pi, 0, 0}));
   ASSERT_TRUE(narrow.is_apart(solids, pair, on_edge, below));
   EXPECT_NEAR(pair.safe, 0.8 - std::sqrt(0.5), 1e-6);

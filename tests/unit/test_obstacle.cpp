@@ -19,8 +19,8 @@ Overlap inside_of(const Obstacle& o) {
   Shapes cube;
   test::append_box(cube, 40, 40, 40);
   Clipper clipper;
-  Overlap common =
-      clipper.overlap(cube, 0, test::placed(cube, 0, {1, 0, 0, 0}, -1.0 * o.point), o.planes);
+  Overlap common = clipper.overlap(cube, 0, test::placed(cube, 0, {1, 0, 0, 0}, -1.0 * o.point),
+                                   o.parts[0].planes);
   common.centroid = common.centroid + o.point;
   return common;
 }
@@ -34,7 +34,7 @@ void expect_at(const Vec3<double>& a, const Vec3<double>& b) {
 /// Largest distance of a vertex along each axis.
 Vec3<double> reach(const Obstacle& o) {
   Vec3<double> most{};
-  for (const auto& v : o.vertices)
+  for (const auto& v : o.parts[0].vertices)
     most = {std::max(most.x, v.x), std::max(most.y, v.y), std::max(most.z, v.z)};
   return most;
 }
@@ -53,7 +53,8 @@ TEST(Obstacle, BoxTurnsAboutXThenYThenZ) {
   expect_at(reach(o), {3, 1, 2});
   // By 30 degrees about y the x axis dips.
   const Obstacle tilted = box({0, 0, 0}, {2, 1e-3, 1e-3}, {0, 30, 0});
-  const auto east = std::max_element(tilted.vertices.begin(), tilted.vertices.end(),
+  const auto& corners = tilted.parts[0].vertices;
+  const auto east = std::max_element(corners.begin(), corners.end(),
                                      [](const auto& a, const auto& b) { return a.x < b.x; });
   EXPECT_NEAR(east->z, -0.5, 1e-3);
 }
@@ -73,7 +74,8 @@ TEST(Obstacle, ConesAndCylindersStandOnTheirBase) {
     expect_at(pyramid.centroid, {1, -2, -1.5});
     // A facet looks along x, so that a sheet that comes along x meets a face.
     double farthest = 0;
-    for (const HalfSpace& h : cone({}, 2, 2, 5, n).planes)
+    const Obstacle cylinder = cone({}, 2, 2, 5, n);
+    for (const HalfSpace& h : cylinder.parts[0].planes)
       if (h.normal.x > 1 - 1e-12) farthest = h.offset;
     EXPECT_NEAR(farthest, 2 * std::cos(pi / n), 1e-12);
   }
@@ -84,7 +86,7 @@ TEST(Obstacle, FromAFileIsWhatTheFileHolds) {
   test::append_block(one, {2, 4, 6}, {7, 7, 7});
   const std::string file = "obstacle_of_test.h5";
   write_lattice(one, file);
-  const Obstacle o = polyhedron(read_polyhedron(file, "obstacle"), 0, {1, 2, 3});
+  const Obstacle o = polyhedra(read_polyhedra(file, "obstacle"), {1, 2, 3});
   std::remove(file.c_str());
   EXPECT_NEAR(inside_of(o).volume, 48, 1e-12);
   expect_at(inside_of(o).centroid, {1, 2, 3});

@@ -1,7 +1,9 @@
 /// \file
-/// Rigid convex obstacles: half-spaces, boxes, cones, cylinders, polyhedra from a file.
+/// Rigid obstacles: half-spaces, boxes, cones, cylinders, polyhedra and meshes from a file, and
+/// what is put together from these. Each consists of one or several convex parts.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,19 @@
 
 namespace floe {
 
+/// Where a part meets another part of its obstacle: the common part of two of their faces.
+struct InnerFace {
+  std::int32_t other = 0;             ///< number of the other part
+  std::vector<Vec3<double>> corners;  ///< of a convex polygon, in the frame of the obstacle [m]
+};
+
+/// A convex part of an obstacle, in the obstacle's frame. The parts of an obstacle do not overlap.
+struct ConvexPart {
+  std::vector<HalfSpace> planes;       ///< of its faces
+  std::vector<Vec3<double>> vertices;  ///< [m]; none: a half-space
+  std::vector<InnerFace> inner_faces;  ///< where it meets other parts
+};
+
 /// An obstacle. At time 0 its frame has the axes of the world and its origin at `point`; from then
 /// on it follows `motion`. A half-space does not turn.
 struct Obstacle {
@@ -20,14 +35,14 @@ struct Obstacle {
   ObstacleMotion motion;
   double friction = 0;                   ///< mu against bodies
   std::optional<double> friction_wet{};  ///< mu against bodies below still water, if another
-  std::vector<HalfSpace> planes;         ///< of its faces, in its frame
-  std::vector<Vec3<double>> vertices;    ///< in its frame [m]; empty for a half-space
-  Shapes shape{};                        ///< the same with its faces; empty for a half-space
+  std::vector<ConvexPart> parts;         ///< at least one
+  Shapes shape{};  ///< all faces of all parts as one body, in its frame; empty for a half-space
   /// The body of the model that carries it, of which the frame is this one's then; -1: it follows
   /// `motion`.
   std::int32_t body = -1;
 
   bool is_carried() const { return body >= 0; }
+  bool is_half_space() const { return shape.empty(); }
 
   /// Distance of the farthest vertex from the origin of the frame [m].
   double radius() const;
@@ -52,7 +67,19 @@ Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double
 /// Returns the way in plan from a point to the nearest obstacle: to the origin of its frame, or
 /// straight to a half-space [m]; zero without obstacles, and where the nearest is above or below.
 Vec3<double> way_to_nearest(const std::vector<Obstacle>& obstacles, const Vec3<double>& from);
-/// Body `body` of `shapes`, with the origin of its frame at `point` [m].
-Obstacle polyhedron(const Shapes& shapes, std::int32_t body, const Vec3<double>& point);
+/// The bodies of `shapes`, all in one frame, as the parts of an obstacle with the origin of its
+/// frame at `point` [m].
+Obstacle polyhedra(const Shapes& shapes, const Vec3<double>& point);
+/// Appends the parts of another obstacle, which is not a half-space, and finds all inner faces.
+void add_parts(Obstacle& obstacle, const Obstacle& further);
+
+/// Two parts of an obstacle that overlap.
+struct PartsOverlap {
+  std::int32_t one = 0, other = 0;  ///< numbers of the parts
+  double volume = 0;                ///< of the overlap [m^3]
+};
+/// Returns two parts that overlap by more than 1e-9 of the smaller one's volume; nothing if none
+/// do.
+std::optional<PartsOverlap> overlap_of_parts(const Obstacle& obstacle);
 
 }  // namespace floe

@@ -138,10 +138,10 @@ void add_region(Lattice& lattice, const std::string& name, const std::array<doub
 /// \throws InputError naming the file and the dataset if the dataset is missing, has a wrong shape,
 /// or has a value out of range
 Lattice read_lattice(const std::string& file);
-/// Reads the one convex polyhedron in a file's /shapes; its origin may be anywhere.
+/// Reads the convex polyhedra in a file's /shapes, all in one frame; its origin may be anywhere.
 /// \param key  the option that named the file, for messages
-/// \throws InputError if the file has no such polyhedron
-Shapes read_polyhedron(const std::string& file, const std::string& key);
+/// \throws InputError if the file has no such polyhedra
+Shapes read_polyhedra(const std::string& file, const std::string& key);
 /// Writes a lattice file under a temporary name and renames it. Call on one rank. \throws FileError
 void write_lattice(const Lattice& lattice, const std::string& file);
 

@@ -1,0 +1,72 @@
+/// \file
+/// The contacts of a body A with an obstacle of several parts.
+///
+/// A law acts on a whole contact, not on parts: the overlaps of A with parts that meet inside A are
+/// one contact. Overlaps that do not meet, as with opposite walls, are contacts of their own. So
+/// forces do not depend on how a shape is cut into parts.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/narrow_phase.h"
+#include "contact/pair.h"
+#include "contact/solids.h"
+#include "contact/wear.h"
+#include "geometry/joined_overlap.h"
+
+namespace floe {
+
+/// Joins the overlaps of one body with the parts of one obstacle. An object keeps its working
+/// memory.
+class PartContacts {
+ public:
+  /// A contact.
+  struct Joined {
+    std::int32_t pair = -1;  ///< index of the pair that stands for it
+    PairOverlap overlap;
+    std::vector<std::int32_t> known;  ///< indices of the pairs whose histories it goes on with
+  };
+
+  /// Begins with a body and an obstacle.
+  void start() { met_.clear(); }
+  /// Adds an overlap. \param pair  index in the list, ascending
+  void add(std::int32_t pair, const PairOverlap& overlap) { met_.push_back({pair, 0, overlap}); }
+  /// Returns the contacts of the overlaps, in the order of `pair`.
+  /// \param pairs  of the list
+  /// \param a, b   places of the body and of the obstacle
+  /// \param known  indices of the pairs of body and obstacle with a history, ascending
+  std::span<const Joined> join(const Solids& solids, const Wear& wear, bool with_patch,
+                               std::span<const Pair> pairs, const Placed& a, const Placed& b,
+                               std::span<const std::int32_t> known);
+
+ private:
+  struct Met {
+    std::int32_t pair;
+    std::size_t contact;  ///< number of the contact
+    PairOverlap overlap;
+  };
+  /// What of a common face of two parts lies in A, in the frame of the obstacle.
+  struct Meeting {
+    std::size_t one, other;  ///< of met_
+    std::vector<Vec3<double>> corners;
+  };
+
+  std::size_t find_meetings(const Solids& solids, std::span<const Pair> pairs);
+  void choose_pairs(const Solids& solids, std::span<const Pair> pairs,
+                    std::span<const std::int32_t> known);
+  void sum(const Solids& solids, bool with_patch, std::span<const Pair> pairs, const Placed& a,
+           const Placed& b, std::size_t contact);
+
+  std::vector<Met> met_;
+  std::vector<Meeting> meetings_;
+  std::vector<Joined> joined_;
+  Clipper clipper_;
+  FacetsOnB facets_;
+  JoinedOverlap whole_;
+  std::vector<Vec3<double>> vertices_a_, corners_, work_;
+  std::vector<HalfSpace> planes_a_, worn_;
+};
+
+}  // namespace floe
