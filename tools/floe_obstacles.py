@@ -99,15 +99,22 @@ def motions(number, origin, times):
     return found
 
 
-def obstacles(options, low, high, times):
+def obstacles(options, low, high, times, shapes=None):
     """Per obstacle of a scene: its points (at rest), faces, places at these times (see motions and
-    placement), and whether it is a plane without an inside. low, high: a box, which planes span."""
+    placement), and whether it is a plane without an inside. low, high: a box, which planes span.
+    shapes: floe_output.Lattice.obstacles of a run, which has those of several parts and of files;
+    runs before there were such have none."""
     found = []
     for name in options.get("obstacle_names", "").replace(",", " ").split():
+        if f"obstacle_{name}_part_of" in options:
+            continue
+
         def number(key, *default, name=name):
             return numbers(options, f"obstacle_{name}_{key}", default)
         shape = options[f"obstacle_{name}_shape"]
-        if shape == "halfspace":
+        if name in (shapes or {}):
+            points, faces = shapes[name]["vertices"], faces_of(shapes[name])
+        elif shape == "halfspace":
             points, faces = plane(number("point", 0, 0, 0), number("normal", 0, 0, 1), low, high)
         elif shape == "box":
             points, faces = box(number("centre", 0, 0, 0), number("size", 1, 1, 1),
@@ -119,11 +126,8 @@ def obstacles(options, low, high, times):
                                     int(number("facets", 24)[0]))
         else:
             lattice = Lattice(options[f"obstacle_{name}_file"])
-            shapes = lattice.shapes
-            points = shapes["vertices"] @ matrices(lattice.orientation[:1])[0].T + number("point",
-                                                                                          0, 0, 0)
-            ends = shapes["corner_of"]
-            faces = [list(shapes["corners"][ends[f]:ends[f + 1]]) for f in range(len(ends) - 1)]
+            points = lattice.shapes["vertices"] @ matrices(lattice.orientation[:1])[0].T
+            points, faces = points + number("point", 0, 0, 0), faces_of(lattice.shapes)
         origin = number({"box": "centre", "cone": "base", "cylinder": "base"}.get(shape, "point"),
                         0, 0, 0)
         ways = motions(number, origin, times)
@@ -137,6 +141,12 @@ def obstacles(options, low, high, times):
     return found
 
 
+def faces_of(shape):
+    """Corners of the faces of a shape."""
+    ends = shape["corner_of"]
+    return [list(shape["corners"][ends[f]:ends[f + 1]]) for f in range(len(ends) - 1)]
+
+
 def structures(options):
     """Names of the obstacles that are structures: those with a mass. They are the last bodies of
     the lattice, in this order."""
@@ -148,7 +158,7 @@ def obstacles_of_run(output, low, high, times):
     """As obstacles(), of a run: structures are where its history has them, and their origin is
     their centre of mass, about which history.csv has moments."""
     options = output.options()
-    found = obstacles(options, low, high, times)
+    found = obstacles(options, low, high, times, output.obstacles)
     names = structures(options)
     for body, name in enumerate(names, len(output.position) - len(names)):
         obstacle = next(o for o in found if o["name"] == name)

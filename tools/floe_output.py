@@ -50,7 +50,8 @@ def rotations(vectors):
 
 
 class Lattice:
-    """A lattice.h5. names: of the bodies, which they keep while others join and leave."""
+    """A lattice.h5. names: of the bodies, which they keep while others join and leave. obstacles:
+    points [m] and faces of those other than half-spaces, at rest."""
 
     def __init__(self, path):
         with reading(path), h5py.File(path) as file:
@@ -60,6 +61,8 @@ class Lattice:
             self.beams = {name: data[:] for name, data in file.get("beams", {}).items()}
             self.sets = {name: data[:] for name, data in file.get("sets", {}).items()}
             self.shapes = {name: data[:] for name, data in file.get("shapes", {}).items()}
+            self.obstacles = {name: {key: data[:] for key, data in group.items()}
+                              for name, group in file.get("obstacles", {}).items()}
         self.names = np.arange(len(self.position))
 
     def plans(self):

@@ -186,6 +186,16 @@ Vec3<double> way_to_nearest(const std::vector<Obstacle>& obstacles, const Vec3<d
   return {shortest.x, shortest.y, 0};
 }
 
+std::vector<NamedShape> shapes_of(const std::vector<Obstacle>& obstacles) {
+  std::vector<NamedShape> shapes;
+  for (const Obstacle& o : obstacles) {
+    if (o.is_half_space()) continue;
+    shapes.push_back({o.name, o.shape});
+    for (Vec3<double>& r : shapes.back().shape.vertices) r = r + o.point;
+  }
+  return shapes;
+}
+
 Obstacle polyhedra(const Shapes& shapes, const Vec3<double>& point) {
   Obstacle o;
   o.point = point;

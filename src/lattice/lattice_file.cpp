@@ -338,7 +338,8 @@ Shapes read_polyhedra(const std::string& file, const std::string& key) {
   return shapes;
 }
 
-void write_lattice(const Lattice& lattice, const std::string& path) {
+void write_lattice(const Lattice& lattice, const std::string& path,
+                   std::span<const NamedShape> obstacles) {
   Hdf5File file = Hdf5File::create(path);
   const Bodies& b = lattice.bodies;
   file.write("/bodies/position", b.position);
@@ -385,6 +386,12 @@ void write_lattice(const Lattice& lattice, const std::string& path) {
     file.write("/shapes/corner_of", s.corner_of);
     file.write("/shapes/face_of", s.face_of);
     file.write("/shapes/vertex_of", s.vertex_of);
+  }
+  for (const auto& [name, shape] : obstacles) {
+    const std::string group = "/obstacles/" + name;
+    file.write(group + "/vertices", shape.vertices);
+    file.write(group + "/corners", shape.corners);
+    file.write(group + "/corner_of", shape.corner_of);
   }
   file.close();
 }

@@ -123,7 +123,7 @@ template <class Space>
 void Output<Space>::Impl::open_files(const std::string& options_yaml, bool restarted,
                                      const PresentMesh& mesh) {
   const std::string& dir = options.dir;
-  if (!restarted) write_lattice(lattice, dir + "/lattice.h5");
+  if (!restarted) write_lattice(lattice, dir + "/lattice.h5", options.obstacles);
   history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
   keep_what_frames_need();
   fields.emplace(dir, lattice, restarted ? memory.frames : -1, mesh.first, mesh.names);

@@ -22,6 +22,7 @@ struct OutputOptions {
   std::string dir;
   double history = 0;  ///< time between rows [s]; 0: every accepted step
   double fields = 0;   ///< time between frames [s]; 0: the first and the last state
+  std::vector<NamedShape> obstacles{};  ///< all but half-spaces
 };
 
 /// Sums over a named boundary's bodies. Force and moment are the reaction, which the boundary

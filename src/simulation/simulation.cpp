@@ -380,7 +380,8 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
   if (rank() == 0) packed_.unpack(setting_.lattice);  // other ranks need positions only
   output_ = std::make_unique<Output<Space>>(OutputOptions{.dir = scene_.output.dir,
                                                           .history = scene_.output.history,
-                                                          .fields = scene_.output.fields},
+                                                          .fields = scene_.output.fields,
+                                                          .obstacles = shapes_of(scene_.obstacles)},
                                             std::move(setting_.lattice), *model_, loads_,
                                             scene_.options_yaml, restart_ ? &*restart_ : nullptr,
                                             present_mesh());

@@ -67,6 +67,8 @@ Obstacle cone(const Vec3<double>& base, double radius, double top_radius, double
 /// Returns the way in plan from a point to the nearest obstacle: to the origin of its frame, or
 /// straight to a half-space [m]; zero without obstacles, and where the nearest is above or below.
 Vec3<double> way_to_nearest(const std::vector<Obstacle>& obstacles, const Vec3<double>& from);
+/// Returns the shapes of obstacles other than half-spaces, where they are at time 0.
+std::vector<NamedShape> shapes_of(const std::vector<Obstacle>& obstacles);
 /// The bodies of `shapes`, all in one frame, as the parts of an obstacle with the origin of its
 /// frame at `point` [m].
 Obstacle polyhedra(const Shapes& shapes, const Vec3<double>& point);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "floe/base/rotation.h"
@@ -38,6 +39,12 @@ struct Shapes {
 
   std::int32_t bodies() const { return static_cast<std::int32_t>(face_of.size()) - 1; }
   bool empty() const { return bodies() == 0; }
+};
+
+/// A shape beside the bodies, at rest, as one body of `shape` in world axes.
+struct NamedShape {
+  std::string name;
+  Shapes shape;
 };
 
 /// Appends the prism over a polygon between two heights. The vertices of the bottom come first,

@@ -142,7 +142,10 @@ Lattice read_lattice(const std::string& file);
 /// \param key  the option that named the file, for messages
 /// \throws InputError if the file has no such polyhedra
 Shapes read_polyhedra(const std::string& file, const std::string& key);
-/// Writes a lattice file under a temporary name and renames it. Call on one rank. \throws FileError
-void write_lattice(const Lattice& lattice, const std::string& file);
+/// Writes a lattice file under a temporary name and renames it. Call on one rank.
+/// \param obstacles  for pictures
+/// \throws FileError
+void write_lattice(const Lattice& lattice, const std::string& file,
+                   std::span<const NamedShape> obstacles = {});
 
 }  // namespace floe

@@ -1,0 +1,86 @@
+#include "contact_force/patch_forces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/collectives.h"
+#include "contact/surface_patches.h"
+#include "floe/base/petsc.h"
+
+namespace floe {
+
+PatchForces::PatchForces(const std::vector<Obstacle>& obstacles, double interval)
+    : interval_(interval) {
+  first_.push_back(0);
+  for (const Obstacle& o : obstacles) first_.push_back(first_.back() + o.patches.size());
+}
+
+void PatchForces::take(const Contacts& contacts, double time, MPI_Comm comm) {
+  constexpr double early = 1e-9;  // part of the interval, as for rows of history.csv
+  if (!is_on() || time < next_ - early * interval_) return;
+  next_ = interval_ * (std::floor(time / interval_ + early) + 1);
+  forces_.assign(first_.back(), {});
+  for (std::size_t k = 0; k < contacts.contacts(); ++k) share_out(contacts, k);
+  if (size(comm) > 1 && !forces_.empty())
+    sum_over_ranks(std::span(&forces_[0].x, 3 * forces_.size()), comm);
+  PatchSample sample{.time = time, .obstacles = {}};
+  for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
+    PatchSample::OfObstacle of{.name = contacts.solids().obstacles()[k].name, .loaded = {}};
+    for (std::size_t patch = first_[k]; patch < first_[k + 1]; ++patch) {
+      const Vec3<double>& force = forces_[patch];
+      if (dot(force, force) > 0) of.loaded.emplace_back(patch - first_[k], force);
+    }
+    if (first_[k] < first_[k + 1]) sample.obstacles.push_back(std::move(of));
+  }
+  sample_ = std::move(sample);
+}
+
+void PatchForces::share_out(const Contacts& contacts, std::size_t contact) {
+  const Contacts::OnObstacle of = contacts.on_obstacle_of(contact);
+  if (of.obstacle < 0 || !of.counted) return;
+  const auto k = static_cast<std::size_t>(of.obstacle);
+  const std::vector<SurfacePatch>& patches = contacts.solids().obstacles()[k].patches;
+  if (patches.empty()) return;
+  planes_.clear();
+  for (const HalfSpace& plane : of.planes) {
+    const Vec3<double> normal = of.axes.to_world(plane.normal);
+    planes_.push_back({normal, plane.offset + dot(normal, of.x)});
+  }
+  for (const HalfSpace& plane : of.worn) {
+    const Vec3<double> normal = of.axes.to_world(plane.normal);
+    planes_.push_back({normal, plane.offset + dot(normal, of.x)});
+  }
+  touched_.clear();
+  areas_.clear();
+  double sum = 0, shortest = std::numeric_limits<double>::infinity();
+  std::size_t nearest = 0;
+  for (std::size_t p = 0; p < patches.size(); ++p) {
+    const double distance = length(patches[p].centre - of.centre);
+    if (distance < shortest) shortest = distance, nearest = p;
+    if (length(patches[p].centre - of.x) > patches[p].radius + of.radius) continue;
+    if (!(dot(patches[p].normal, of.normal) > 0)) continue;
+    const double area = area_inside(patches[p], planes_, polygon_, work_);
+    if (!(area > 0)) continue;
+    touched_.push_back(p);
+    areas_.push_back(area);
+    sum += area;
+  }
+  if (touched_.empty()) touched_.push_back(nearest), areas_.push_back(sum = 1);
+  for (std::size_t n = 0; n < touched_.size(); ++n) {
+    Vec3<double>& force = forces_[first_[k] + touched_[n]];
+    force = force + (areas_[n] / sum) * of.force;
+  }
+}
+
+std::optional<PatchSample> PatchForces::taken() {
+  std::optional<PatchSample> sample = std::move(sample_);
+  sample_.reset();
+  return sample;
+}
+
+void PatchForces::persist(Archive& archive) {
+  if (is_on()) archive.common("next_pressure", next_);
+}
+
+}  // namespace floe
