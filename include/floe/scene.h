@@ -214,6 +214,7 @@ struct Scene {
     bool overwrite = false;  ///< take a folder that would be refused
     double history = 0;      ///< 0: every load step; explicit: 200 rows
     double fields = 0;       ///< 0: first and last state only
+    double pressure = 0;     ///< between samples of pressures on obstacles; 0: none
   } output;
   struct {
     double every = 600;   ///< wall time between two [s]

@@ -107,6 +107,10 @@ class ActiveContacts {
   bool is_deep_in(std::size_t contact) const {
     return (block(contact).deep >> contact % lanes & 1U) != 0;
   }
+  /// Returns the centroid of an overlap, from the centroid of A [m].
+  Vec3<double> centre(std::size_t contact) const {
+    return one_lane<Vec3>(block(contact).centre, contact % lanes);
+  }
   Vec3<double> normal(std::size_t contact) const {
     return one_lane<Vec3>(block(contact).trial.normal, contact % lanes);
   }
@@ -130,6 +134,10 @@ class ActiveContacts {
     now.twist.couple = in_springs.couple;
     return now;
   }
+  /// Keeps the force of each contact from the next forces on.
+  void keep_forces() { keeps_forces_ = true; }
+  /// Returns the force of a contact on A [N], where forces are kept.
+  const Vec3<double>& force(std::size_t contact) const { return forces_[contact]; }
   /// Returns the wrench on an involved body.
   const TermWrenches& on_body(std::int32_t slot) const { return item(on_bodies_, slot); }
   /// Returns the force [N] and the moment about the origin of its frame [N m] of the bodies of this
@@ -143,7 +151,11 @@ class ActiveContacts {
   }
 
  private:
+  using LanesOfWrench = ContactWrenchOf<Lanes>;
   void begin_forces();
+  void keep(std::size_t first, std::size_t number, std::uint32_t enclosed,
+            const LanesOfWrench& elastic, const LanesOfWrench& viscous,
+            const LanesOfWrench& friction);
   const ContactBlock& block(std::size_t contact) const { return blocks_[contact / lanes]; }
   std::span<const std::int32_t> pairs_from(std::size_t first) const {
     return std::span(pairs_).subspan(first, std::min(lanes, pairs_.size() - first));
@@ -153,6 +165,8 @@ class ActiveContacts {
   std::vector<ContactBlock> blocks_;     ///< those of the contacts, then room for more
   std::vector<TermWrenches> on_bodies_;  ///< by slot
   std::vector<TermWrenches> on_parts_;   ///< of obstacles, about the origins of their frames
+  std::vector<Vec3<double>> forces_;     ///< of contacts on A, if they are kept
+  bool keeps_forces_ = false;
   std::int64_t touching_ = 0;
 };
 
@@ -179,6 +193,7 @@ void ActiveContacts::act(const PairList& list, auto force_of) {
         friction(contact.friction.force, contact.friction.couple * n, arm_a, arm_b);
     const LaneRows<TermWrenchesOf> on_a({elastic.a, viscous.a, friction.a}),
         on_b({elastic.b, viscous.b, friction.b});
+    if (keeps_forces_) keep(first, pairs.size(), active.enclosed, elastic.a, viscous.a, friction.a);
     for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
       if ((active.enclosed >> lane & 1U) != 0) continue;
       const Pair& pair = list.pair(pairs[lane]);

@@ -351,6 +351,25 @@ void Contacts::restore_wear(std::span<const double> crushed, std::span<const dou
   wear_.restore(solids_, worn);
 }
 
+Contacts::OnObstacle Contacts::on_obstacle_of(std::size_t contact) const {
+  const Pair& pair = list_.pair(active_.pair(contact));
+  if (!is_obstacle(pair.b)) return {};
+  Placed image;
+  const Placed &a = places_.of_a(pair), &b = places_.image_of_b(pair, image);
+  const auto local = [&](const Vec3<double>& r) { return b.axes.to_local(r); };
+  const Vec3<double> apart = a.x - b.x;
+  return {.obstacle = static_cast<std::int32_t>(solids_.obstacle_number(pair.b)),
+          .counted = pair.counted,
+          .force = -1.0 * active_.force(contact),
+          .centre = local(active_.centre(contact) + apart),
+          .normal = local(active_.normal(contact)),
+          .axes = {local(a.axes.e1), local(a.axes.e2), local(a.axes.e3)},
+          .x = local(apart),
+          .radius = solids_.radius(pair.a),
+          .planes = solids_.planes(pair.a),
+          .worn = wear_.of(pair.a)};
+}
+
 std::vector<BodyPair> Contacts::enclosed() const {
   std::vector<BodyPair> found;
   for (std::size_t k = 0; k < active_.size(); ++k) {

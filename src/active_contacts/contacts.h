@@ -137,6 +137,22 @@ class Contacts {
     if (body < 0) return on_parts_of(k);
     return item(needed_, body) != 0 ? active_.on_body(list_.slot_of(body)).sum() : ContactWrench{};
   }
+  /// Keeps the force of each contact, for on_obstacle_of().
+  void keep_forces() { active_.keep_forces(); }
+  /// Returns the number of contacts of the last evaluation, until it is committed.
+  std::size_t contacts() const { return active_.size(); }
+  /// A contact between a body and an obstacle; all in the frame of the obstacle but the force.
+  struct OnObstacle {
+    std::int32_t obstacle = -1;               ///< number; -1: it is a contact between bodies
+    bool counted = false;                     ///< this rank owns the body
+    Vec3<double> force{};                     ///< on the obstacle, in world axes [N]
+    Vec3<double> centre{}, normal{};          ///< of the contact; out of the obstacle
+    Triad<double> axes{};                     ///< of the body
+    Vec3<double> x{};                         ///< its centroid [m]
+    double radius = 0;                        ///< [m]
+    std::span<const HalfSpace> planes, worn;  ///< that bound it, in its own frame
+  };
+  OnObstacle on_obstacle_of(std::size_t contact) const;
   /// Returns the number of overlapping counted pairs in the last evaluation.
   std::int64_t touching() const { return active_.touching(); }
   /// Adds the power of the contacts of the last evaluation on an involved body that moves so.

@@ -2,7 +2,7 @@
 
 #include "floe/base/item.h"
 
-#include "geometry/across.h"
+#include "contact/part_faces.h"
 #include "geometry/convex_polygon.h"
 #include "geometry/overlap.h"
 
@@ -53,26 +53,6 @@ double size_of(const Obstacle& obstacle) {
   return most;
 }
 
-/// Returns the corners of the face in a plane of a part, counter-clockwise seen from outside.
-std::vector<Vec3<double>> face_in(const ConvexPart& part, const HalfSpace& plane, double near) {
-  std::vector<Vec3<double>> corners;
-  Vec3<double> middle{};
-  for (const Vec3<double>& r : part.vertices) {
-    if (std::abs(dot(plane.normal, r) - plane.offset) > near) continue;
-    corners.push_back(r);
-    middle = middle + r;
-  }
-  if (corners.size() < 3) return {};
-  middle = (1 / static_cast<double>(corners.size())) * middle;
-  const auto [u, v] = basis_across(plane.normal);
-  const auto angle = [&, u = u, v = v](const Vec3<double>& r) {
-    return std::atan2(dot(v, r - middle), dot(u, r - middle));
-  };
-  std::sort(corners.begin(), corners.end(),
-            [&](const Vec3<double>& p, const Vec3<double>& q) { return angle(p) < angle(q); });
-  return corners;
-}
-
 /// Returns what two faces have in common. \param face  of one part
 /// \param plane  of the other part, in which the face lies
 std::vector<Vec3<double>> common(std::vector<Vec3<double>> face, const ConvexPart& other,
@@ -91,19 +71,12 @@ std::vector<Vec3<double>> common(std::vector<Vec3<double>> face, const ConvexPar
 /// Finds where two parts meet.
 void find_inner_faces(Obstacle& obstacle, std::size_t i, std::size_t j, double near) {
   ConvexPart &one = obstacle.parts[i], &other = obstacle.parts[j];
-  std::vector<HalfSpace> seen;
-  for (const HalfSpace& plane : one.planes) {
-    const auto same = [&](const HalfSpace& p) {
-      return length(p.normal - plane.normal) < 1e-6 && std::abs(p.offset - plane.offset) < near;
-    };
-    if (std::any_of(seen.begin(), seen.end(), same)) continue;
-    seen.push_back(plane);
-    const auto opposite =
-        std::find_if(other.planes.begin(), other.planes.end(), [&](const HalfSpace& p) {
-          return length(p.normal + plane.normal) < 1e-6 && std::abs(p.offset + plane.offset) < near;
-        });
-    if (opposite == other.planes.end()) continue;
-    const auto face = common(face_in(one, plane, near), other, *opposite, near);
+  for (const HalfSpace& plane : different_planes(one, near)) {
+    const HalfSpace opposite{-1.0 * plane.normal, -plane.offset};
+    const bool meets = std::any_of(other.planes.begin(), other.planes.end(),
+                                   [&](const HalfSpace& p) { return is_same(p, opposite, near); });
+    if (!meets) continue;
+    const auto face = common(face_in(one, plane, near), other, opposite, near);
     if (face.empty()) continue;
     one.inner_faces.push_back({.other = static_cast<std::int32_t>(j), .corners = face});
     other.inner_faces.push_back(
@@ -190,8 +163,15 @@ std::vector<NamedShape> shapes_of(const std::vector<Obstacle>& obstacles) {
   std::vector<NamedShape> shapes;
   for (const Obstacle& o : obstacles) {
     if (o.is_half_space()) continue;
-    shapes.push_back({o.name, o.shape});
-    for (Vec3<double>& r : shapes.back().shape.vertices) r = r + o.point;
+    NamedShape& named = shapes.emplace_back();
+    named.name = o.name;
+    named.shape = o.shape;
+    for (Vec3<double>& r : named.shape.vertices) r = r + o.point;
+    for (const SurfacePatch& patch : o.patches) {
+      named.patch_centres.push_back(patch.centre + o.point);
+      named.patch_normals.push_back(patch.normal);
+      named.patch_areas.push_back(patch.area);
+    }
   }
   return shapes;
 }

@@ -14,6 +14,7 @@
 #include "contact_force/halo.h"
 #include "contact_force/load_balance.h"
 #include "contact_force/obstacle_forces.h"
+#include "contact_force/patch_forces.h"
 #include "contact_laws/restitution.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
@@ -71,7 +72,8 @@ class DistributedContact final : public Contact,
                                  public Persists,
                                  public TakesBrokenPairs,
                                  public Remarks,
-                                 public BearsLoad<Spatial> {
+                                 public BearsLoad<Spatial>,
+                                 public ActsOnPatches {
  public:
   DistributedContact(const Part& part, const Lattice& lattice, const ContactOptions& options,
                      std::vector<Obstacle> obstacles, PrescribedMotion prescribed)
@@ -82,12 +84,15 @@ class DistributedContact final : public Contact,
         balance_(part.comm),
         expiry_(contacts_.solids(), part_),
         obstacle_forces_(contacts_.solids().obstacles().size()),
+        patch_forces_(contacts_.solids().obstacles()),
         here_(owned_bodies(part)),
         prescribed_(std::move(prescribed)),
         prescribed_accelerations_(6 * prescribed_.bits.size()),
         rates_(contacts_.rates()),
         steps_per_touch_(contacts_.options().damping_ratio > damping_ratio_of(0.4) ? 14 : 11),
-        possible_(pieces() > 1 || lattice.beams.bodies.empty()) {}
+        possible_(pieces() > 1 || lattice.beams.bodies.empty()) {
+    if (patch_forces_.is_on()) contacts_.keep_forces();
+  }
 
   std::string_view name() const override { return "contact"; }
   Roles<Spatial> roles() override {
@@ -97,7 +102,8 @@ class DistributedContact final : public Contact,
             .persists = this,
             .broken_pairs = this,
             .remarks = this,
-            .load = this};
+            .load = this,
+            .patches = patch_forces_.is_on() ? this : nullptr};
   }
 
   void add_load(const State<Spatial>& state, std::span<double> load) const override;
@@ -167,6 +173,11 @@ class DistributedContact final : public Contact,
     obstacle_forces_.take(contacts_, dt, part_.comm);
   }
 
+  PatchSample sample_patches(double time) override {
+    return patch_forces_.sample(contacts_, obstacle_forces_.now(contacts_, part_.comm), time,
+                                part_.comm);
+  }
+
   std::size_t works() const override { return ContactPower::terms; }
   void powers(std::span<double> out) const override { power_.write(out); }
   LaterPowers later_powers() const override { return LaterPowers::at_once; }
@@ -219,6 +230,7 @@ class DistributedContact final : public Contact,
   ContactLoadBalance balance_;
   PairListExpiry expiry_;
   ObstacleForces obstacle_forces_;
+  PatchForces patch_forces_;
   std::vector<std::uint8_t> here_;  ///< per body of the model: 1 if this rank owns it
   PrescribedMotion prescribed_;
   std::vector<double> prescribed_accelerations_;  ///< six per local body

@@ -18,12 +18,18 @@ void add(Columns& columns, const std::string& name, const Vec3<double>& v) {
 
 }  // namespace
 
+std::span<const Vec3<double>> ObstacleForces::now(const Contacts& contacts, MPI_Comm comm) {
+  const std::size_t n = peak_.size();
+  forces_.clear();
+  for (std::size_t k = 0; k < n; ++k) forces_.push_back(contacts.on_obstacle(k).force);
+  if (size(comm) > 1 && n > 0) sum_over_ranks(std::span(&forces_[0].x, 3 * n), comm);
+  return forces_;
+}
+
 void ObstacleForces::take(const Contacts& contacts, double dt, MPI_Comm comm) {
   const std::size_t n = peak_.size();
   if (n == 0) return;
-  forces_.clear();
-  for (std::size_t k = 0; k < n; ++k) forces_.push_back(contacts.on_obstacle(k).force);
-  if (size(comm) > 1) sum_over_ranks(std::span(&forces_[0].x, 3 * n), comm);
+  now(contacts, comm);
   for (std::size_t k = 0; k < n; ++k) {
     if (dot(forces_[k], forces_[k]) > dot(peak_[k], peak_[k])) peak_[k] = forces_[k];
     impulse_[k] = impulse_[k] + dt * forces_[k];

@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 
+#include <span>
 #include <vector>
 
 #include "active_contacts/contacts.h"
@@ -18,6 +19,8 @@ class ObstacleForces {
   /// \param obstacles  number of obstacles
   explicit ObstacleForces(std::size_t obstacles) : peak_(obstacles), impulse_(obstacles) {}
 
+  /// Returns the forces of the last evaluation on all obstacles, of all ranks' bodies. Collective.
+  std::span<const Vec3<double>> now(const Contacts& contacts, MPI_Comm comm);
   /// Takes over a step. With obstacles and several ranks this takes one sum over the ranks.
   /// Collective.
   /// \param dt  length of the step [s]

@@ -1,7 +1,6 @@
 #include "contact_force/patch_forces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "base/collectives.h"
@@ -10,30 +9,30 @@
 
 namespace floe {
 
-PatchForces::PatchForces(const std::vector<Obstacle>& obstacles, double interval)
-    : interval_(interval) {
+PatchForces::PatchForces(const std::vector<Obstacle>& obstacles) {
   first_.push_back(0);
   for (const Obstacle& o : obstacles) first_.push_back(first_.back() + o.patches.size());
 }
 
-void PatchForces::take(const Contacts& contacts, double time, MPI_Comm comm) {
-  constexpr double early = 1e-9;  // part of the interval, as for rows of history.csv
-  if (!is_on() || time < next_ - early * interval_) return;
-  next_ = interval_ * (std::floor(time / interval_ + early) + 1);
+PatchSample PatchForces::sample(const Contacts& contacts,
+                                std::span<const Vec3<double>> on_obstacles, double time,
+                                MPI_Comm comm) {
   forces_.assign(first_.back(), {});
   for (std::size_t k = 0; k < contacts.contacts(); ++k) share_out(contacts, k);
   if (size(comm) > 1 && !forces_.empty())
     sum_over_ranks(std::span(&forces_[0].x, 3 * forces_.size()), comm);
   PatchSample sample{.time = time, .obstacles = {}};
   for (std::size_t k = 0; k + 1 < first_.size(); ++k) {
-    PatchSample::OfObstacle of{.name = contacts.solids().obstacles()[k].name, .loaded = {}};
+    if (first_[k] == first_[k + 1]) continue;
+    PatchSample::OfObstacle& of = sample.obstacles.emplace_back();
+    of.name = contacts.solids().obstacles()[k].name;
+    of.force = on_obstacles[k];
     for (std::size_t patch = first_[k]; patch < first_[k + 1]; ++patch) {
       const Vec3<double>& force = forces_[patch];
       if (dot(force, force) > 0) of.loaded.emplace_back(patch - first_[k], force);
     }
-    if (first_[k] < first_[k + 1]) sample.obstacles.push_back(std::move(of));
   }
-  sample_ = std::move(sample);
+  return sample;
 }
 
 void PatchForces::share_out(const Contacts& contacts, std::size_t contact) {
@@ -71,16 +70,6 @@ void PatchForces::share_out(const Contacts& contacts, std::size_t contact) {
     Vec3<double>& force = forces_[first_[k] + touched_[n]];
     force = force + (areas_[n] / sum) * of.force;
   }
-}
-
-std::optional<PatchSample> PatchForces::taken() {
-  std::optional<PatchSample> sample = std::move(sample_);
-  sample_.reset();
-  return sample;
-}
-
-void PatchForces::persist(Archive& archive) {
-  if (is_on()) archive.common("next_pressure", next_);
 }
 
 }  // namespace floe

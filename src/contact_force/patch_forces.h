@@ -1,39 +1,37 @@
 /// \file
-/// The forces of contacts on patches of obstacles, at given times.
+/// The forces of contacts on patches of obstacles.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include <mpi.h>
 
 #include "active_contacts/contacts.h"
 #include "forces/force.h"
-#include "lattice/archive.h"
 
 namespace floe {
 
-/// Shares the force of each contact out to the patches that lie inside the body and look towards it,
-/// by their areas there. So the sum over the patches is the force on the obstacle.
+/// Shares the force of each contact out to the patches that look towards the body and lie inside
+/// it, by their areas there. So the sum over the patches is the force on the obstacle.
 class PatchForces {
  public:
-  /// \param interval  between samples [s]; 0: never
-  PatchForces(const std::vector<Obstacle>& obstacles, double interval);
+  explicit PatchForces(const std::vector<Obstacle>& obstacles);
 
-  bool is_on() const { return interval_ > 0; }
-  /// Takes a sample of the last evaluation if one is due. Collective.
-  /// \param time  of the state after the step [s]
-  void take(const Contacts& contacts, double time, MPI_Comm comm);
-  /// Returns the last sample, once.
-  std::optional<PatchSample> taken();
-  void persist(Archive& archive);
+  /// Whether an obstacle has patches.
+  bool is_on() const { return first_.back() > 0; }
+  /// Returns the forces of the last evaluation, before it is committed. Collective.
+  /// \param on_obstacles  forces of all ranks' bodies on each obstacle [N]
+  /// \param time          of the evaluation [s]
+  PatchSample sample(const Contacts& contacts, std::span<const Vec3<double>> on_obstacles,
+                     double time, MPI_Comm comm);
 
  private:
   void share_out(const Contacts& contacts, std::size_t contact);
 
-  double interval_, next_ = 0;
-  std::vector<std::size_t> first_;  ///< place of the first patch of each obstacle, then their number
+  std::vector<std::size_t>
+      first_;  ///< place of the first patch of each obstacle, then their number
   std::vector<Vec3<double>> forces_;  ///< of all patches, of this rank's bodies
-  std::optional<PatchSample> sample_;
   std::vector<HalfSpace> planes_;
   std::vector<std::size_t> touched_;
   std::vector<double> areas_;

@@ -227,6 +227,28 @@ class BearsLoad {
   ~BearsLoad() = default;
 };
 
+/// Forces on patches of the surfaces of obstacles at a time.
+struct PatchSample {
+  struct OfObstacle {
+    std::string name;
+    Vec3<double> force{};  ///< of all contacts with it [N]
+    /// Number of a patch and force on it [N], of those that are touched.
+    std::vector<std::pair<std::size_t, Vec3<double>>> loaded;
+  };
+  double time = 0;  ///< [s]
+  std::vector<OfObstacle> obstacles;
+};
+/// Role of a force that acts on patches of the surfaces of obstacles.
+class ActsOnPatches {
+ public:
+  /// Returns the forces of the last evaluation, which was at this state and is not committed yet;
+  /// the same on all ranks. Collective.
+  virtual PatchSample sample_patches(double time) = 0;
+
+ protected:
+  ~ActsOnPatches() = default;
+};
+
 /// Roles of a force beside adding wrenches; null: the force does not have the role.
 template <class Space>
 struct Roles {
@@ -241,6 +263,7 @@ struct Roles {
   DependsOnTime* time = nullptr;
   Remarks* remarks = nullptr;
   BearsLoad<Space>* load = nullptr;
+  ActsOnPatches* patches = nullptr;  ///< null also where there are no patches
 };
 
 /// A force on the bodies of a part. An evaluation makes one virtual call per force; a scene that

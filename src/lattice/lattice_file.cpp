@@ -387,11 +387,15 @@ void write_lattice(const Lattice& lattice, const std::string& path,
     file.write("/shapes/face_of", s.face_of);
     file.write("/shapes/vertex_of", s.vertex_of);
   }
-  for (const auto& [name, shape] : obstacles) {
-    const std::string group = "/obstacles/" + name;
-    file.write(group + "/vertices", shape.vertices);
-    file.write(group + "/corners", shape.corners);
-    file.write(group + "/corner_of", shape.corner_of);
+  for (const NamedShape& named : obstacles) {
+    const std::string group = "/obstacles/" + named.name;
+    file.write(group + "/vertices", named.shape.vertices);
+    file.write(group + "/corners", named.shape.corners);
+    file.write(group + "/corner_of", named.shape.corner_of);
+    if (named.patch_areas.empty()) continue;
+    file.write(group + "/patch_centre", named.patch_centres);
+    file.write(group + "/patch_normal", named.patch_normals);
+    file.write(group + "/patch_area", named.patch_areas);
   }
   file.close();
 }

@@ -47,6 +47,7 @@ struct Output<Space>::Impl {
   std::vector<std::int32_t> counted;  ///< local beams that this rank reports
   std::optional<Fields> fields;       ///< rank 0
   std::optional<History> history;     ///< rank 0
+  std::optional<History> pressure;    ///< rank 0, if it is sampled
   std::optional<CrackLog> cracks;     ///< if beams may break
   OutputArchive memory;
   std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
@@ -82,6 +83,7 @@ struct Output<Space>::Impl {
   Sample sample(const Accepted<Space>& accepted);
   void write_row(const Sample& sample);
   void put_row(const Sample& sample);
+  void write_pressure(double time);
   Frame make_frame(const State<Space>& state);
   void write_frame(const Frame& frame);
 };
@@ -119,12 +121,18 @@ void Output<Space>::Impl::find_sets(const Lattice& of) {
   }
 }
 
+constexpr auto pressure_header = "time,obstacle,patch,force_x,force_y,force_z\n";
+
 template <class Space>
 void Output<Space>::Impl::open_files(const std::string& options_yaml, bool restarted,
                                      const PresentMesh& mesh) {
   const std::string& dir = options.dir;
   if (!restarted) write_lattice(lattice, dir + "/lattice.h5", options.obstacles);
   history.emplace(dir + "/history.csv", restarted ? memory.rows : -1);
+  if (options.pressure > 0) {
+    pressure.emplace(dir + "/pressure.csv", restarted ? memory.pressures : -1);
+    if (pressure->header().empty()) pressure->write_header(pressure_header);
+  }
   keep_what_frames_need();
   fields.emplace(dir, lattice, restarted ? memory.frames : -1, mesh.first, mesh.names);
   if (restarted)
@@ -256,6 +264,7 @@ void require_files(const std::string& dir, const OutputArchive& archive, const S
                        "' has other columns than this run writes: it is of another run, or of "
                        "another version of floe");
     Fields::require(dir, archive.frames);
+    if (archive.pressures > 0) (void)history_start(dir + "/pressure.csv", archive.pressures);
   });
 }
 
@@ -277,6 +286,31 @@ void Output<Space>::Impl::put_row(const Sample& s) {
     line += text.data();
   }
   history->write(line + "\n");
+}
+
+/// Writes the forces on patches of obstacles at the accepted state: of each obstacle its whole
+/// force, then that on each loaded patch.
+template <class Space>
+void Output<Space>::Impl::write_pressure(double time) {
+  std::array<char, 32> start{};
+  std::snprintf(start.data(), start.size(), "%.12g,", time);
+  for (const auto& force : model.forces()) {
+    ActsOnPatches* role = force->roles().patches;
+    if (role == nullptr) continue;
+    const PatchSample sample = role->sample_patches(time);
+    std::string rows;
+    const auto add = [&](const std::string& name, const std::string& patch, const Vec3<double>& f) {
+      std::array<char, 96> text{};
+      std::snprintf(text.data(), text.size(), ",%.15g,%.15g,%.15g\n", f.x, f.y, f.z);
+      rows += start.data() + name + "," + patch + text.data();
+      ++memory.pressures;
+    };
+    for (const PatchSample::OfObstacle& of : sample.obstacles) {
+      add(of.name, "all", of.force);
+      for (const auto& [patch, on_it] : of.loaded) add(of.name, std::to_string(patch), on_it);
+    }
+    on_root(part.comm, [&] { pressure->write(rows); });
+  }
 }
 
 template <class Space>
@@ -338,6 +372,11 @@ void Output<Space>::accept(const Accepted<Space>& accepted) {
   const bool due =
       accepted.step == 0 || accepted.last ||
       (me.options.fields > 0 && time >= archive.next_fields - early * me.options.fields);
+  if (me.options.pressure > 0 && time >= archive.next_pressure - early * me.options.pressure) {
+    me.write_pressure(time);
+    archive.next_pressure =
+        me.options.pressure * (std::floor(time / me.options.pressure + early) + 1);
+  }
   me.pending_frame.reset();
   if (due) {
     me.pending.reset();
@@ -360,6 +399,7 @@ void Output<Space>::finish() {
   on_root(impl_->part.comm, [&] {
     impl_->fields->finish();
     impl_->history->close();
+    if (impl_->pressure) impl_->pressure->close();
   });
 }
 
@@ -399,6 +439,7 @@ void Output<Space>::sync() {
   const Timed timed(Event::output);
   on_root(impl_->part.comm, [&] {
     impl_->history->sync();
+    if (impl_->pressure) impl_->pressure->sync();
     impl_->fields->sync();
     sync_to_disk(impl_->options.dir);
   });

@@ -20,8 +20,9 @@ namespace floe {
 /// Output settings of a run.
 struct OutputOptions {
   std::string dir;
-  double history = 0;  ///< time between rows [s]; 0: every accepted step
-  double fields = 0;   ///< time between frames [s]; 0: the first and the last state
+  double history = 0;   ///< time between rows [s]; 0: every accepted step
+  double fields = 0;    ///< time between frames [s]; 0: the first and the last state
+  double pressure = 0;  ///< time between samples in pressure.csv [s]; 0: none
   std::vector<NamedShape> obstacles{};  ///< all but half-spaces
 };
 
@@ -57,8 +58,11 @@ struct OutputArchive {
   bool row_pending = false;  ///< `last` is not in history.csv
   std::int64_t rows = 0;     ///< rows in history.csv, without its first line
   std::int64_t frames = 0;   ///< frames in fields.h5
+  std::int64_t pressures =
+      0;                     ///< rows in pressure.csv; there is none where pressure is not sampled
   double next_history = 0;   ///< time of the next row [s]
   double next_fields = 0;    ///< time of the next frame [s]
+  double next_pressure = 0;  ///< time of the next sample in pressure.csv [s]
   std::string run;           ///< identifier of the run whose files these are
   void persist(Archive& archive);
 };

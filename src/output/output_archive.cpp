@@ -60,8 +60,10 @@ void OutputArchive::persist(Archive& archive) {
   archive.common("row_pending", row_pending);
   archive.common("history_rows", rows);
   archive.common("fields_frames", frames);
+  archive.common("pressure_rows", pressures);
   archive.common("next_history", next_history, not_negative);
   archive.common("next_fields", next_fields, not_negative);
+  archive.common("next_pressure", next_pressure, not_negative);
   archive.common("run", run);
 }
 

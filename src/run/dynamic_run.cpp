@@ -661,7 +661,8 @@ bool DynamicRun<Space>::within_limits() {
 
 template <class Space>
 void DynamicRun<Space>::set_sampling() {
-  sample_every_ = {options_.history > 0 ? options_.history : options_.end / 200, options_.fields};
+  sample_every_ = {options_.history > 0 ? options_.history : options_.end / 200, options_.fields,
+                   options_.pressure};
 }
 
 /// A sample is due at the first state at or after its time, rounding aside; the output counts its

@@ -256,7 +256,7 @@ class DynamicRun : public Run {
   std::optional<Progress> progress_;
   RunResult result_;
   std::exception_ptr error_;
-  std::array<double, 2> sample_every_{};
+  std::array<double, 3> sample_every_{};
   bool given_ = false;  // the user gave the step
   double time_ = 0, dt_ = 0, next_sample_ = 0, time_base_ = 0, largest_ = 0;
   bool adaptive_ = false;

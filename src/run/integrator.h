@@ -46,6 +46,7 @@ struct DynamicOptions {
   double energy_limit = 0.1;
   double history = 0;                      ///< time between samples [s]; 0: 200 over the run
   double fields = 0;                       ///< time between further samples for frames [s]; 0: none
+  double pressure = 0;                     ///< the same for pressures on obstacles
   double most_steps = default_most_steps;  ///< a run that needs more steps is refused
   OnPlan on_plan = nullptr;
   CheckpointOptions checkpoint;

@@ -28,13 +28,14 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// Files that a run writes, apart from temporary files.
-constexpr std::array<std::string_view, 10> results{
+constexpr std::array<std::string_view, 11> results{
     "lattice.h5", "options.yaml", "history.csv",   "fields.h5",
     "fields.xmf", "breaks.h5",    "checkpoint.h5", "checkpoint_previous.h5",
-    "floe.log",   "summary.json"};
+    "floe.log",   "summary.json", "pressure.csv"};
 /// Files removed when a run begins, since they would contradict it until it has written its own.
-constexpr std::array<std::string_view, 5> contradicting{
-    "summary.json", "fields.xmf", "checkpoint.h5", "checkpoint_previous.h5", "breaks.h5"};
+constexpr std::array<std::string_view, 6> contradicting{
+    "pressure.csv",  "summary.json",           "fields.xmf",
+    "checkpoint.h5", "checkpoint_previous.h5", "breaks.h5"};
 /// Room on the disk for a summary that says that the disk is full.
 constexpr std::size_t room = 4096;
 constexpr auto reserve = "/.summary";

@@ -508,6 +508,11 @@ constexpr std::array table{
         "dynamics: 200 rows at the most"},
     OptionSpec{"output: fields", number, "(first and last state)", "s", ">= 1e-12, <= 1e12",
                "between frames of fields.h5, where steps of implicit end too"},
+    OptionSpec{"output: pressure", number, "(none)", "s", ">= 1e-9, <= 1e12",
+               "with contact: between samples of the forces on patches of obstacles, in "
+               "pressure.csv"},
+    OptionSpec{"output: pressure_patch", number, "0.5", "m", ">= 1e-3, <= 1e6",
+               "with pressure: edge of the patches"},
 
     OptionSpec{"partition: threshold", number, "1.15", "", ">= 1, <= 1e9",
                "explicit runs with contact: bodies move between ranks when the busiest has more "

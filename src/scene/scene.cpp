@@ -11,6 +11,7 @@
 #include <set>
 #include <system_error>
 
+#include "contact/surface_patches.h"
 #include "floe/base/petsc.h"
 #include "floe/options/options.h"
 #include "keys.h"
@@ -145,10 +146,25 @@ std::string output_problem(const std::string& dir) {
   return {};
 }
 
+void read_pressure(Options& options, Scene& scene) {
+  if (!scene.forces.contact) throw InputError("output: pressure: needs contact among 'forces'");
+  scene.output.pressure = options.number("output: pressure");
+  const double size = options.number("output: pressure_patch");
+  bool any = false;
+  for (Obstacle& obstacle : scene.obstacles) {
+    if (obstacle.is_half_space()) continue;
+    obstacle.patches = surface_patches(obstacle, size);
+    any = true;
+  }
+  if (!any)
+    throw InputError("output: pressure: needs an obstacle that is no halfspace, on which it is");
+}
+
 void read_output(Options& options, Scene& scene) {
   scene.output.dir = options.text("output: dir", {}, "out/" + scene.name);
   scene.output.history = options.number("output: history", {}, 0.0);
   if (options.given("output: fields")) scene.output.fields = options.number("output: fields");
+  if (options.given("output: pressure")) read_pressure(options, scene);
   throw_verdict(rank() == 0 ? output_problem(scene.output.dir) : "", PETSC_COMM_WORLD);
 }
 

@@ -76,6 +76,12 @@ void move_to(Obstacle& obstacle, const Point3& centre, const Triad<double>& axes
     for (InnerFace& face : part.inner_faces) move(face.corners);
   }
   move(obstacle.shape.vertices);
+  for (SurfacePatch& patch : obstacle.patches) {
+    patch.centre = axes.to_local(patch.centre + apart);
+    patch.normal = axes.to_local(patch.normal);
+    for (auto* polygons : {&patch.pieces, &patch.covered})
+      for (SurfacePatch::Polygon& polygon : *polygons) move(polygon);
+  }
   obstacle.point = centre;
 }
 

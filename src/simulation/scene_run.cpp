@@ -31,6 +31,7 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
   options.energy_limit = scene.limit.energy_error;
   options.history = scene.output.history;
   options.fields = scene.output.fields;
+  options.pressure = scene.output.pressure;
   options.most_steps = scene.limit.steps;
   options.on_plan = hooks.on_plan;
   options.checkpoint = {.file = scene.check_only ? "" : checkpoint_file(scene),

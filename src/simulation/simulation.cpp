@@ -381,6 +381,7 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
   output_ = std::make_unique<Output<Space>>(OutputOptions{.dir = scene_.output.dir,
                                                           .history = scene_.output.history,
                                                           .fields = scene_.output.fields,
+                                                          .pressure = scene_.output.pressure,
                                                           .obstacles = shapes_of(scene_.obstacles)},
                                             std::move(setting_.lattice), *model_, loads_,
                                             scene_.options_yaml, restart_ ? &*restart_ : nullptr,

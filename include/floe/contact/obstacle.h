@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "floe/contact/obstacle_motion.h"
+#include "floe/contact/surface_patch.h"
 #include "floe/geometry/half_space.h"
 #include "floe/geometry/polyhedron.h"
 
@@ -36,6 +37,7 @@ struct Obstacle {
   double friction = 0;                   ///< mu against bodies
   std::optional<double> friction_wet{};  ///< mu against bodies below still water, if another
   std::vector<ConvexPart> parts;         ///< at least one
+  std::vector<SurfacePatch> patches;     ///< where its pressure is sampled; else none
   Shapes shape{};  ///< all faces of all parts as one body, in its frame; empty for a half-space
   /// The body of the model that carries it, of which the frame is this one's then; -1: it follows
   /// `motion`.

@@ -45,6 +45,8 @@ struct Shapes {
 struct NamedShape {
   std::string name;
   Shapes shape;
+  std::vector<Point3> patch_centres, patch_normals;  ///< of patches of its surface, if any [m]
+  std::vector<double> patch_areas;                   ///< [m^2]
 };
 
 /// Appends the prism over a polygon between two heights. The vertices of the bottom come first,
