@@ -84,16 +84,51 @@ Patch JoinedOverlap::patch(const Vec3<double>& n) const {
   sum.uu = uu / 12 - sum.area * m.u * m.u;
   sum.vv = vv / 12 - sum.area * m.v * m.v;
   sum.uv = uv / 12 - sum.area * m.u * m.v;
+  for (const Edge& edge : whole_edges())
+    sum.reach += reach_of_edge(across(edge.a - sum.middle), across(edge.b - sum.middle));
+  return sum;
+}
+
+/// Returns the edges of all facets, those in one line and one plane as one edge: the quadrature of
+/// reach_of_edge() would see where they are divided. Edges between facets and around common faces
+/// are there in both directions and add up to nothing.
+std::vector<JoinedOverlap::Edge> JoinedOverlap::whole_edges() const {
+  constexpr double near = 1e-9;
+  std::vector<Edge> edges;
   for (const Facet& facet : facets_) {
-    if (facet.weight < 0) continue;  // signed: both sides of a common face have added to nothing
-    Across<double> a = across(corners_[facet.end - 1] - sum.middle);
-    for (std::size_t k = facet.begin; k < facet.end; ++k) {
-      const Across<double> b = across(corners_[k] - sum.middle);
-      sum.reach += reach_of_edge(a, b);
-      a = b;
+    if (facet.weight < 0) continue;
+    Vec3<double> normal{};
+    for (std::size_t k = facet.begin + 1; k + 1 < facet.end; ++k)
+      normal = normal +
+               cross(corners_[k] - corners_[facet.begin], corners_[k + 1] - corners_[facet.begin]);
+    const double size = length(normal);
+    if (size == 0) continue;
+    for (std::size_t k = facet.begin; k < facet.end; ++k)
+      edges.push_back({.a = corners_[k > facet.begin ? k - 1 : facet.end - 1],
+                       .b = corners_[k],
+                       .normal = (1 / size) * normal});
+  }
+  const auto continues = [&](const Edge& one, const Edge& next) {
+    const Vec3<double> p = one.b - one.a, q = next.b - next.a;
+    const double sizes = length(p) * length(q);
+    return length(next.a - one.b) <= near * (length(p) + length(q)) &&
+           length(next.normal - one.normal) < 1e-6 && dot(p, q) > 0 &&
+           length(cross(p, q)) <= near * sizes;
+  };
+  for (bool found = true; found;) {
+    found = false;
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      for (std::size_t m = 0; m < edges.size(); ++m) {
+        if (m == k || !continues(edges[k], edges[m])) continue;
+        edges[k].b = edges[m].b;
+        edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(m));
+        if (m < k) --k;
+        m = edges.size();
+        found = true;
+      }
     }
   }
-  return sum;
+  return edges;
 }
 
 }  // namespace floe

@@ -27,7 +27,11 @@ class JoinedOverlap {
   Overlap sum(bool with_patch) const;
 
  private:
+  struct Edge {
+    Vec3<double> a, b, normal;
+  };
   Patch patch(const Vec3<double>& n) const;
+  std::vector<Edge> whole_edges() const;
 
   struct Facet {
     std::size_t begin, end;  ///< corners
