@@ -174,11 +174,12 @@ std::int32_t Contacts::meet_parts(const Law& law, std::int32_t first,
     if (const PairHistory* memory = histories.of(index)) {
       known_.push_back(index);
       known_memory_.push_back(memory);
-    } else if (narrow_.is_apart(solids_, pair, a, b)) {
+    } else if (!pair.met && narrow_.is_apart(solids_, pair, a, b)) {
       continue;
     }
     const PairOverlap met = narrow_.overlap(solids_, wear_, pair, a, b);
-    if (met.overlap.volume > 0) parts_.add(index, met);
+    pair.met = met.overlap.volume > 0;
+    if (pair.met) parts_.add(index, pair, met, narrow_);
   }
   for (const PartContacts::Joined& contact :
        parts_.join(solids_, wear_, narrow_.with_patch(), pairs, a, b, known_)) {

@@ -158,11 +158,21 @@ void NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& tu
   const std::span<const HalfSpace> planes = solids.planes(pair.b);
   if (const EdgeGraph* graph = solids.graph(pair.a)) {
     graph_clipper_.place(solids.vertex_lists(pair.a), turn, x);
-    if (graph_clipper_.overlap(*graph, planes, with_patch_, further, record_of(pair), found))
-      return;
+    by_graph_ =
+        graph_clipper_.overlap(*graph, planes, with_patch_, further, record_of(pair), found);
+    if (by_graph_) return;
   }
+  by_graph_ = false;
   place(solids.vertices(pair.a), turn, x, vertices_a_);
   found = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
+}
+
+void NarrowPhase::facets_on_b(const Pair& pair, FacetsOnB& facets) const {
+  if (by_graph_) {
+    graph_clipper_.facets_on_b(item(records_, pair.cuts), facets);
+  } else {
+    clipper_.facets_on_b(facets);
+  }
 }
 
 void NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair, const Placed& a,

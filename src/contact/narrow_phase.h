@@ -61,6 +61,8 @@ class NarrowPhase {
                PairOverlap& met);
   /// Whether overlaps have their Overlap::patch.
   bool with_patch() const { return with_patch_; }
+  /// Sets the facets on B of the last overlap, which was not zero. \param pair  of it
+  void facets_on_b(const Pair& pair, FacetsOnB& facets) const;
   /// Forgets the records of cuts of all pairs, for a new list. No number depends on them.
   void forget_cuts() { records_.clear(); }
 
@@ -71,6 +73,7 @@ class NarrowPhase {
   bool has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b);
 
   bool with_patch_;
+  bool by_graph_ = false;  ///< the last overlap was the graph clipper's
   GraphClipper graph_clipper_;
   Clipper clipper_;                 ///< for the few pairs that are too much for the other
   std::vector<CutRecord> records_;  ///< of the pairs that overlapped since the last list

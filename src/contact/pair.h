@@ -35,6 +35,7 @@ struct Pair {
   bool broken : 1 = false;          ///< a beam between A and B broke: they have new faces
   bool offloaded : 1 = false;       ///< another rank computes the overlap of the pair
   bool one_of_several : 1 = false;  ///< B is one of several parts of its obstacle
+  bool met : 1 = false;             ///< of these: it overlapped in the last evaluation
   std::int16_t face = -1;  ///< of the last gap: number of a plane of B, then of A; -1: axis
   std::int32_t cuts = -1;  ///< place of the record of its cuts (NarrowPhase); -1: none
   Vec3<double> axis{};     ///< of the last gap that no face had, a unit vector from B to A

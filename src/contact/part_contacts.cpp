@@ -32,27 +32,35 @@ void place(std::span<const HalfSpace> planes, const Triad<double>& axes, const V
 
 }  // namespace
 
+void PartContacts::add(std::int32_t index, const Pair& pair, const PairOverlap& overlap,
+                       const NarrowPhase& narrow) {
+  if (number_ == room_.size()) room_.emplace_back();
+  Met& met = room_[number_++];
+  met.pair = index;
+  met.overlap = overlap;
+  narrow.facets_on_b(pair, met.facets);
+}
+
 std::span<const PartContacts::Joined> PartContacts::join(const Solids& solids, const Wear& wear,
                                                          bool with_patch,
                                                          std::span<const Pair> pairs,
                                                          const Placed& a, const Placed& b,
                                                          std::span<const std::int32_t> known) {
   joined_.clear();
-  if (met_.empty()) return joined_;
-  const std::int32_t body = item(pairs, met_[0].pair).a;
-  if (met_.size() > 1) {
+  const std::span<Met> all = met();
+  if (all.empty()) return joined_;
+  const std::int32_t body = item(pairs, all[0].pair).a;
+  if (all.size() > 1) {
     const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
                              b.axes.to_local(a.axes.e3)};
     const Vec3<double> x = b.axes.to_local(a.x - b.x);
     place(wear.of(body), turn, x, worn_);
     place(solids.planes(body), turn, x, planes_a_);
     planes_a_.insert(planes_a_.end(), worn_.begin(), worn_.end());
-    vertices_a_.clear();
-    for (const Vec3<double>& r : solids.vertices(body)) vertices_a_.push_back(x + turn.to_world(r));
   }
   joined_.resize(find_meetings(solids, pairs));
   choose_pairs(solids, pairs, known);
-  for (std::size_t k = 0; k < joined_.size(); ++k) sum(solids, with_patch, pairs, a, b, k);
+  for (std::size_t k = 0; k < joined_.size(); ++k) sum(with_patch, a, b, k);
   std::sort(joined_.begin(), joined_.end(),
             [](const Joined& p, const Joined& q) { return p.pair < q.pair; });
   return joined_;
@@ -60,15 +68,16 @@ std::span<const PartContacts::Joined> PartContacts::join(const Solids& solids, c
 
 /// Finds where met parts meet inside A, and numbers the contacts. \returns their number
 std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pair> pairs) {
+  const std::span<Met> all = met();
   meetings_.clear();
-  for (std::size_t k = 0; k < met_.size(); ++k) met_[k].contact = k;
-  if (met_.size() == 1) return 1;
-  for (std::size_t one = 0; one < met_.size(); ++one) {
-    for (const InnerFace& face : solids.part(item(pairs, met_[one].pair).b).inner_faces) {
+  for (std::size_t k = 0; k < all.size(); ++k) all[k].contact = k;
+  if (all.size() == 1) return 1;
+  for (std::size_t one = 0; one < all.size(); ++one) {
+    for (const InnerFace& face : solids.part(item(pairs, all[one].pair).b).inner_faces) {
       std::size_t other = one + 1;  // parts descend in the list, so each face is found once
-      while (other < met_.size() && part_of(solids, item(pairs, met_[other].pair)) != face.other)
+      while (other < all.size() && part_of(solids, item(pairs, all[other].pair)) != face.other)
         ++other;
-      if (other == met_.size()) continue;
+      if (other == all.size()) continue;
       corners_ = face.corners;
       for (const HalfSpace& plane : planes_a_) {
         if (corners_.size() < 3) break;
@@ -76,15 +85,15 @@ std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pa
       }
       if (corners_.size() < 3) continue;
       meetings_.push_back({one, other, corners_});
-      const std::size_t from = met_[other].contact, to = met_[one].contact;
-      for (Met& met : met_)
+      const std::size_t from = all[other].contact, to = all[one].contact;
+      for (Met& met : all)
         if (met.contact == std::max(from, to)) met.contact = std::min(from, to);
     }
   }
   std::size_t number = 0;
-  for (std::size_t k = 0; k < met_.size(); ++k) {
-    const std::size_t first = met_[k].contact;
-    met_[k].contact = first == k ? number++ : met_[first].contact;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::size_t first = all[k].contact;
+    all[k].contact = first == k ? number++ : all[first].contact;
   }
   return number;
 }
@@ -93,24 +102,25 @@ std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pa
 /// the part, else that of the largest overlap.
 void PartContacts::choose_pairs(const Solids& solids, std::span<const Pair> pairs,
                                 std::span<const std::int32_t> known) {
+  const std::span<Met> all = met();
   for (const std::int32_t pair : known) {
     auto found =
-        std::find_if(met_.begin(), met_.end(), [&](const Met& met) { return met.pair == pair; });
-    if (found != met_.end()) {
+        std::find_if(all.begin(), all.end(), [&](const Met& met) { return met.pair == pair; });
+    if (found != all.end()) {
       Joined& contact = joined_[found->contact];
       if (contact.pair < 0) contact.pair = pair;
       contact.known.push_back(pair);
       continue;
     }
-    found = std::find_if(met_.begin(), met_.end(), [&](const Met& met) {
+    found = std::find_if(all.begin(), all.end(), [&](const Met& met) {
       return is_next_to(solids, item(pairs, met.pair), item(pairs, pair));
     });
-    if (found != met_.end()) joined_[found->contact].known.push_back(pair);
+    if (found != all.end()) joined_[found->contact].known.push_back(pair);
   }
   for (std::size_t k = 0; k < joined_.size(); ++k) {
     if (joined_[k].pair >= 0) continue;
     double most = 0;
-    for (const Met& met : met_) {
+    for (const Met& met : all) {
       if (met.contact != k || !(met.overlap.overlap.volume > most)) continue;
       most = met.overlap.overlap.volume;
       joined_[k].pair = met.pair;
@@ -118,37 +128,24 @@ void PartContacts::choose_pairs(const Solids& solids, std::span<const Pair> pair
   }
 }
 
-void PartContacts::sum(const Solids& solids, bool with_patch, std::span<const Pair> pairs,
-                       const Placed& a, const Placed& b, std::size_t contact) {
+void PartContacts::sum(bool with_patch, const Placed& a, const Placed& b, std::size_t contact) {
   Joined& joined = joined_[contact];
   const auto is_of = [&](const Met& met) { return met.contact == contact; };
-  if (std::count_if(met_.begin(), met_.end(), is_of) == 1) {
-    joined.overlap = std::find_if(met_.begin(), met_.end(), is_of)->overlap;
+  const std::span<Met> all = met();
+  if (std::count_if(all.begin(), all.end(), is_of) == 1) {
+    joined.overlap = std::find_if(all.begin(), all.end(), is_of)->overlap;
     return;
   }
-  whole_.clear();
-  for (const Met& met : met_) {
-    if (!is_of(met)) continue;
-    const Pair& pair = item(pairs, met.pair);
-    const Overlap overlap = clipper_.overlap(solids.shapes(), pair.a, vertices_a_,
-                                             solids.planes(pair.b), false, {.a = worn_, .b = {}});
-    if (!(overlap.volume > 0)) continue;
-    clipper_.facets_on_b(facets_);
-    whole_.add(overlap, facets_);
-  }
-  for (const Meeting& meeting : meetings_)
-    if (is_of(met_[meeting.one])) whole_.leave_out(meeting.corners);
-  Overlap& o = joined.overlap.overlap;
-  o = whole_.sum(with_patch);
-  joined.overlap.depth = 0;
-  const auto to_world = [&](const Vec3<double>& r) { return b.axes.to_world(r); };
   const Vec3<double> origin = b.x - a.x;
-  o.centroid = to_world(o.centroid) + origin;
-  o.area = to_world(o.area);
-  o.moment = to_world(o.moment);
-  o.patch.middle = to_world(o.patch.middle) + origin;
-  o.patch.u = to_world(o.patch.u);
-  o.patch.v = to_world(o.patch.v);
+  whole_.clear();
+  for (const Met& met : all)
+    if (is_of(met)) whole_.add(met.overlap.overlap, met.facets, b.axes, origin);
+  for (Meeting& meeting : meetings_) {
+    if (!is_of(all[meeting.one])) continue;
+    for (Vec3<double>& r : meeting.corners) r = origin + b.axes.to_world(r);
+    whole_.leave_out(meeting.corners);
+  }
+  joined.overlap = {.overlap = whole_.sum(with_patch), .depth = 0};
 }
 
 }  // namespace floe

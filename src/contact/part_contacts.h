@@ -30,9 +30,11 @@ class PartContacts {
   };
 
   /// Begins with a body and an obstacle.
-  void start() { met_.clear(); }
-  /// Adds an overlap. \param pair  index in the list, ascending
-  void add(std::int32_t pair, const PairOverlap& overlap) { met_.push_back({pair, 0, overlap}); }
+  void start() { number_ = 0; }
+  /// Adds an overlap that is not zero, the last one of `narrow`.
+  /// \param index  of the pair in the list, ascending
+  void add(std::int32_t index, const Pair& pair, const PairOverlap& overlap,
+           const NarrowPhase& narrow);
   /// Returns the contacts of the overlaps, in the order of `pair`.
   /// \param pairs  of the list
   /// \param a, b   places of the body and of the obstacle
@@ -43,9 +45,10 @@ class PartContacts {
 
  private:
   struct Met {
-    std::int32_t pair;
-    std::size_t contact;  ///< number of the contact
+    std::int32_t pair = -1;
+    std::size_t contact = 0;  ///< number of the contact
     PairOverlap overlap;
+    FacetsOnB facets;
   };
   /// What of a common face of two parts lies in A, in the frame of the obstacle.
   struct Meeting {
@@ -56,16 +59,16 @@ class PartContacts {
   std::size_t find_meetings(const Solids& solids, std::span<const Pair> pairs);
   void choose_pairs(const Solids& solids, std::span<const Pair> pairs,
                     std::span<const std::int32_t> known);
-  void sum(const Solids& solids, bool with_patch, std::span<const Pair> pairs, const Placed& a,
-           const Placed& b, std::size_t contact);
+  void sum(bool with_patch, const Placed& a, const Placed& b, std::size_t contact);
 
-  std::vector<Met> met_;
+  std::span<Met> met() { return {room_.data(), number_}; }
+
+  std::vector<Met> room_;  ///< its first entries are in use
+  std::size_t number_ = 0;
   std::vector<Meeting> meetings_;
   std::vector<Joined> joined_;
-  Clipper clipper_;
-  FacetsOnB facets_;
   JoinedOverlap whole_;
-  std::vector<Vec3<double>> vertices_a_, corners_, work_;
+  std::vector<Vec3<double>> corners_, work_;
   std::vector<HalfSpace> planes_a_, worn_;
 };
 

@@ -21,9 +21,8 @@ std::vector<Vec3<double>> face_in(const ConvexPart& part, const HalfSpace& plane
   const auto angle = [&, u = u, v = v](const Vec3<double>& r) {
     return std::atan2(dot(v, r - middle), dot(u, r - middle));
   };
-  std::sort(
-      corners.begin(), corners.end(),
-      [&](const Vec3<double>& p, const Vec3<double>& q) { return angle(p) < angle(q); });
+  std::sort(corners.begin(), corners.end(),
+            [&](const Vec3<double>& p, const Vec3<double>& q) { return angle(p) < angle(q); });
   return corners;
 }
 

@@ -95,6 +95,18 @@ bool GraphClipper::overlap(const EdgeGraph& a, std::span<const HalfSpace> planes
   return true;
 }
 
+void GraphClipper::facets_on_b(const CutRecord& record, FacetsOnB& facets) const {
+  facets.clear();
+  const auto at = [&](std::uint8_t slot) {
+    return Vec3<double>{points_.x[slot], points_.y[slot], points_.z[slot]};
+  };
+  const Facets of = record.facets();
+  for (const Triple& t : of.triangles.first(of.on_b))
+    facets.corners.insert(facets.corners.end(), {at(t.a), at(t.b), at(t.c)});
+  for (const Triple& edge : of.rim)
+    if (edge.a != edge.b) facets.edges.push_back({at(edge.a), at(edge.b)});
+}
+
 /// Returns the plane of B farthest below A's origin: it removes most of A as a rule, and the later
 /// cuts are then small.
 std::uint8_t GraphClipper::first_plane(std::span<const HalfSpace> planes) const {

@@ -42,6 +42,8 @@ class GraphClipper {
   /// \param found       zeros
   bool overlap(const EdgeGraph& a, std::span<const HalfSpace> planes, bool with_patch,
                const FurtherPlanes& further, CutRecord& record, Overlap& found);
+  /// Sets the facets on B of the last overlap, which was not zero. \param record  its record
+  void facets_on_b(const CutRecord& record, FacetsOnB& facets) const;
   /// Whether the last overlap() repeated its record.
   bool replayed() const { return replayed_; }
 

@@ -6,7 +6,6 @@
 /// faces out.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -15,31 +14,31 @@
 
 namespace floe {
 
-/// Sums overlaps. An object keeps its working memory.
+/// Sums overlaps. All vectors are in one frame. An object keeps its working memory.
 class JoinedOverlap {
  public:
   void clear();
   /// Adds the overlap with a part, with its facets on this part.
-  void add(const Overlap& overlap, const FacetsOnB& facets);
+  /// \param axes, origin  frame of the facets
+  void add(const Overlap& overlap, const FacetsOnB& facets, const Triad<double>& axes,
+           const Vec3<double>& origin);
   /// Leaves out the common face of two added parts. \param corners  of what of it lies in A
   void leave_out(std::span<const Vec3<double>> corners);
   /// Returns the overlap with the whole. S is zero where it is rounding: A lies inside.
-  Overlap sum(bool with_patch) const;
+  Overlap sum(bool with_patch);
 
  private:
   struct Edge {
-    Vec3<double> a, b, normal;
+    Vec3<double> a, b, along;  ///< a unit vector
+    double length;
   };
-  Patch patch(const Vec3<double>& n) const;
-  std::vector<Edge> whole_edges() const;
+  Patch patch(const Vec3<double>& n);
+  void join_edges();
 
-  struct Facet {
-    std::size_t begin, end;  ///< corners
-    double weight;           ///< of |dA|
-  };
   std::vector<Overlap> parts_;
-  std::vector<Vec3<double>> corners_;
-  std::vector<Facet> facets_;
+  std::vector<Vec3<double>> corners_;  ///< of triangles
+  std::vector<double> weights_;        ///< of the triangles' |dA|
+  std::vector<Edge> edges_;
 };
 
 }  // namespace floe

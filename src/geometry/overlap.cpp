@@ -95,12 +95,15 @@ Overlap Clipper::overlap(const Shapes& shapes, std::int32_t body,
 
 void Clipper::facets_on_b(FacetsOnB& facets) const {
   facets.clear();
+  const auto corner = [&](std::int32_t c) { return item(now_.points, item(now_.corners, c)); };
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     if (!face.on_b) continue;
-    for (std::int32_t c = face.begin; c < face.end; ++c)
-      facets.corners.push_back(item(now_.points, item(now_.corners, c)));
-    facets.end.push_back(facets.corners.size());
+    for (std::int32_t c = face.begin; c < face.end; ++c) {
+      facets.edges.push_back({corner(c), corner(c + 1 < face.end ? c + 1 : face.begin)});
+      if (c > face.begin && c + 1 < face.end)
+        facets.corners.insert(facets.corners.end(), {corner(face.begin), corner(c), corner(c + 1)});
+    }
   }
 }
 

@@ -65,12 +65,15 @@ void append_half_spaces(const Shapes& shapes, std::int32_t body, std::vector<Hal
 /// its faces are plane.
 double concavity(const Shapes& shapes, std::int32_t body);
 
-/// Facets of an overlap on B, in B's frame.
+/// Facets of an overlap on B, in B's frame [m].
 struct FacetsOnB {
-  std::vector<Vec3<double>> corners;  ///< of all, counter-clockwise seen from outside [m]
-  std::vector<std::size_t> end;       ///< per facet: the place behind its corners
+  struct Edge {
+    Vec3<double> a, b;
+  };
+  std::vector<Vec3<double>> corners;  ///< of triangles, counter-clockwise seen from outside
+  std::vector<Edge> edges;  ///< with the facets to the left; those between facets may be left out
 
-  void clear() { corners.clear(), end.clear(); }
+  void clear() { corners.clear(), edges.clear(); }
 };
 
 /// Further planes that bound A and B.
