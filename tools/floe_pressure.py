@@ -16,7 +16,7 @@ with floe_program.packages():
     import numpy as np
     from scipy.spatial import cKDTree
 
-NEAR = 1.5   # neighbours' centres are no farther apart, in mean sides: those of a square's corner are
+NEAR = 1.5  # largest distance of neighbours' centres, in mean sides: squares may meet at corners
 
 
 @dataclasses.dataclass

@@ -67,9 +67,9 @@ def statics(run, name, start, drag):
 
 def moored(runs, settings):
     """Mean load on a moored cone over that on the same cone held fast; the mean offset over that of
-    the lines under the mean load. settings: obstacle, start [s], filter [Hz], calm (the point
-    that ice does not reach: its second half tells the drag of the current), pairs {moored point: fixed point}, allowed [least, most], statics (what the offset
-    may differ by)."""
+    the lines under the mean load. settings: obstacle, start [s], filter [Hz], calm (the point that
+    ice does not reach: its second half tells the drag of the current), pairs {moored point: fixed
+    point}, allowed [least, most], statics (what the offset may differ by)."""
     name, start, points = settings["obstacle"], settings["start"], by_point(runs)
     calm = points.get(settings["calm"])
     if not calm:

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-import launch
 from launch import REPOSITORY
 from scene_runs import SceneTest, rows_of
 
@@ -165,8 +164,8 @@ obstacle:
   box: {shape: box, centre: [20, 0, 0], size: [4, 4, 2], mass: 16160}
 line:
   names: [east, west]
-  east: {structure: box, fairlead: [22, 0, 0], anchor: [312, 0, -40], table: line.csv, damping: 4e4}
-  west: {structure: box, fairlead: [18, 0, 0], anchor: [-272, 0, -40], table: line.csv, damping: 4e4}
+  east: {structure: box, fairlead: [22, 0, 0], anchor: [312, 0, -40], LINE}
+  west: {structure: box, fairlead: [18, 0, 0], anchor: [-272, 0, -40], LINE}
 boundary: {names: [guide], guide: {set: box, fix: y z rx ry rz}}
 load: {names: [pull], pull: {set: box, force: [1e5, 0, 0], ramp: 5}}
 time: {end: 60, dt: 2e-3, allow_unstable: true}
@@ -177,8 +176,8 @@ WORDS = ("--segment", "300", "1500", "7e8", "--height", "40", "--largest", "3e6"
 
 class MakeLine(SceneTest):
     def make(self, *words, code=0):
-        done = subprocess.run([sys.executable, str(REPOSITORY / "tools/make_line"), *words], cwd=self.folder,
-                              capture_output=True, text=True)
+        done = subprocess.run([sys.executable, str(REPOSITORY / "tools/make_line"), *words],
+                              cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, code, done.stderr)
         if code:
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
@@ -191,7 +190,7 @@ class MakeLine(SceneTest):
         fl.blocks(np.array([[1.0, 1, 1]]), np.array([[0.0, 0, 0]])).write(
             self.folder / "block.h5")
         said = self.make("line.csv", *WORDS, "--at", "290", "--plot", "line.png")
-        self.run_scene(MOORED, name="s")
+        self.run_scene(MOORED.replace("LINE", "table: line.csv, damping: 4e4"), name="s")
         rows = rows_of(self.folder / "out/s")
         curve = np.loadtxt(self.folder / "line.csv", delimiter=",", skiprows=2)
 
@@ -205,9 +204,10 @@ class MakeLine(SceneTest):
         self.assertAlmostEqual(found / itself, 1, delta=5e-3)
         # What is printed is the line's, and what floe has at rest.
         at_rest = line.pull_at(290)
-        for words, value in (("horizontal force ", at_rest), ("stiffness ", line.stiffness(at_rest)),
-                             ("downwards ", line.lift(at_rest)), ("pretension ",
-                                                                  rows["west_tension"][0]),
+        for words, value in (("horizontal force ", at_rest),
+                             ("stiffness ", line.stiffness(at_rest)),
+                             ("downwards ", line.lift(at_rest)),
+                             ("pretension ", rows["west_tension"][0]),
                              ("in floe length ", rows["west_length"][0])):
             printed = float(re.search(words + r"([\d.e+]+)", said)[1])
             self.assertAlmostEqual(printed / value, 1, delta=2e-3, msg=words)
