@@ -47,14 +47,29 @@ def mean_motion(run, name, start):
     return np.array([run.column(f"{name}_{component}")[late].mean() for component in COMPONENTS])
 
 
+def drag_law(calm, name):
+    """The drag on a structure [N] at relative speeds of the water [m/s], as a function: linear and
+    quadratic parts, from runs without ice in two currents or more, in whose second halves the lines
+    bear the drag."""
+    speeds = np.array([run.option("water_current")[0] for run in calm])
+    if len(set(speeds)) < 2:
+        raise BadInput("the drag needs finished runs without ice in two currents")
+    drags = [-force_of_lines(run, name, mean_motion(run, name, run.column("time")[-1] / 2))[0]
+             for run in calm]
+    parts = np.linalg.lstsq(np.column_stack([speeds, speeds * abs(speeds)]), drags, rcond=None)[0]
+    return lambda speed: parts[0] * speed + parts[1] * speed * abs(speed)
+
+
 def statics(run, name, start, drag):
     """Mean offset along x after a time over that at which the lines bear the mean load: that of the
-    ice and the drag of the current [N], less what changes the structure's momentum."""
+    ice and the drag (a function of the relative speed), less what changes the structure's
+    momentum."""
     time, speed = run.column("time"), run.column(f"{name}_velocity_x")
     first = int(np.argmax(time >= start))
     inertia = run.option(f"obstacle_{name}_mass") + run.option(f"obstacle_{name}_added_mass")[0]
     gained = inertia * (speed[-1] - speed[first]) / (time[-1] - time[first])
-    load = mean_force(run, name, time[first])[0] + drag - gained
+    in_water = float(np.mean(drag(run.option("water_current")[0] - speed[first:])))
+    load = mean_force(run, name, time[first])[0] + in_water - gained
     motion = mean_motion(run, name, start)
 
     def rest(x):
@@ -67,15 +82,11 @@ def statics(run, name, start, drag):
 
 def moored(runs, settings):
     """Mean load on a moored cone over that on the same cone held fast; the mean offset over that of
-    the lines under the mean load. settings: obstacle, start [s], filter [Hz], calm (the point that
-    ice does not reach: its second half tells the drag of the current), pairs {moored point: fixed
-    point}, allowed [least, most], statics (what the offset may differ by)."""
+    the lines under the mean load. settings: obstacle, start [s], filter [Hz], calm (points
+    that ice does not reach, in two currents), pairs {moored point: fixed point}, allowed [least,
+    most], statics (what the offset may differ by)."""
     name, start, points = settings["obstacle"], settings["start"], by_point(runs)
-    calm = points.get(settings["calm"])
-    if not calm:
-        raise BadInput(f"no run of the point {settings['calm']} is finished")
-    drag = float(np.mean([-force_of_lines(run, name, mean_motion(
-        run, name, run.column("time")[-1] / 2))[0] for run in calm]))
+    drag = drag_law([run for point in settings["calm"] for run in points.get(point, [])], name)
     lines, loads = [], {"moored": {}, "fixed": {}}
     for point, fixed in settings["pairs"].items():
         both = points.get(point, []), points.get(fixed, [])

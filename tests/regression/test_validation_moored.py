@@ -22,7 +22,8 @@ OPTIONS = {"obstacle_hull_radius": "5", "obstacle_hull_top_radius": "5",
            "line_west_anchor": "-80, 0, 0", "line_west_stiffness": "1e3",
            "line_west_pretension": "2e4", "line_east_fairlead": "20, 0, 0",
            "line_east_anchor": "120, 0, 0", "line_east_stiffness": "1e3",
-           "line_east_pretension": "2e4", "sheet_thickness": "0.5"}
+           "line_east_pretension": "2e4", "sheet_thickness": "0.5",
+           "water_current": "1, 0, 0"}
 SLANTED = {**OPTIONS, "line_west_fairlead": "16, 3, 1", "line_west_anchor": "-80, 40, -30",
            "obstacle_hull_top_radius": "9"}
 
@@ -86,22 +87,41 @@ class Statics(FolderTest):
             moored.force_of_lines(run, "hull", motion)
 
     def test_offset_of_statics(self):
-        self.assertAlmostEqual(moored.statics(self.loaded("a", 4e3, 2.0), "hull", 10, 0), 1, 9)
-        self.assertAlmostEqual(moored.statics(self.loaded("b", 4e3, 2.0), "hull", 10, 4e3), 0.5, 9)
-        self.assertAlmostEqual(moored.statics(self.loaded("c", -4e3, 2.0), "hull", 10, 0), -1, 9)
+        def none(speed):
+            return 0 * speed
+        self.assertAlmostEqual(moored.statics(self.loaded("a", 4e3, 2.0), "hull", 10, none), 1, 9)
+        self.assertAlmostEqual(moored.statics(self.loaded("b", 4e3, 2.0), "hull", 10,
+                                              lambda speed: 4e3 * speed), 0.5, 9)
+        self.assertAlmostEqual(moored.statics(self.loaded("c", -4e3, 2.0), "hull", 10, none), -1, 9)
         # 40 t that gain 2 m/s in the last 50 s take 1.6 kN.
         time = np.linspace(0, 60, 121)
         run = self.loaded("d", 4e3, 1.2, hull_velocity_x=2 * (time - 10) / 50)
-        self.assertAlmostEqual(moored.statics(run, "hull", 10, 0), 1, 9)
+        self.assertAlmostEqual(moored.statics(run, "hull", 10, none), 1, 9)
+        # Drag of what goes with half the current.
+        run = self.loaded("e", 4e3, 2.25, hull_velocity_x=0 * time + 0.5)
+        self.assertAlmostEqual(moored.statics(run, "hull", 10, lambda u: 2e3 * u**2), 1, 9)
+
+    def calm(self):
+        """Runs without ice that tell a drag of 200 u + 800 u^2."""
+        runs = [self.loaded("calm_s001", 0, 0.5), self.loaded("slow_s001", 0, 0.15)]
+        runs[1].options = {**OPTIONS, "water_current": "0.5, 0, 0"}
+        return runs
+
+    def test_drag_law(self):
+        runs = self.calm()
+        drag = moored.drag_law(runs, "hull")
+        np.testing.assert_allclose(drag(np.array([1, 0.5, -0.5, 2])), [1000, 300, -300, 3600])
+        with self.assertRaisesRegex(BadInput, "in two currents"):
+            moored.drag_law(runs[:1], "hull")
 
     def test_row(self):
         """Loads on a moored hull that are 0.8 of those on the fixed one; the drag of 1 kN that the
         run without ice tells is in the offset."""
-        runs = [self.loaded("calm_s001", 0, 0.5)]
+        runs = self.calm()
         for seed in (1, 2, 3):
             runs.append(self.loaded(f"moored_s00{seed}", 800.0 * seed, (800 * seed + 1e3) / 2e3))
             runs.append(self.loaded(f"fixed_s00{seed}", 1000.0 * seed))
-        settings = {"obstacle": "hull", "start": 10, "filter": 1, "calm": "calm",
+        settings = {"obstacle": "hull", "start": 10, "filter": 1, "calm": ["calm", "slow"],
                     "pairs": {"moored": "fixed", "none": "fixed"}, "allowed": [0.74, 1.1],
                     "statics": 0.02}
         with mock.patch.object(moored, "low_passed",
@@ -115,7 +135,7 @@ class Statics(FolderTest):
         self.assertAlmostEqual(lines["h = 0.5 m: peak, moored over fixed"].mean, 0.8)
         np.testing.assert_allclose(lines["h = 0.5 m: mean offset over that of statics"].values, 1)
         self.assertFalse(any("exponent" in what for what in lines))
-        with self.assertRaisesRegex(BadInput, "no run of the point calm is finished"):
+        with self.assertRaisesRegex(BadInput, "without ice in two currents"):
             moored.moored(runs[1:], settings)
         with self.assertRaisesRegex(BadInput, "no thickness has"):
             moored.moored(runs[:2], settings)
