@@ -25,6 +25,7 @@ EXPECTED = {
     "ice_slope.yaml": structures.check_ice_slope,
     "endless_slope.yaml": structures.check_endless_slope,
     "monopile_lockin.yaml": structures.check_monopile_lockin,
+    "bridge_pier.yaml": structures.check_bridge_pier,
     "moored_floater.yaml": structures.check_moored_floater,
     "ice_cone.yaml": structures.check_ice_cone,
     "ice_cylinder.yaml": structures.check_ice_cylinder,

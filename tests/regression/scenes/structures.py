@@ -65,6 +65,33 @@ def check_monopile_lockin(test, run):
     test.assertAlmostEqual(offset / load.mean(), 1, delta=0.05)
 
 
+def check_bridge_pier(test, run):
+    """The first 8 s: the soil bears the load by its whole matrix, and more at times, as the pier
+    swings at its own frequency."""
+    output = run("-time_end", "8")
+    stiffness = np.diag([1.54e9, 1.54e9, 1.59e9, 5e10, 5e10, 6.9e10])
+    stiffness[0, 4] = stiffness[4, 0] = 1.54e9
+    stiffness[1, 3] = stiffness[3, 1] = -1.54e9
+    time, load = output.history("time"), output.history("pier_force_x")
+    late = time > 2
+    motion, bears = ([output.history(f"pier_{name}")[late].mean() for name in names] for names in (
+        ("x", "y", "z", "rx", "ry", "rz"),
+        [f"support_{what}_{axis}" for what in ("force", "moment") for axis in "xyz"]))
+    expected = -stiffness @ motion  # in the mean dashpots bear nothing
+    for k in (0, 2, 4):
+        test.assertAlmostEqual(bears[k] / expected[k], 1, delta=0.02)
+    test.assertGreater(abs(stiffness[0, 4] * motion[4]), 0.1 * abs(expected[0]))
+    test.assertAlmostEqual(-bears[0] / load[late].mean(), 1, delta=0.05)
+    test.assertTrue(180e3 < load.max() < 450e3, load.max())
+    most = -output.history("pier_support_force_x").min()
+    test.assertTrue(1.01 < most / load.max() < 1.8, most / load.max())
+    even = np.arange(2, 8, 0.01)
+    swings = np.abs(np.fft.rfft(np.hanning(600) * np.interp(
+        even, time, output.history("pier_spin_y"))))
+    test.assertAlmostEqual(np.fft.rfftfreq(600, 0.01)[swings.argmax()], 2.45, delta=0.4)
+    expect_ledger(test, output, 1e-4)
+
+
 def check_moored_floater(test, run):
     """The first 12 s: the lines bear what ice and water push."""
     output = run("-time_end", "12")
