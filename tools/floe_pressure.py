@@ -24,6 +24,7 @@ class Patches:
     centre: np.ndarray   # (n, 3) [m]
     normal: np.ndarray   # (n, 3), outwards
     area: np.ndarray     # (n) [m2]
+    size: np.ndarray     # (n, 2), level and up the plane [m]
     time: np.ndarray     # (t) [s]
     force: np.ndarray    # (t, n) [N], against the normal
     total: np.ndarray    # (t, 3) [N]
@@ -98,7 +99,7 @@ def of_obstacle(name, rows, shape):
     force = np.zeros((whole.sum(), len(normal)))
     force[sample[~whole], patch] = -np.einsum("ij,ij->i", vectors[~whole], normal[patch])
     return Patches(name, shape["patch_centre"], normal, shape["patch_area"],
-                   rows.time[whole].to_numpy(), force, vectors[whole])
+                   shape["patch_size"], rows.time[whole].to_numpy(), force, vectors[whole])
 
 
 def grown(seed, pressure, area, beside, most):
@@ -173,18 +174,18 @@ def unrolled(patches):
     label; height (n) and half heights (n) [m]; and which patches are shown (those whose normal is
     not vertical). Around an axis the coordinate is the angle from x [degrees], cut where there is
     least load; else the distance along the wall [m]."""
-    side = np.sqrt(patches.area)
+    side, tall = patches.size.T
     steep = np.linalg.norm(patches.normal[:, :2], axis=1)
     axis = axis_of(patches)
     if axis is None:
         n = np.average(patches.normal[:, :2], axis=0, weights=patches.area * (steep > 0.1) + 1e-300)
         along = np.array([-n[1], n[0]]) / max(np.linalg.norm(n), 1e-300)
         return (patches.centre[:, :2] @ along, side / 2, "along the wall [m]", patches.centre[:, 2],
-                side * steep / 2, steep > 0.1)
+                tall * steep / 2, steep > 0.1)
     off = patches.centre[:, :2] - axis
     angle = np.degrees(np.arctan2(off[:, 1], off[:, 0]))
     mean = patches.mean(patches.force)
     if np.cos(np.radians(angle)) @ mean < 0:  # the load is around 180 degrees
         angle %= 360
     half = np.degrees(side / 2 / np.maximum(np.linalg.norm(off, axis=1), 1e-9))
-    return angle, half, "angle from x [°]", patches.centre[:, 2], side * steep / 2, steep > 0.1
+    return angle, half, "angle from x [°]", patches.centre[:, 2], tall * steep / 2, steep > 0.1

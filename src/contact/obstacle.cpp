@@ -171,6 +171,7 @@ std::vector<NamedShape> shapes_of(const std::vector<Obstacle>& obstacles) {
       named.patch_centres.push_back(patch.centre + o.point);
       named.patch_normals.push_back(patch.normal);
       named.patch_areas.push_back(patch.area);
+      named.patch_sizes.insert(named.patch_sizes.end(), {patch.width, patch.height});
     }
   }
   return shapes;

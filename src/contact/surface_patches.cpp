@@ -31,7 +31,7 @@ struct Squares {
     if (level < flat) {
       across = {1, 0, 0};
       up = cross(n, across);
-      lift = 0;
+      lift = -0.5 * size;
     } else {
       across = (1 / level) * cross(vertical, n);
       up = cross(n, across);
@@ -40,19 +40,16 @@ struct Squares {
   }
   /// Returns where a point is, in squares.
   std::array<double, 2> at(const Vec3<double>& r) const {
-    return {dot(across, r) / size, (dot(up, r) - lift) / size};
+    return {dot(across, r) / size + 0.5, (dot(up, r) - lift) / size};
   }
   /// Cuts a polygon of the plane down to a square.
   void cut_to(Polygon& polygon, std::int32_t i, std::int32_t j, Polygon& work) const {
-    const double low = dot_of(i), bottom = lift + size * j;
+    const double low = size * (i - 0.5), bottom = lift + size * j;
     cut(polygon, {-1.0 * across, -low}, work);
     cut(polygon, {across, low + size}, work);
     cut(polygon, {-1.0 * up, -bottom}, work);
     cut(polygon, {up, bottom + size}, work);
   }
-
- private:
-  double dot_of(std::int32_t i) const { return size * i; }
 };
 
 /// Adds area and centre of a polygon, times a weight.
@@ -111,9 +108,18 @@ class Cutting {
     for (auto& [key, patch] : patches_) {
       if (patch.area <= speck * size_ * size_) continue;
       patch.centre = (1 / patch.area) * patch.centre;
-      for (const Polygon& piece : patch.pieces)
-        for (const Vec3<double>& r : piece)
+      const Squares& squares = planes_[std::get<0>(key)];
+      std::array<double, 2> low{1e300, 1e300}, high{-1e300, -1e300};
+      for (const Polygon& piece : patch.pieces) {
+        for (const Vec3<double>& r : piece) {
           patch.radius = std::max(patch.radius, length(r - patch.centre));
+          const auto at = squares.at(r);
+          for (std::size_t c = 0; c < 2; ++c)
+            low[c] = std::min(low[c], at[c]), high[c] = std::max(high[c], at[c]);
+        }
+      }
+      patch.width = size_ * (high[0] - low[0]);
+      patch.height = size_ * (high[1] - low[1]);
       found.push_back(std::move(patch));
     }
     return found;

@@ -11,9 +11,9 @@
 namespace floe {
 
 /// Cuts the surface of an obstacle into patches: a grid of squares in each plane of its faces, with
-/// lines along the steepest way up and across, the first of them through z = 0 of the world and
-/// below the origin of the obstacle's frame. Faces smaller than a square, and rests at edges, are
-/// patches of their own.
+/// lines along the steepest way up and across, one of them through z = 0 of the world, and the
+/// origin of the obstacle's frame behind the middle of a square. Faces smaller than a square, and
+/// rests at edges, are patches of their own.
 /// \param size  of the squares [m]
 /// \throws InputError if there would be more than a million
 std::vector<SurfacePatch> surface_patches(const Obstacle& obstacle, double size);

@@ -396,6 +396,7 @@ void write_lattice(const Lattice& lattice, const std::string& path,
     file.write(group + "/patch_centre", named.patch_centres);
     file.write(group + "/patch_normal", named.patch_normals);
     file.write(group + "/patch_area", named.patch_areas);
+    file.write(group + "/patch_size", std::span<const double>(named.patch_sizes), 2);
   }
   file.close();
 }

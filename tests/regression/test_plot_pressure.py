@@ -24,7 +24,8 @@ def wall(columns=20, rows=6):
                        SIDE * (np.arange(rows) - rows / 2 + 0.5), indexing="ij")
     n = y.size
     return {"centre": np.column_stack([np.full(n, 3.0), y.ravel(), z.ravel()]),
-            "normal": np.tile([-1.0, 0, 0], (n, 1)), "area": np.full(n, SIDE**2)}
+            "normal": np.tile([-1.0, 0, 0], (n, 1)), "area": np.full(n, SIDE**2),
+            "size": np.full((n, 2), SIDE)}
 
 
 def peaked(patches, y, z, largest, reach):
@@ -154,7 +155,8 @@ class Maps(PressureTest):
         normal = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle + 1]) / np.sqrt(2)
         patches = {"centre": np.vstack([centre, [[10, -5, 1.5]]]),
                    "normal": np.vstack([normal, [[0, 0, 1]]]),
-                   "area": np.ones(len(angle) + 1)}
+                   "area": np.ones(len(angle) + 1),
+                   "size": np.ones((len(angle) + 1, 2))}
         force = np.append(1.0 * (np.abs(angle - np.pi) < 1), 0)
         self.write("cone", [0], force[None], patches)
         one = self.read("cone")

@@ -74,7 +74,7 @@ class Rest(PressureTest):
             for row in at_end.itertuples():
                 x, y, z = centre[int(row.patch)]
                 self.assertAlmostEqual(z, 0)
-                start = np.array([origin, 0])
+                start = np.array([origin, 0]) - 0.2  # middle of a square
                 low = start + np.floor((np.array([x, y]) - start) / 0.4) * 0.4
                 high = np.minimum(low + 0.4, [1.5, 1.0])
                 low = np.maximum(low, [-1.5, -1.0])

@@ -14,6 +14,7 @@ struct SurfacePatch {
   Vec3<double> centre{};                      ///< of its area, in that frame [m]
   Vec3<double> normal{};                      ///< outwards
   double area = 0;                            ///< [m^2]
+  double width = 0, height = 0;               ///< level and up the plane [m]
   double radius = 0;                          ///< of a sphere about `centre` that holds it [m]
   std::vector<Polygon> pieces;                ///< of faces
   std::vector<Polygon> covered;               ///< where two parts meet, in `pieces`

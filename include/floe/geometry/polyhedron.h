@@ -47,6 +47,7 @@ struct NamedShape {
   Shapes shape;
   std::vector<Point3> patch_centres, patch_normals;  ///< of patches of its surface, if any [m]
   std::vector<double> patch_areas;                   ///< [m^2]
+  std::vector<double> patch_sizes;  ///< two of each patch: level, and up its plane [m]
 };
 
 /// Appends the prism over a polygon between two heights. The vertices of the bottom come first,
