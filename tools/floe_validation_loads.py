@@ -6,6 +6,7 @@ import math
 import numpy as np
 
 import floe_extremes
+import floe_pressure
 import floe_program
 import floe_signals
 from floe_program import BadInput
@@ -108,6 +109,31 @@ def crushing(runs, settings):
                     [b / 1e6 for _, b in means], "points"),
                    (f"ISO over {what}", x, [p / 1e6 for p in theory], None, "line")]
     return Found(lines, "width, thickness [m]", "pressure [MPa]", series, log="xy")
+
+
+def pressure_area(runs, settings):
+    """Largest mean pressure on areas of an obstacle over ISO's local pressure, and its exponent.
+    settings: obstacle, areas [m2], judged {area: [least, most] of the ratio}, exponent [least,
+    most] between the second and the last area."""
+    areas = settings["areas"]
+    curves = []
+    for drawn in by_point(runs).values():
+        for run in drawn:
+            at, largest = floe_pressure.area_curve(
+                floe_pressure.read(run.folder)[settings["obstacle"]])
+            curves.append(np.exp(np.interp(np.log(areas), np.log(at), np.log(largest))))
+    curves = np.array(curves)
+    lines = [Line(f"largest pressure on {area:g} m2 over ISO's",
+                  list(curves[:, k] / floe_pressure.iso(area)),
+                  *((1.0, settings["judged"][area]) if area in settings["judged"] else ()))
+             for k, area in enumerate(areas)]
+    lines.append(Line("exponent of the area", [slope_of(areas[1:], curve[1:]) for curve in curves],
+                      -0.7, settings["exponent"]))
+    found = [mean_and_band(column / 1e6) for column in curves.T]
+    return Found(lines, "area [m2]", "largest mean pressure [MPa]",
+                 [("floe", areas, [m for m, _ in found], [b for _, b in found], "points"),
+                  ("ISO 19906", areas, list(floe_pressure.iso(areas) / 1e6), None, "line")],
+                 log="xy")
 
 
 def scaling(runs, settings):
