@@ -149,9 +149,9 @@ class Divider {
   bool accept(const Hulled& one) {
     if (!is_convex(one)) {
       if (tolerance_ <= of_file_) return false;
-      const HullDistance found = hull_distance(one.hull, one.piece.surface, tolerance_);
-      if (found.most > tolerance_) return false;
-      parts_.distance = std::max(parts_.distance, found.most);
+      const double found = hull_distance(one.hull, one.piece.surface, tolerance_, of_faces_);
+      if (found > tolerance_) return false;
+      parts_.distance = std::max(parts_.distance, found);
     }
     append_hull(parts_.shapes, one.hull, of_faces_);
     return true;

@@ -16,9 +16,8 @@ struct ConvexParts {
   std::int64_t triangles = 0;  ///< of the solid's surface
   double volume = 0;           ///< of the solid [m^3]
   double parts_volume = 0;     ///< of all parts [m^3]
-  /// The parts reach this far out of the solid [m]: an upper bound of the distance of any of their
-  /// points from it, at most the tolerance and known to a tenth of that; 0 if every part is a piece
-  /// of the solid up to rounding.
+  /// Largest distance of a point of a part from its piece of the solid, as hull_distance() finds it
+  /// [m]; 0 if every part is a piece of the solid up to rounding.
   double distance = 0;
 };
 

@@ -6,18 +6,15 @@
 
 namespace floe {
 
-/// Bounds of the largest distance of a point of the hull from the solid's surface [m].
-struct HullDistance {
-  double least = 0, most = 0;
-};
-
-/// Finds the largest distance of a point of the hull's surface from a solid's surface, by dividing
-/// the hull's triangles where a bound is above what is wanted. A bound on a triangle is the largest
-/// distance of its corners from one triangle of the solid, since the distance from a convex set is
-/// convex.
-/// \param hull        convex hull of `surface`
-/// \param tolerance   > 0 [m]: the search ends once the distance is known to be above it, or known
-/// to a tenth of it
-HullDistance hull_distance(const Surface& hull, const Surface& surface, double tolerance);
+/// Returns the largest distance of a point of the hull's surface from a solid's surface that is
+/// found [m]: triangles of the hull that are not on the surface are divided, those with the largest
+/// bound first, until no bound is above the tolerance, a point is, or there are 20,000 of them. A
+/// bound on a triangle is the largest distance of its corners from one triangle of the solid, since
+/// the distance from a convex set is convex.
+/// \param hull       convex hull of `surface`
+/// \param tolerance  > 0 [m]
+/// \param rounding   triangles this near to a plane are in it [m]
+double hull_distance(const Surface& hull, const Surface& surface, double tolerance,
+                     double rounding);
 
 }  // namespace floe
