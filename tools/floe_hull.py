@@ -5,9 +5,9 @@ height z is
 
     y = (B/2 + z tan(flare)) (1 - t^p - max(0, -z/T)^4)^(1/2)
 
-t is 0 along the parallel midbody and grows to 1 at the ends of the waterline, with p = 2 in the bow,
-whose waterline is half an ellipse (an icebreaker's spoon bow), and p = 4 in the stern, which is
-fuller. Waterlines move ahead with the height by z / tan(stem) in the bow, which makes the stem a
+t is 0 along the parallel midbody and grows to 1 at the ends of the waterline, with p = 2 in the
+bow, whose waterline is half an ellipse (an icebreaker's spoon bow), and p = 4 in the stern, which
+is fuller. Waterlines move ahead with the height by z / tan(stem) in the bow, which makes the stem a
 straight line at the stem angle above the water and down to the forefoot; in the stern they move so
 below the water only. Without flare y is a concave function of x and z, so the hull is convex but
 for its division into triangles.

@@ -173,7 +173,7 @@ class MakeHull(Tools):
                 (["no/a.stl", *self.SIZES], "argument FILE.stl: 'no' is no folder"),
                 (["a.stl", *self.SIZES, "--stem", 12], "argument --stem: 12: bow and stern go in"),
                 (["a.stl", *self.SIZES, "--depth", 5], "argument --depth: 5 must be above the"),
-                (["a.stl", *self.SIZES, "--flare", 45, "--draught", 8],
+                (["a.stl", *self.SIZES, "--flare", 45, "--draught", 8, "--stem", 60],
                  "argument --flare: 45: leaves no breadth at the keel")):
             with self.subTest(words):
                 said = self.tool("make_hull", *words, code=2)
