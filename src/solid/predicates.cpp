@@ -33,6 +33,70 @@ bool are_flat(const std::vector<Point>& points) {
                      [&](const Point& p) { return CGAL::coplanar(a, *b, *c, p); });
 }
 
+using Mesh = CGAL::Surface_mesh<Point>;
+
+/// Returns the corners of the faces of a hull. Triangles in one plane are one face, and points on
+/// straight edges are no corners: these depend on addresses in CGAL's search.
+std::vector<std::vector<Point>> faces_of(const Mesh& mesh) {
+  std::vector<std::int32_t> face(mesh.number_of_faces(), -1);
+  const auto face_at = [&](Mesh::Face_index f) -> std::int32_t& {
+    return face[static_cast<std::size_t>(f)];
+  };
+  const auto corners_of = [&](Mesh::Face_index f) {
+    const auto h = mesh.halfedge(f);
+    return std::array{mesh.point(mesh.source(h)), mesh.point(mesh.target(h)),
+                      mesh.point(mesh.target(mesh.next(h)))};
+  };
+  std::vector<std::vector<Point>> found;
+  for (const auto seed : mesh.faces()) {
+    const auto [a, b, c] = corners_of(seed);
+    if (face_at(seed) >= 0 || CGAL::collinear(a, b, c)) continue;
+    const auto number = static_cast<std::int32_t>(found.size());
+    std::vector<Mesh::Face_index> todo{seed};
+    face_at(seed) = number;
+    std::vector<Mesh::Face_index> all;
+    while (!todo.empty()) {
+      all.push_back(todo.back());
+      todo.pop_back();
+      for (const auto h : mesh.halfedges_around_face(mesh.halfedge(all.back()))) {
+        const auto next = mesh.face(mesh.opposite(h));
+        if (face_at(next) >= 0) continue;
+        const auto corners = corners_of(next);
+        if (!std::all_of(corners.begin(), corners.end(),
+                         [&, &p = a, &q = b, &r = c](const Point& corner) {
+                           return CGAL::coplanar(p, q, r, corner);
+                         }))
+          continue;
+        face_at(next) = number;
+        todo.push_back(next);
+      }
+    }
+    // A convex polygon: its boundary is one loop.
+    Mesh::Halfedge_index first = Mesh::null_halfedge();
+    for (const auto f : all) {
+      for (const auto h : mesh.halfedges_around_face(mesh.halfedge(f)))
+        if (face_at(mesh.face(mesh.opposite(h))) != number) first = h;
+    }
+    std::vector<Point> loop;
+    auto h = first;
+    do {
+      loop.push_back(mesh.point(mesh.source(h)));
+      h = mesh.next(h);
+      while (face_at(mesh.face(mesh.opposite(h))) == number) h = mesh.next(mesh.opposite(h));
+    } while (h != first);
+    std::vector<Point> corners;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const Point& before = corners.empty() ? loop.back() : corners.back();
+      if (!CGAL::collinear(before, loop[k], loop[(k + 1) % loop.size()]))
+        corners.push_back(loop[k]);
+    }
+    if (corners.size() > 3 && CGAL::collinear(corners.back(), corners[0], corners[1]))
+      corners.erase(corners.begin());
+    if (corners.size() >= 3) found.push_back(std::move(corners));
+  }
+  return found;
+}
+
 }  // namespace
 
 Surface convex_hull(std::span<const Point3> points) {
@@ -41,19 +105,26 @@ Surface convex_hull(std::span<const Point3> points) {
   for (const Point3& p : points) all.push_back(cgal(p));
   Surface hull;
   if (are_flat(all)) return hull;
-  CGAL::Surface_mesh<Point> mesh;
+  Mesh mesh;
   CGAL::convex_hull_3(all.begin(), all.end(), mesh);
-  for (const auto v : mesh.vertices()) {
-    const Point& p = mesh.point(v);
-    hull.vertices.push_back({p.x(), p.y(), p.z()});
+  auto faces = faces_of(mesh);
+
+  // Vertices and triangles in an order that goes with the coordinates.
+  std::vector<Point> vertices;
+  for (const auto& corners : faces) vertices.insert(vertices.end(), corners.begin(), corners.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const Point& p : vertices) hull.vertices.push_back({p.x(), p.y(), p.z()});
+  for (auto& corners : faces) {
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    const auto index = [&](std::size_t k) {
+      return static_cast<std::int32_t>(
+          std::lower_bound(vertices.begin(), vertices.end(), corners[k]) - vertices.begin());
+    };
+    for (std::size_t k = 1; k + 1 < corners.size(); ++k)
+      hull.triangles.push_back({index(0), index(k), index(k + 1)});
   }
-  for (const auto f : mesh.faces()) {
-    Surface::Triangle corners{};
-    std::size_t k = 0;
-    for (const auto v : mesh.vertices_around_face(mesh.halfedge(f)))
-      corners[k++] = static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
-    hull.triangles.push_back(corners);
-  }
+  std::sort(hull.triangles.begin(), hull.triangles.end());
   return hull;
 }
 

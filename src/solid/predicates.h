@@ -15,7 +15,8 @@
 namespace floe {
 
 /// Returns the convex hull of points: its triangles, counter-clockwise seen from outside, and its
-/// vertices, which are some of the points. Empty if all points lie in one plane.
+/// vertices, which are the corners among the points, sorted by coordinates. Empty if all points lie
+/// in one plane.
 Surface convex_hull(std::span<const Point3> points);
 
 /// Triangles and how many times each counts: 1, or -1 and 2 by rounding along edges.
