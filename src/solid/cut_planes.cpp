@@ -174,15 +174,26 @@ class Finder {
     for (const Point3& p : piece_.surface.vertices) {
       const double d = dot(plane.normal, p) - plane.offset;
       distance_.push_back(d);
-      if (d <= rounding_) below_.push_back(p);
-      if (d >= -rounding_) above_.push_back(p);
+      if (d < -rounding_) below_.push_back(p);
+      if (d > rounding_) above_.push_back(p);
       any_below |= d < -rounding_;
       any_above |= d > rounding_;
     }
     if (!any_below || !any_above) return {};
+    // A vertex in the plane belongs to the sides to which its edges lead.
+    std::vector<bool> in_below(distance_.size()), in_above(distance_.size());
     for (const auto& [a, b] : edges_) {
       const double da = item(distance_, a), db = item(distance_, b);
-      if (std::min(da, db) >= -rounding_ || std::max(da, db) <= rounding_) continue;
+      if (std::abs(da) <= rounding_ || std::abs(db) <= rounding_) {
+        const std::int32_t on = std::abs(da) <= rounding_ ? a : b;
+        const double other = on == a ? db : da;
+        if (std::abs(other) <= rounding_) continue;
+        auto& seen = other < 0 ? in_below : in_above;
+        if (!seen[static_cast<std::size_t>(on)]) (other < 0 ? below_ : above_).push_back(at(on));
+        seen[static_cast<std::size_t>(on)] = true;
+        continue;
+      }
+      if ((da < 0) == (db < 0)) continue;
       const Point3 p = at(a) + (da / (da - db)) * (at(b) - at(a));
       below_.push_back(p);
       above_.push_back(p);
