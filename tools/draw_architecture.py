@@ -31,6 +31,7 @@ ROLES = {
     "contact": ("bodies, obstacles, pairs", "that may touch; no mesh"),
     "active_contacts": ("contacts that touch: history,", "crushing, energies"),
     "lattice": ("bodies, beams, sets, state;", "partition, archive"),
+    "solid": ("triangle meshes, their", "convex parts"),
     "forces": ("interface of a force, tangent,", "gravity, loads, boundaries"),
     "beams": ("beam kernel, moduli,", "calibration"),
     "submersion": ("submerged parts,", "waves"),

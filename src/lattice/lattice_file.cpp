@@ -13,6 +13,7 @@
 #include "floe/base/rotation.h"
 #include "floe/lattice/lattice.h"
 #include "geometry/overlap.h"
+#include "lattice/shapes_file.h"
 #include "options/option_values.h"
 #include "options/spelling.h"
 
@@ -322,20 +323,36 @@ Lattice read_lattice(const std::string& file) {
   return lattice;
 }
 
-Shapes read_polyhedra(const std::string& file, const std::string& key) {
-  const Reader in(file, key);
-  if (!in.file().has("/shapes/face_of")) in.refuse("/shapes", "is not there");
-  const auto entries = static_cast<std::size_t>(in.file().shape("/shapes/face_of").first);
-  if (entries < 2) in.refuse("/shapes/face_of", "must have two entries or more");
-  Shapes shapes = read_shapes(in, entries - 1, Centroid::anywhere);
-  for (std::int32_t body = 0; body < shapes.bodies(); ++body) {
-    const double size = std::cbrt(volume_properties(shapes, body).volume);
-    constexpr double rounding = 1e-6;
-    if (concavity(shapes, body) > rounding * size)
-      in.refuse("/shapes", (entries > 2 ? "polyhedron " + std::to_string(body) : "the polyhedron") +
+namespace {
+
+void check_convex(const Reader& in, const Shapes& shapes) {
+  constexpr double rounding = 1e-6;
+  for (std::int32_t b = 0; b < shapes.bodies(); ++b) {
+    const double size = std::cbrt(volume_properties(shapes, b).volume);
+    if (concavity(shapes, b) > rounding * size)
+      in.refuse("/shapes", (shapes.bodies() > 1 ? "body " + std::to_string(b) : "the polyhedron") +
                                " is not convex, or a face of it is not plane");
   }
+}
+
+}  // namespace
+
+Shapes read_polyhedra(const std::string& file, const std::string& key) {
+  const Reader in(file, key);
+  if (!in.file().has("/shapes")) in.refuse("/shapes", "is not there");
+  const std::int64_t entries = in.file().shape("/shapes/face_of").first;
+  if (entries < 2) in.refuse("/shapes/face_of", "must have 2 entries or more");
+  Shapes shapes = read_shapes(in, static_cast<std::size_t>(entries - 1), Centroid::anywhere);
+  check_convex(in, shapes);
   return shapes;
+}
+
+void write_shapes(Hdf5File& file, const Shapes& shapes) {
+  file.write("/shapes/vertices", shapes.vertices);
+  file.write("/shapes/corners", shapes.corners);
+  file.write("/shapes/corner_of", shapes.corner_of);
+  file.write("/shapes/face_of", shapes.face_of);
+  file.write("/shapes/vertex_of", shapes.vertex_of);
 }
 
 void write_lattice(const Lattice& lattice, const std::string& path,
@@ -379,14 +396,7 @@ void write_lattice(const Lattice& lattice, const std::string& path,
   for (const auto& [name, set] : lattice.sets) {
     if (name != "all") file.write("/sets/" + name, set);
   }
-  if (!lattice.shapes.empty()) {
-    const Shapes& s = lattice.shapes;
-    file.write("/shapes/vertices", s.vertices);
-    file.write("/shapes/corners", s.corners);
-    file.write("/shapes/corner_of", s.corner_of);
-    file.write("/shapes/face_of", s.face_of);
-    file.write("/shapes/vertex_of", s.vertex_of);
-  }
+  if (!lattice.shapes.empty()) write_shapes(file, lattice.shapes);
   for (const NamedShape& named : obstacles) {
     const std::string group = "/obstacles/" + named.name;
     file.write(group + "/vertices", named.shape.vertices);

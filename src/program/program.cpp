@@ -13,6 +13,7 @@
 #include "manual.h"
 #include "options/option_values.h"
 #include "options/spelling.h"
+#include "parts_command.h"
 #include "scenes.h"
 #include "session/solver_options.h"
 #include "subcommands.h"
@@ -117,6 +118,7 @@ std::optional<int> answer(int argc, char** argv) {
     if (is_one_of(first, {"-h", "--help"})) return say(introduction(), done);
     if (first == "help") return help(argc > 2 ? argv[2] : "");
     if (first == "-help_man") return say(manual_page(), done);
+    if (first == "-make_parts") return make_parts(argc, argv);
     if (is_subcommand(first)) return run_subcommand(argv + 1);
   }
   const auto asks = [](std::string_view word) { return is_one_of(word, {"-h", "--help"}); };

@@ -32,6 +32,8 @@ constexpr std::array table{
     Subcommand{"make_floes", "makes fields of floes: concentration, sizes, shapes, leads"},
     Subcommand{"make_ridge", "makes ridges of blocks: sail, keel, frozen to a depth"},
     Subcommand{"make_line", "makes tables of mooring lines that hang and lie on the seabed"},
+    Subcommand{"make_hull", "makes the hull of a ship as a closed surface of triangles (STL)"},
+    Subcommand{"make_parts", "divides solids (STL, OBJ) into the convex parts that contact needs"},
     Subcommand{"strength", "the strength of whole sheets over that of their beams"},
     Subcommand{"ensemble", "runs a scene many times: seeds, and parameters that are varied"},
     Subcommand{"campaign", "all sheets and tests of the paper"},

@@ -366,7 +366,14 @@ constexpr std::array table{
     OptionSpec{"obstacle: NAME: facets", integer, "24", "", ">= 3, <= 1000",
                "cone, cylinder: sides of the polygon inside the circle"},
     OptionSpec{"obstacle: NAME: file", text, "(required)", "", "",
-               "file: HDF5 file whose /shapes hold convex polyhedra, the parts of the obstacle"},
+               "file: HDF5 file whose /shapes hold convex polyhedra, the parts of the obstacle; or STL or OBJ "
+               "file of closed surfaces, which are divided into convex parts"},
+    OptionSpec{"obstacle: NAME: unit", number, "1", "m", ">= 1e-6, <= 1e6",
+               "STL, OBJ: length of the file's unit"},
+    OptionSpec{"obstacle: NAME: tolerance", number, "0.01", "m", ">= 0, <= 1e6",
+               "STL, OBJ: by which convex parts may reach out of the solid; 0: rounding"},
+    OptionSpec{"obstacle: NAME: most_parts", integer, "1000", "", ">= 1, <= 100000",
+               "STL, OBJ: a solid of more convex parts is refused"},
     OptionSpec{"obstacle: NAME: mass", number, "(it is fixed, or moves as it is told)", "kg",
                ">= 1e-9, <= 1e15",
                "the obstacle is a structure, a body that contacts, its support and loads move; its "

@@ -1,20 +1,48 @@
 // Reading of contacts and obstacles.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "contact_laws/restitution.h"
 #include "floe/base/petsc.h"
+#include "floe/solid/solid_file.h"
 #include "reading.h"
+#include "solid/parts_file.h"
 
 namespace floe {
 namespace {
 
-using Inputs = std::vector<std::pair<std::string, std::string>>;
+/// Whether a file's name is that of a surface of triangles.
+bool is_surface(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".stl" || ending == ".obj";
+}
 
-Obstacle read_shape(Options& options, const std::string& name, Inputs& inputs) {
+/// Reads a solid from a file of triangles, in convex parts.
+Obstacle read_solid(Options& options, const std::string& name, const std::string& file,
+                    Scene& scene) {
+  const auto key = [](const char* last) { return "obstacle: NAME: " + std::string(last); };
+  const SolidFile solid{.path = file,
+                        .unit = options.number(key("unit"), name),
+                        .tolerance = options.number(key("tolerance"), name),
+                        .most_parts = static_cast<int>(options.integer(key("most_parts"), name))};
+  const ConvexParts parts = parts_of(solid, "obstacle: " + name + ": file", PETSC_COMM_WORLD);
+  const auto number = parts.shapes.bodies();
+  scene.remarks.push_back("obstacle: " + name + ": " + std::to_string(parts.triangles) +
+                          " triangles around " + text_of(parts.volume) + " m^3 are " +
+                          std::to_string(number) + " convex part" + (number == 1 ? "" : "s") +
+                          " of " + text_of(parts.parts_volume) + " m^3, at most " +
+                          text_of(parts.distance) + " m out of the solid");
+  return polyhedra(parts.shapes, options.vector(key("point"), name));
+}
+
+Obstacle read_shape(Options& options, const std::string& name, Scene& scene) {
   enum class Shape { halfspace, box, cone, cylinder, file };
   const auto of = [&](const char* key) {
     return options.vector("obstacle: NAME: " + std::string(key), name);
@@ -34,7 +62,8 @@ Obstacle read_shape(Options& options, const std::string& name, Inputs& inputs) {
   }
   if (shape == Shape::file) {
     const std::string file = options.text("obstacle: NAME: file", name);
-    inputs.emplace_back("obstacle: " + name + ": file", file);
+    scene.inputs.emplace_back("obstacle: " + name + ": file", file);
+    if (is_surface(file)) return read_solid(options, name, file, scene);
     return polyhedra(read_polyhedra(file, "obstacle: " + name + ": file"), of("point"));
   }
   const Vec3<double> base = of("base");
@@ -147,7 +176,7 @@ void read_contact(Options& options, Scene& scene) {
   std::vector<Joining> joining;
   std::map<std::string, std::vector<std::string>> names_of_parts;  // per obstacle
   for (const std::string& name : options.names("obstacle")) {
-    Obstacle obstacle = read_shape(options, name, scene.inputs);
+    Obstacle obstacle = read_shape(options, name, scene);
     obstacle.name = name;
     if (options.given("obstacle: NAME: part_of", name)) {
       refuse_structure(options, name);
