@@ -26,6 +26,7 @@ EXPECTED = {
     "endless_slope.yaml": structures.check_endless_slope,
     "monopile_lockin.yaml": structures.check_monopile_lockin,
     "moored_floater.yaml": structures.check_moored_floater,
+    "towed_floe.yaml": structures.check_towed_floe,
     "ice_cone.yaml": structures.check_ice_cone,
     "ice_cylinder.yaml": structures.check_ice_cylinder,
     "ice_vibration.yaml": structures.check_ice_vibration,

@@ -41,8 +41,8 @@ struct MotionTable {
 };
 
 /// Angular velocity in axes of the world of the rotation exp([t]x) whose vector t changes by
-/// `rate`: w = rate + (1 - cos a)/a^2 t x rate + (a - sin a)/a^3 t x (t x rate), a = |t| (Geradin &
-/// Cardona 2001, eq. 4.60). It is no larger than the rate.
+/// `rate`: w = rate + (1 - cos a)/a^2 t x rate + (a - sin a)/a^3 t x (t x rate), a = |t| (Solà et
+/// al. 2018, eq. 145). It is no larger than the rate.
 Vec3<double> spin_of(const Vec3<double>& turn, const Vec3<double>& rate);
 
 }  // namespace floe
