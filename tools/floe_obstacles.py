@@ -1,5 +1,6 @@
 """Obstacles of a scene as polyhedra, and where they are in time. SI units."""
 import numpy as np
+from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from floe_lattice import Shapes
 from floe_output import Lattice, matrices
@@ -82,6 +83,49 @@ def placement(way, turn, origin):
     return [(origin + way - turn @ origin).tolist(), np.degrees(angles).tolist()]
 
 
+def columns_of_table(path):
+    """The columns of a table in time by their names."""
+    with open(path) as file:
+        lines = [line.split("#")[0].replace(",", " ").replace(";", " ").split() for line in file]
+    names, *rows = [line for line in lines if line]
+    return dict(zip(names, np.array(rows, float).T))
+
+
+def of_column(time, values, smooth, periodic):
+    """The value of a column at any times, and its integral from time 0, as functions (docs/model.md,
+    "Tables in time")."""
+    first, last = time[0], time[-1]
+    span, rows = last - first, (time, values)
+    if periodic:  # slopes at the ends are those of the periods beside
+        rows = (np.concatenate([time[:-1] - span, time, time[1:] + span]),
+                np.concatenate([values[:-1], values, values[1:]]))
+    curve = PchipInterpolator(*rows) if smooth else make_interp_spline(*rows, k=1)
+    area = curve.antiderivative()
+
+    def value(at):
+        return curve(first + (at - first) % span if periodic else np.clip(at, first, last))
+
+    def sum_to(at):
+        laps = np.floor((at - first) / span) if periodic else 0
+        inside = np.clip(at - laps * span, first, last)
+        beyond = 0 if periodic else value(at) * (at - inside)
+        return area(inside) - area(first) + laps * (area(last) - area(first)) + beyond
+    return value, lambda at: sum_to(at) - sum_to(np.zeros(1))
+
+
+def motions_of_table(path, smooth, periodic, times):
+    """As motions(), of an obstacle with a table."""
+    columns, at = columns_of_table(path), np.asarray(times, float)
+    parts = np.zeros((6, len(at)))
+    for name, values in columns.items():
+        if name == "time":
+            continue
+        value, integral = of_column(columns["time"], values, smooth, periodic)
+        component = "xyz".index(name[1]) + 3 * (name[0] == "r")
+        parts[component] = integral(at) if name[0] == "v" else value(at)
+    return [(part[:3], about(part[3:])) for part in parts.T]
+
+
 def motions(number, origin, times):
     """Where an obstacle is at these times, as [(way, turn)]: a point p of it is at origin + way +
     turn (p - origin) (docs/model.md, "Contact"); nothing if it rests."""
@@ -130,7 +174,13 @@ def obstacles(options, low, high, times, shapes=None):
             points, faces = points + number("point", 0, 0, 0), faces_of(lattice.shapes)
         origin = number({"box": "centre", "cone": "base", "cylinder": "base"}.get(shape, "point"),
                         0, 0, 0)
-        ways = motions(number, origin, times)
+        if f"obstacle_{name}_table" in options and len(times) > 0:
+            ways = motions_of_table(
+                options[f"obstacle_{name}_table"],
+                options.get(f"obstacle_{name}_interpolation") == "smooth",
+                options.get(f"obstacle_{name}_periodic") == "true", times)
+        else:
+            ways = motions(number, origin, times)
         found.append({"name": name,
                       "points": np.asarray(points).tolist(),
                       "faces": [[int(v) for v in face] for face in faces],

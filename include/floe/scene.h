@@ -118,6 +118,12 @@ struct SceneLine {
   MooringLine line;
 };
 
+/// A table that a file of the scene gives.
+struct SceneTable {
+  std::string key, file;
+  std::vector<std::vector<double>> rows;
+};
+
 /// The input of a run.
 struct Scene {
   std::string path;  ///< the scene file
@@ -230,6 +236,8 @@ struct Scene {
   } partition;
   /// Key and path of each file that the scene names.
   std::vector<std::pair<std::string, std::string>> inputs;
+  /// Their numbers, as far as they are tables: a run that goes on must have the same.
+  std::vector<SceneTable> tables;
   bool check_only = false;
   std::string options_yaml;  ///< contents of options.yaml: every option as used, PETSc's as given
   std::vector<std::string> remarks;      ///< for the first lines of a run

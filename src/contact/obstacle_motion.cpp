@@ -12,6 +12,7 @@ bool is_zero(const Vec3<double>& v) { return v == Vec3<double>{}; }
 // Most obstacles rest or move steadily, so sines and cosines are computed only if needed.
 
 Vec3<double> ObstacleMotion::way(double time) const {
+  if (!table.empty()) return table.way(time);
   const Vec3<double> steady = ramp.integral(time) * velocity;
   if (is_zero(amplitude)) return steady;
   const double phase = 2 * std::numbers::pi * frequency * time;
@@ -19,6 +20,7 @@ Vec3<double> ObstacleMotion::way(double time) const {
 }
 
 Vec3<double> ObstacleMotion::rate(double time) const {
+  if (!table.empty()) return table.velocity(time);
   const Vec3<double> steady = ramp.value(time) * velocity;
   if (is_zero(amplitude)) return steady;
   const double circular = 2 * std::numbers::pi * frequency, phase = circular * time;
@@ -28,17 +30,25 @@ Vec3<double> ObstacleMotion::rate(double time) const {
 }
 
 Quat<double> ObstacleMotion::turn(double time) const {
+  if (!table.empty()) return exp_rotation(table.turn(time));
   if (is_zero(angular_velocity)) return {1, 0, 0, 0};
   return exp_rotation(ramp.integral(time) * angular_velocity);
 }
 
-Vec3<double> ObstacleMotion::spin(double time) const { return ramp.value(time) * angular_velocity; }
+Vec3<double> ObstacleMotion::spin(double time) const {
+  if (!table.empty()) return spin_of(table.turn(time), table.turning(time));
+  return ramp.value(time) * angular_velocity;
+}
 
 bool ObstacleMotion::at_rest() const {
-  return is_zero(velocity) && is_zero(angular_velocity) && is_zero(amplitude);
+  return table.empty() && is_zero(velocity) && is_zero(angular_velocity) && is_zero(amplitude);
 }
 
 double ObstacleMotion::largest_speed(double radius) const {
+  if (!table.empty()) {
+    const double turning = table.largest_turning();
+    return table.largest_speed() + (turning > 0 ? radius * turning : 0.0);
+  }
   // While the amplitude rises, sin(2 pi f t)/t <= 2 pi f: the rise at most doubles the speed.
   const double rising = ramp.seconds > 0 ? 2 : 1;
   return length(velocity) + rising * 2 * std::numbers::pi * frequency * length(amplitude) +

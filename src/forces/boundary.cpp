@@ -16,17 +16,29 @@ std::array<double, 6> motion(const Boundary& b, double moved, double moving) {
   return at;
 }
 
+/// Components that a table says.
+using Component = double (MotionTable::*)(std::size_t, double) const;
+std::array<double, 6> in_table(const Boundary& b, Component component, double time) {
+  std::array<double, 6> at{};
+  for (std::size_t k = 0; k < at.size(); ++k)
+    if (b.fixed[k]) at[k] = (b.table.*component)(k, time);
+  return at;
+}
+
 }  // namespace
 
 std::array<double, 6> Boundary::value(double time) const {
+  if (!table.empty()) return in_table(*this, &MotionTable::value, time);
   return motion(*this, ramp.value(time), ramp.integral(time));
 }
 
 std::array<double, 6> Boundary::rate(double time) const {
+  if (!table.empty()) return in_table(*this, &MotionTable::rate, time);
   return motion(*this, ramp.slope(time), ramp.value(time));
 }
 
 std::array<double, 6> Boundary::acceleration(double time) const {
+  if (!table.empty()) return in_table(*this, &MotionTable::acceleration, time);
   return motion(*this, 0, ramp.slope(time));
 }
 

@@ -98,7 +98,9 @@ class DeadLoad final : public Force<Space>,
       works.front() += 0.5 * (dot(f, now.at - before.at) + dot(m, turn));
     }
   }
-  double time_dependent_until() const override { return load_.ramp.seconds; }
+  std::vector<double> changes(double end) const override {
+    return load_.table.empty() ? std::vector{load_.ramp.seconds} : load_.table.times_until(end);
+  }
 
   /// Reports the potential of the dead force; applied moments have none.
   void report(const State<Space>& state, std::span<const double> works,
@@ -114,8 +116,12 @@ class DeadLoad final : public Force<Space>,
   }
 
  private:
-  Vec3<double> force(double time) const { return (share_ * load_.ramp.value(time)) * load_.force; }
+  Vec3<double> force(double time) const {
+    if (!load_.table.empty()) return share_ * load_.force_at(time);
+    return (share_ * load_.ramp.value(time)) * load_.force;
+  }
   Vec3<double> moment(double time) const {
+    if (!load_.table.empty()) return share_ * load_.moment_at(time);
     return (share_ * load_.ramp.value(time)) * load_.moment;
   }
   Vec3<double> turned_arm(const State<Space>& state, std::size_t body) const {

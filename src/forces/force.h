@@ -180,8 +180,9 @@ class Persists {
 /// Role of a force that depends on the time explicitly.
 class DependsOnTime {
  public:
-  /// Time after which the force no longer depends on the time (the end of its ramp) [s].
-  virtual double time_dependent_until() const = 0;
+  /// Times at which the way in which the force changes does so: the end of its ramp, the rows of
+  /// its table up to `end` [s]. Adaptive steps end there.
+  virtual std::vector<double> changes(double end) const = 0;
 
  protected:
   ~DependsOnTime() = default;

@@ -1,6 +1,7 @@
 #include "forces/mooring_line.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -67,6 +68,17 @@ void TensionCurve::lengthen(double by) {
   for (Row& row : rows_) row.length += by;
 }
 
+Point3 MooringLine::anchor_at(double time) const {
+  if (!moves()) return anchor;
+  if (!anchor_table.empty()) return anchor + anchor_table.way(time);
+  return anchor + anchor_ramp.integral(time) * anchor_velocity;
+}
+
+Point3 MooringLine::anchor_velocity_at(double time) const {
+  if (!anchor_table.empty()) return anchor_table.velocity(time);
+  return anchor_ramp.value(time) * anchor_velocity;
+}
+
 namespace {
 
 class MooringLines final : public Force<Spatial>,
@@ -75,6 +87,7 @@ class MooringLines final : public Force<Spatial>,
  public:
   MooringLines(const Part& part, std::vector<MooringLine> lines) {
     for (MooringLine& line : lines) {
+      moves_ = moves_ || line.moves();
       const std::int32_t local = part.local_index(line.body);
       const bool here = local >= 0 && local < part.owned;
       Held held{.line = std::move(line), .local = here ? local : -1};
@@ -94,27 +107,41 @@ class MooringLines final : public Force<Spatial>,
       if (held.local < 0) continue;
       const auto b = static_cast<std::size_t>(held.local);
       const Vec3<double> arm = rotate(rotation(state, b), held.arm);
-      const Vec3<double> way = held.line.anchor - (held.rest + displacement(state, b) + arm);
+      const Vec3<double> way =
+          held.line.anchor_at(state.time) - (held.rest + displacement(state, b) + arm);
       held.length = length(way);
       const Vec3<double> along = held.length > 0 ? (1 / held.length) * way : Vec3<double>{};
       const double elastic = held.line.curve.tension(held.length);
       const Vec3<double> v = velocity(state, b) + cross(angular_velocity(state, b), arm);
       // A line only pulls.
+      held.along = along;
+      const Vec3<double> against = held.line.moves() ? v - anchor_velocity(held, state) : v;
       const double viscous =
-          elastic > 0 ? std::max(-elastic, -held.line.damping * dot(v, along)) : 0;
+          elastic > 0 ? std::max(-elastic, -held.line.damping * dot(against, along)) : 0;
+      held.viscous = viscous;
       held.tension = elastic + viscous;
       held.damping = viscous * along;
       held.damping_moment = cross(arm, held.damping);
       const Vec3<double> force = held.tension * along;
       floe::add(wrenches, b, force, cross(arm, force));
     }
-    power_ = power_with(state);
+    powers_with(state, powers_);
   }
 
-  void powers(std::span<double> out) const override { out.front() = power_; }
+  /// Powers of the dashpots, and of what moves the anchors.
+  std::size_t works() const override { return 2; }
+  void powers(std::span<double> out) const override {
+    std::copy(powers_.begin(), powers_.end(), out.begin());
+  }
   LaterPowers later_powers() const override { return LaterPowers::at_once; }
   void powers_with(const State<Spatial>& state, std::span<double> out) const override {
-    out.front() = power_with(state);
+    out[0] = power_with(state), out[1] = 0;
+    for (const Held& held : all_) {
+      if (held.local < 0 || !held.line.moves()) continue;
+      const double away = dot(held.along, anchor_velocity(held, state));
+      out[0] -= held.viscous * away;
+      out[1] += held.tension * away;
+    }
   }
 
   double stiffness_bound(std::int32_t body) const override {
@@ -131,6 +158,7 @@ class MooringLines final : public Force<Spatial>,
       if (held.local >= 0) energy += held.line.curve.energy(held.length);
     columns.add("energy_lines", energy);
     columns.add("energy_damping", 0.0 - works.front());
+    if (moves_) columns.add("energy_external", works[1]);
     for (const Held& held : all_) {
       columns.add(held.line.name + "_tension", held.local >= 0 ? held.tension : 0.0);
       columns.add(held.line.name + "_length", held.local >= 0 ? held.length : 0.0);
@@ -143,8 +171,15 @@ class MooringLines final : public Force<Spatial>,
     std::int32_t local = -1;  ///< owned body; -1: on another rank
     Vec3<double> rest{}, arm{};
     double length = 0, tension = 0;            ///< in the last evaluation [m, N]
+    double viscous = 0;                        ///< part of the tension [N]
+    Vec3<double> along{};                      ///< from the fairlead to the anchor
     Vec3<double> damping{}, damping_moment{};  ///< of the dashpot, about the centroid
   };
+
+  /// Velocity of an anchor at the time of a state's velocities [m/s].
+  static Vec3<double> anchor_velocity(const Held& held, const State<Spatial>& state) {
+    return held.line.anchor_velocity_at(state.velocity_time);
+  }
 
   double power_with(const State<Spatial>& state) const {
     double power = 0;
@@ -158,7 +193,8 @@ class MooringLines final : public Force<Spatial>,
   }
 
   std::vector<Held> all_;
-  double power_ = 0;
+  bool moves_ = false;              ///< whether an anchor moves
+  std::array<double, 2> powers_{};  ///< of the last evaluation [W]
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ class ImplicitRun final : public DynamicRun<Space> {
   ImplicitRun(Model<Space>& the_model, const DynamicOptions& given, Observer<Space> observer)
       : Base("implicit", ts_liealpha, the_model, given, std::move(observer)),
         equations_(the_model, this->state()),
-        plan_(Base::options(), the_model.ramp_ends()) {
+        plan_(Base::options(), the_model.changes(Base::options().end)) {
     for (Handle<Vec>* v : {&x_, &v_, &x_before_, &v_before_, &expected_})
       *v = equations_.make_vector();
     equations_.begin(x_, v_);
@@ -208,7 +208,7 @@ void ImplicitRun<Space>::read_types() {
 /// step with the loads' full forces.
 template <class Space>
 void ImplicitRun<Space>::expect_motion() {
-  const std::vector<double> ramps = model().ramp_ends();
+  const std::vector<double> ramps = model().changes(options().end);
   if (ramps.empty()) return;
   const double span = std::min(ramps.back(), options().end);
   const Handle<Vec> zero = equations_.make_vector(), force = equations_.make_vector(),

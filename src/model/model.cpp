@@ -33,7 +33,15 @@ const std::vector<std::int32_t>& set_of(const Boundary& boundary, const Lattice&
 void require_same_motion(const Boundary& a, const Boundary& b, std::size_t component,
                          const Lattice& lattice) {
   const double later = std::max({1.0, a.ramp.seconds, b.ramp.seconds});
-  for (const double time : {0.0, 0.5 * b.ramp.seconds, later, 2 * later}) {
+  std::vector<double> times{0.0, 0.5 * b.ramp.seconds, later, 2 * later};
+  for (const Boundary* other : {&a, &b}) {
+    const std::vector<double> rows = other->table.table.times();
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      times.push_back(rows[k]);
+      if (k > 0) times.push_back(0.3 * rows[k - 1] + 0.7 * rows[k]);
+    }
+  }
+  for (const double time : times) {
     if (a.value(time)[component] == b.value(time)[component]) continue;
     std::vector<std::int32_t> common;
     const auto &one = set_of(a, lattice), &other = set_of(b, lattice);
@@ -174,12 +182,17 @@ auto Model<Space>::evaluate_apart(const State<Space>& state, Wrenches<Space>& wr
 }
 
 template <class Space>
-std::vector<double> Model<Space>::ramp_ends() const {
+std::vector<double> Model<Space>::changes(double end) const {
   std::vector<double> ends;
-  ends.reserve(boundaries_.size() + forces_.size());
-  for (const PlacedBoundary& placed : boundaries_) ends.push_back(placed.boundary.ramp.seconds);
+  const auto take = [&ends](const std::vector<double>& times) {
+    ends.insert(ends.end(), times.begin(), times.end());
+  };
+  for (const PlacedBoundary& placed : boundaries_) {
+    ends.push_back(placed.boundary.ramp.seconds);
+    take(placed.boundary.table.table.times_until(end));
+  }
   for (const auto& force : forces_) {
-    if (const auto* role = force->roles().time) ends.push_back(role->time_dependent_until());
+    if (const auto* role = force->roles().time) take(role->changes(end));
   }
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());

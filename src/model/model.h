@@ -129,9 +129,9 @@ class Model {
   Squares evaluate_apart(const State<Space>& state, Wrenches<Space>& wrenches,
                          Wrenches<Space>& share) const;
 
-  /// Times at which ramps of boundaries and loads end, ascending, without repetitions and without 0
-  /// [s].
-  std::vector<double> ramp_ends() const;
+  /// Times at which ramps of boundaries and loads end, and the rows of their tables up to `end`:
+  /// ascending, without repetitions and without 0 [s].
+  std::vector<double> changes(double end) const;
 
   /// Prescribed unknowns, n bits per local body; held() includes the pins too.
   std::span<const std::uint8_t> prescribed() const { return prescribed_; }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 
 #include "base/clock.h"
 #include "base/collectives.h"
@@ -51,6 +52,14 @@ class Hash {
  private:
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
+
+/// Name of the first table whose line differs.
+std::string first_difference(const std::string& here, const std::string& there) {
+  std::istringstream a(here), b(there);
+  for (std::string line, other; std::getline(a, line); other.clear())
+    if (!std::getline(b, other) || line != other) return line.substr(0, line.rfind(": "));
+  return "table";
+}
 
 /// Beginning of messages about a checkpoint.
 std::string named(const std::string& file) { return "checkpoint: restart: '" + file + "' "; }
@@ -102,6 +111,12 @@ std::string fingerprint(std::span<const Obstacle> obstacles) {
     }
   }
   return std::to_string(obstacles.size()) + ", " + hash.text();
+}
+
+std::string fingerprint(const std::vector<std::vector<double>>& rows) {
+  Hash hash;
+  hash.add(rows);
+  return std::to_string(rows.size()) + " rows, " + hash.text();
 }
 
 Checkpoints::Checkpoints(const CheckpointOptions& options, const Part& part)
@@ -206,7 +221,8 @@ void make_newest(const std::string& restart, const std::string& file, MPI_Comm c
 /// Writes or compares the entries with which every checkpoint begins. \throws OtherRun
 void Checkpoints::head(Archive& archive) {
   std::string version = FLOE_VERSION, built = built_for(part_.comm), lattice = options_.lattice,
-              obstacles = options_.obstacles, options = options_.options, scene = options_.scene;
+              obstacles = options_.obstacles, options = options_.options, scene = options_.scene,
+              tables = options_.tables;
   std::int64_t number = layout, ranks = size(part_.comm);
   archive.enter("");
   archive.common("layout", number);
@@ -215,6 +231,7 @@ void Checkpoints::head(Archive& archive) {
   archive.common("ranks", ranks, 1);
   archive.common("lattice", lattice);
   archive.common("obstacles", obstacles);
+  if (!tables.empty()) archive.common("tables", tables);
   archive.common("options", options);
   archive.common("scene", scene);
   if (number != layout) throw OtherRun(named(options_.restart) + "is of another version of floe");
@@ -225,6 +242,9 @@ void Checkpoints::head(Archive& archive) {
     throw OtherRun(named(options_.restart) +
                    "is of obstacles of other shapes: a file of theirs "
                    "has changed");
+  if (tables != options_.tables)
+    throw OtherRun(named(options_.restart) + "is of another " +
+                   first_difference(options_.tables, tables));
 }
 
 void Checkpoints::save(const std::function<void(Archive&)>& persist,

@@ -24,8 +24,10 @@ struct CheckpointOptions {
   std::string restart;    ///< checkpoint to go on from; empty: start at t = 0
   std::string lattice;    ///< fingerprint of the lattice
   std::string obstacles;  ///< fingerprint of the obstacles' shapes
-  std::string options;    ///< every option as used
-  std::string scene;      ///< path of the scene file
+  /// Fingerprints of the tables that files give, a line each: KEY: fingerprint; empty: none.
+  std::string tables;
+  std::string options;  ///< every option as used
+  std::string scene;    ///< path of the scene file
   /// Wall time of the process by rank 0's clock [s]; the run writes a checkpoint and stops before
   /// this time is over.
   double wall_time = std::numeric_limits<double>::infinity();
@@ -73,6 +75,8 @@ void make_newest(const std::string& restart, const std::string& file, MPI_Comm c
 std::string fingerprint(const Lattice& lattice);
 /// The same for the shapes of obstacles, which may come from files.
 std::string fingerprint(std::span<const Obstacle> obstacles);
+/// The same for the rows of a table.
+std::string fingerprint(const std::vector<std::vector<double>>& rows);
 
 /// Writes checkpoints and decides when. All calls are collective.
 class Checkpoints {

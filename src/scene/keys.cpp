@@ -236,7 +236,7 @@ constexpr std::array table{
                "of the scatter"},
 
     OptionSpec{"water: density", number, "1010", "kg/m^3", ">= 1e-3, <= 1e6",
-               "density of the water; its level is z = 0"},
+               "density of the water; its level is z = 0, or as level_table says"},
     OptionSpec{"water: drag_linear", number, "0", "N s/m^3", ">= 0, <= 1e12",
                "drag: c in the force -c A v on the submerged part, A the plan area of the body"},
     OptionSpec{"water: drag_coefficient", number, "0", "", ">= 0, <= 1e6",
@@ -253,6 +253,17 @@ constexpr std::array table{
                "one that a beam joins; required with lattice_file; 0: beams only"},
     OptionSpec{"water: current", numbers, "0 0 0", "m/s", ">= -1e6, <= 1e6",
                "drag: velocity of the water", 3},
+    OptionSpec{"water: current_table", text, "(current)", "", "",
+               "drag: file of time, x, y, z [s, m/s], in place of current"},
+    OptionSpec{"water: current_interpolation", choice, "linear", "", "linear | smooth",
+               "of that table"},
+    OptionSpec{"water: current_periodic", flag, "false", "", "", "that table repeats itself"},
+    OptionSpec{
+        "water: level_table", text, "(none: z = 0)", "", "",
+        "explicit: file of time, level [s, m]: the height of the water's surface over z = 0"},
+    OptionSpec{"water: level_interpolation", choice, "linear", "", "linear | smooth",
+               "of that table"},
+    OptionSpec{"water: level_periodic", flag, "false", "", "", "that table repeats itself"},
     OptionSpec{"water: pace", integer, "(10 with fracture or contact, else 1)", "", ">= 1, <= 100",
                "leapfrog: the water on a body is computed in every pace-th step, and earlier once "
                "the body has moved by 1 % of its thickness; in between it follows to first order"},
@@ -347,6 +358,13 @@ constexpr std::array table{
                "of that oscillation; neither without the other"},
     OptionSpec{"obstacle: NAME: ramp", number, "0", "s", ">= 0, <= 1e12",
                "its velocity, angular velocity and amplitude rise linearly over this time"},
+    OptionSpec{
+        "obstacle: NAME: table", text, "(velocity)", "", "",
+        "file of time and its displacement ux, uy, uz [m], or velocity vx, vy, vz [m/s], and "
+        "rotation vector rx, ry, rz [rad], in place of the keys above"},
+    OptionSpec{"obstacle: NAME: interpolation", choice, "linear", "", "linear | smooth",
+               "of its table"},
+    OptionSpec{"obstacle: NAME: periodic", flag, "false", "", "", "its table repeats itself"},
     OptionSpec{"obstacle: NAME: point", numbers, "0 0 0", "m", ">= -1e9, <= 1e9",
                "halfspace: a point of its plane; file: where the file's origin is", 3},
     OptionSpec{"obstacle: NAME: normal", numbers, "0 0 1", "", ">= -1e9, <= 1e9",
@@ -404,8 +422,20 @@ constexpr std::array table{
                "the obstacle with a mass that it holds"},
     OptionSpec{"line: NAME: fairlead", numbers, "(required)", "m", ">= -1e9, <= 1e9",
                "its end on the structure, at rest", 3},
-    OptionSpec{"line: NAME: anchor", numbers, "(required)", "m", ">= -1e9, <= 1e9", "its fixed end",
+    OptionSpec{"line: NAME: anchor", numbers, "(required)", "m", ">= -1e9, <= 1e9",
+               "its other end, "
+               "fixed without anchor_velocity and anchor_table",
                3},
+    OptionSpec{"line: NAME: anchor_velocity", numbers, "0 0 0", "m/s", ">= -1e6, <= 1e6",
+               "of the anchor, as of a tug", 3},
+    OptionSpec{"line: NAME: anchor_ramp", number, "0", "s", ">= 0, <= 1e12",
+               "that velocity rises linearly over this time"},
+    OptionSpec{"line: NAME: anchor_table", text, "(anchor_velocity)", "", "",
+               "file of time and the anchor's displacement ux, uy, uz [m], or velocity vx, vy, vz "
+               "[m/s], in place of them"},
+    OptionSpec{"line: NAME: anchor_interpolation", choice, "linear", "", "linear | smooth",
+               "of that table"},
+    OptionSpec{"line: NAME: anchor_periodic", flag, "false", "", "", "that table repeats itself"},
     OptionSpec{"line: NAME: table", text, "(stiffness)", "", "",
                "file of length, tension [m, N]: lengths rise, tensions do not fall; straight in "
                "between and beyond, never below 0"},
@@ -429,6 +459,13 @@ constexpr std::array table{
                "of the fixed components; each body turns about its own centroid", 3},
     OptionSpec{"boundary: NAME: ramp", number, "0", "s", ">= 0, <= 1e12",
                "the motion rises linearly over this time"},
+    OptionSpec{"boundary: NAME: table", text, "(velocity)", "", "",
+               "file of time and the displacement ux, uy, uz [m] or velocity vx, vy, vz [m/s], the "
+               "rotation rx, ry, rz [rad] or angular velocity wx, wy, wz [rad/s], in place of the "
+               "keys above; fixed components without a column stay"},
+    OptionSpec{"boundary: NAME: interpolation", choice, "linear", "", "linear | smooth",
+               "of its table"},
+    OptionSpec{"boundary: NAME: periodic", flag, "false", "", "", "its table repeats itself"},
 
     OptionSpec{"load: names", names, "(none)", "", "",
                "dead loads in world axes: one section each"},
@@ -442,6 +479,12 @@ constexpr std::array table{
                "the total moment", 3},
     OptionSpec{"load: NAME: ramp", number, "0", "s", ">= 0, <= 1e12",
                "the load rises linearly over this time"},
+    OptionSpec{"load: NAME: table", text, "(force, moment)", "", "",
+               "file of time, fx, fy, fz [N], mx, my, mz [N m], in place of them"},
+    OptionSpec{"load: NAME: interpolation", choice, "linear", "", "linear | smooth",
+               "of its table: straight between rows, or a monotone cubic"},
+    OptionSpec{"load: NAME: periodic", flag, "false", "", "",
+               "its table repeats itself; else the first and the last row go on for ever"},
 
     OptionSpec{"initial: names", names, "(none)", "", "",
                "dynamics: initial motions, one section each; they override the lattice file's"},

@@ -75,11 +75,21 @@ Obstacle read_shape(Options& options, const std::string& name, Scene& scene) {
   return cone(base, radius, top, height, static_cast<int>(facets));
 }
 
-ObstacleMotion read_motion(Options& options, const std::string& name, bool half_space) {
+ObstacleMotion read_motion(Options& options, Scene& scene, const std::string& name,
+                           bool half_space) {
   const auto given = [&](const char* key) {
     return options.given("obstacle: NAME: " + std::string(key), name);
   };
   ObstacleMotion motion;
+  motion.table = read_motion_table(
+      options, scene, "obstacle: NAME: table",
+      {"obstacle: NAME: velocity", "obstacle: NAME: angular_velocity", "obstacle: NAME: amplitude",
+       "obstacle: NAME: frequency", "obstacle: NAME: ramp"},
+      half_space ? TableRotations::none : TableRotations::vector, name);
+  if (!motion.table.empty()) {
+    require_start(motion.table, "obstacle: " + name + ": table");
+    return motion;
+  }
   motion.velocity = options.vector("obstacle: NAME: velocity", name);
   if (half_space)
     options.refuse_one("obstacle: NAME: angular_velocity", name,
@@ -195,7 +205,7 @@ void read_contact(Options& options, Scene& scene) {
       scene.structures.back().obstacle = scene.obstacles.size();
     } else {
       refuse_structure(options, name);
-      obstacle.motion = read_motion(options, name, obstacle.is_half_space());
+      obstacle.motion = read_motion(options, scene, name, obstacle.is_half_space());
     }
     scene.obstacles.push_back(std::move(obstacle));
   }

@@ -67,7 +67,8 @@ void read_forces(Options& options, Scene& scene) {
   if (!scene.forces.buoyancy && !scene.forces.drag) options.refuse("waves", without("buoyancy"));
   if (!scene.forces.drag) {
     for (const auto* key :
-         {"water: drag_linear", "water: drag_coefficient", "water: current", "water: drag",
+         {"water: drag_linear", "water: drag_coefficient", "water: current", "water: current_table",
+          "water: current_interpolation", "water: current_periodic", "water: drag",
           "water: drag_form", "water: drag_skin", "water: shelter"})
       options.refuse(key, without("drag"));
   }
@@ -118,7 +119,14 @@ void read_drag(Options& options, Scene& scene) {
   enum class Law { plan, faces };
   drag.faces = options.choice<Law>("water: drag") == Law::faces;
   drag.linear = options.number("water: drag_linear");
-  drag.current = options.vector("water: current");
+  constexpr double fastest = 1e6;
+  drag.current_table =
+      read_time_table(options, scene,
+                      {"water: current_table",
+                       {"water: current"},
+                       {{"x", "m/s", fastest}, {"y", "m/s", fastest}, {"z", "m/s", fastest}}})
+          .table;
+  if (drag.current_table.empty()) drag.current = options.vector("water: current");
   if (!drag.faces) {
     drag.coefficient = options.number("water: drag_coefficient");
     for (const auto* key : {"water: drag_form", "water: drag_skin", "water: shelter"})
@@ -168,6 +176,16 @@ void read_added_mass(Options& options, Scene& scene) {
     throw InputError(by + ": " +
                      "mass that differs between directions is stepped by leapfrog only "
                      "(integrator: explicit without -ts_type); give added_mass a number");
+}
+
+/// Reads the level of the water where it changes.
+void read_level(Options& options, Scene& scene) {
+  constexpr const char* key = "water: level_table";
+  if (scene.integrator != Integrator::explicit_ && options.given(key))
+    throw InputError("water: level_table: needs 'integrator: explicit'");
+  constexpr double farthest = 1e9;
+  scene.drag.level_table =
+      read_time_table(options, scene, {key, {}, {{"level", "m", farthest}}}).table;
 }
 
 /// Bodies that may come loose are cut by the surface in any way, which takes time; those of an
@@ -228,6 +246,7 @@ void read_water(Options& options, Scene& scene) {
     for (const auto* key : {"water: added_mass", "water: added_mass_axes"})
       options.refuse(key, "would have no effect: 'integrator' is quasistatic");
   }
+  read_level(options, scene);
   if (scene.forces.drag) {
     read_drag(options, scene);
     if (scene.drag.linear == 0 && scene.drag.coefficient == 0 && !scene.drag.faces)

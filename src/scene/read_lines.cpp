@@ -17,7 +17,8 @@ TensionCurve read_curve(Options& options, const std::string& name, Scene& scene)
   const std::string file = options.text(key("table"), name), label = "line: " + name + ": table";
   scene.inputs.emplace_back(label, file);
   std::vector<TensionCurve::Row> rows;
-  for (const auto& row : read_table(file, label, {"length", "tension"}, 2)) {
+  std::vector<std::vector<double>> table = read_table(file, label, {"length", "tension"}, 2);
+  for (const auto& row : table) {
     const auto refuse = [&](const std::string& why) {
       throw InputError(label + ": '" + file + "': row " + std::to_string(rows.size() + 1) + ": " +
                        why);
@@ -31,7 +32,20 @@ TensionCurve read_curve(Options& options, const std::string& name, Scene& scene)
              text_of(rows.back().tension) + " [N]");
     rows.push_back({row[0], row[1]});
   }
+  scene.tables.push_back({label, file, std::move(table)});
   return TensionCurve(std::move(rows));
+}
+
+/// Reads how the anchor moves.
+void read_anchor(Options& options, const std::string& name, Scene& scene, MooringLine& line) {
+  line.anchor_table = read_motion_table(options, scene, key("anchor_table"),
+                                        {"line: NAME: anchor_velocity", "line: NAME: anchor_ramp"},
+                                        TableRotations::none, name);
+  if (!line.anchor_table.empty())
+    return require_start(line.anchor_table, "line: " + name + ": anchor_table");
+  line.anchor_velocity = options.vector(key("anchor_velocity"), name);
+  // Without a motion the key is not read, and so it is refused.
+  if (line.moves()) line.anchor_ramp.seconds = options.number(key("anchor_ramp"), name);
 }
 
 /// A straight line through a length and its tension.
@@ -75,6 +89,7 @@ void read_line(Options& options, const std::string& name, Scene& scene) {
                                options.number(key("stiffness"), name));
   }
   line.line.damping = options.number(key("damping"), name);
+  read_anchor(options, name, scene, line.line);
   scene.lines.push_back(std::move(line));
 }
 

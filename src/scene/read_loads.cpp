@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <utility>
 
 #include "floe/base/item.h"
 #include "reading.h"
@@ -22,7 +23,7 @@ void check_fixed(Options& options, const Boundary& boundary, const std::string& 
   }
 }
 
-Boundary read_boundary(Options& options, const std::string& name) {
+Boundary read_boundary(Options& options, Scene& scene, const std::string& name) {
   Boundary boundary;
   boundary.name = name;
   boundary.set = options.text("boundary: NAME: set", name);
@@ -33,6 +34,23 @@ Boundary read_boundary(Options& options, const std::string& name) {
   }
   if (std::none_of(boundary.fixed.begin(), boundary.fixed.end(), [](bool fixed) { return fixed; }))
     throw InputError("boundary: " + name + ": fix: is empty; nothing would be prescribed");
+  MotionTable table =
+      read_motion_table(options, scene, "boundary: NAME: table",
+                        {"boundary: NAME: velocity", "boundary: NAME: displacement",
+                         "boundary: NAME: angular_velocity", "boundary: NAME: ramp"},
+                        TableRotations::components, name);
+  if (!table.empty()) {
+    for (std::size_t k = 0; k < boundary.fixed.size(); ++k) {
+      if (table.has(k) && !boundary.fixed[k])
+        throw InputError("boundary: " + name + ": table: has a column of '" +
+                         std::string(component_names[k]) + "', which is not in 'boundary: " + name +
+                         ": fix'");
+    }
+    if (scene.integrator != Integrator::quasistatic)
+      require_start(table, "boundary: " + name + ": table");
+    boundary.table = std::move(table);
+    return boundary;
+  }
   constexpr std::string_view displacement = "boundary: NAME: displacement",
                              velocity = "boundary: NAME: velocity";
   const std::string_view given =
@@ -60,7 +78,7 @@ void require_motion(const Scene& scene, const Boundary& boundary) {
                    ": displacement needs ramp > 0 in a run with time: at once would be a jump");
 }
 
-Load read_load(Options& options, const std::string& name) {
+Load read_load(Options& options, Scene& scene, const std::string& name) {
   Load load;
   load.name = name;
   constexpr std::string_view set = "load: NAME: set", point = "load: NAME: point";
@@ -69,6 +87,21 @@ Load read_load(Options& options, const std::string& name) {
   if (given.empty()) throw InputError(either + "neither is there");
   if (given == set) load.set = options.text(set, name);
   if (given == point) load.point = options.numbers<2>(point, name);
+  constexpr double most_force = 1e18, most_moment = 1e21;
+  ReadTable read = read_time_table(options, scene,
+                                   {"load: NAME: table",
+                                    {"load: NAME: force", "load: NAME: moment", "load: NAME: ramp"},
+                                    {{"fx", "N", most_force},
+                                     {"fy", "N", most_force},
+                                     {"fz", "N", most_force},
+                                     {"mx", "N m", most_moment},
+                                     {"my", "N m", most_moment},
+                                     {"mz", "N m", most_moment}}},
+                                   name);
+  if (!read.table.empty()) {
+    load.table = std::move(read.table);
+    return load;
+  }
   load.force = options.vector("load: NAME: force", name);
   load.moment = options.vector("load: NAME: moment", name);
   load.ramp.seconds = options.number("load: NAME: ramp", name);
@@ -82,14 +115,14 @@ Load read_load(Options& options, const std::string& name) {
 
 void read_boundaries(Options& options, Scene& scene) {
   for (const std::string& name : options.names("boundary")) {
-    scene.boundaries.push_back(read_boundary(options, name));
+    scene.boundaries.push_back(read_boundary(options, scene, name));
     require_motion(scene, scene.boundaries.back());
   }
 }
 
 void read_loads(Options& options, Scene& scene) {
   for (const std::string& name : options.names("load"))
-    scene.loads.push_back(read_load(options, name));
+    scene.loads.push_back(read_load(options, scene, name));
 }
 
 }  // namespace floe

@@ -25,6 +25,10 @@ bool make_endless(Ramp& ramp, double end, const std::string& label) {
 /// Makes loads and motions linear in the load factor, time over time: end.
 void make_linear(Scene& scene) {
   bool any = false;
+  for (const SceneTable& table : scene.tables)
+    throw InputError(table.key +
+                     ": does not go with 'static: path' arc, which scales loads and "
+                     "motions by a factor");
   for (Load& load : scene.loads)
     any = make_endless(load.ramp, scene.time.end, "load: " + load.name + ": ramp") || any;
   constexpr Point3 nothing{};

@@ -97,7 +97,8 @@ Structure read_structure(Options& options, const Obstacle& obstacle) {
     throw InputError("obstacle: " + name +
                      ": mass: a halfspace is no body; box, cone, cylinder "
                      "and file can be");
-  for (const auto* last : {"velocity", "angular_velocity", "amplitude", "frequency", "ramp"})
+  for (const auto* last : {"velocity", "angular_velocity", "amplitude", "frequency", "ramp",
+                           "table", "interpolation", "periodic"})
     options.refuse_one(key(last), name,
                        "does not go with 'mass': forces move it; a 'boundary' or 'initial' with "
                        "'set: " +

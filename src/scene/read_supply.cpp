@@ -82,6 +82,9 @@ void check_boundaries(const Scene& scene) {
       throw InputError("boundary: " + b.name +
                        ": fix: x and y of 'set: left' do not go with 'supply: edge' absorbing, "
                        "which moves it");
+    if (!b.table.empty())
+      throw InputError("boundary: " + b.name +
+                       ": table does not go with 'supply': strips join at a steady velocity");
     if (b.angular_velocity != Point3{})
       throw InputError("boundary: " + b.name +
                        ": angular_velocity does not go with 'supply': strips join without turning");

@@ -6,9 +6,11 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "floe/options/options.h"
 #include "floe/scene.h"
+#include "scene/table_file.h"
 
 namespace floe {
 
@@ -59,6 +61,30 @@ void read_loads(Options& options, Scene& scene);
 void read_path_choice(Options& options, Scene& scene);
 /// Reads how they follow it, after loads, boundaries and time.
 void read_path_control(Options& options, Scene& scene);
+
+/// What a table in time may have, and what its columns are called.
+struct TableKeys {
+  std::string key;  ///< of the file: "load: NAME: table", "water: level_table"
+  std::vector<std::string_view> replaces;  ///< keys that do not go with it
+  std::vector<TableColumn> columns;
+};
+/// A table in time as read: all allowed columns, and which of them the file has; the others are 0.
+struct ReadTable {
+  TimeTable table;
+  std::vector<bool> has;
+};
+/// Reads a table in time, with its keys `interpolation` and `periodic`, if it is given; else the
+/// table is empty. Collective. \throws InputError
+ReadTable read_time_table(Options& options, Scene& scene, const TableKeys& keys,
+                          const std::string& name = {});
+/// The same for a motion.
+/// \param rotations  columns that say the rotation: none, or rx ry rz, or their rates too
+enum class TableRotations { none, vector, components };
+MotionTable read_motion_table(Options& options, Scene& scene, const std::string& key,
+                              const std::vector<std::string_view>& replaces,
+                              TableRotations rotations, const std::string& name);
+/// Refuses a motion that is displaced at time 0, where bodies are where the scene places them.
+void require_start(const MotionTable& motion, const std::string& label);
 
 /// Reads an obstacle that has a mass.
 Structure read_structure(Options& options, const Obstacle& obstacle);

@@ -183,6 +183,19 @@ void check_floats(const Scene& scene) {
                      density_question(scene));
 }
 
+/// Checks that nothing takes z = 0 for the water's level where that changes.
+void check_level(const Scene& scene) {
+  if (scene.drag.level_table.empty()) return;
+  const auto refuse = [](const std::string& key) {
+    throw InputError(key +
+                     ": friction_wet: does not go with 'water: level_table', it is for "
+                     "contacts below z = 0");
+  };
+  if (scene.contact.friction_wet) refuse("contact");
+  for (const Obstacle& o : scene.obstacles)
+    if (o.friction_wet) refuse("obstacle: " + o.name);
+}
+
 /// Checks that nothing asks for one sheet where there are floes, or for the one thickness of a
 /// sheet whose thickness varies.
 void check_one_sheet(const Scene& scene) {
@@ -233,6 +246,7 @@ Scene read_all(Options& options, const std::string& path) {
   if (scene.forces.buoyancy || scene.forces.drag) read_water(options, scene);
   if (scene.forces.contact) read_contact(options, scene);
   check_floats(scene);
+  check_level(scene);
   read_boundaries(options, scene);
   read_loads(options, scene);
   read_path_choice(options, scene);

@@ -25,14 +25,21 @@ std::string scene_needs_space(const Scene& scene) {
     return "water: added mass by direction moves bodies in space";
   if (scene.drag.faces) return "water: drag: faces acts in space";
   if (scene.drag.current[2] != 0) return "water: current has a z component";
+  if (!scene.drag.current_table.empty() && scene.drag.current_table.largest(2) > 0)
+    return "water: current_table has a z component";
+  if (!scene.drag.level_table.empty()) return "water: level_table moves the water along z";
   for (const Load& load : scene.loads) {
-    if (any_out_of_plane(load.force, load.moment))
+    const auto in_table = [&](std::size_t k) {
+      return !load.table.empty() && load.table.largest(k) > 0;
+    };
+    if (any_out_of_plane(load.force, load.moment) || in_table(2) || in_table(3) || in_table(4))
       return "load: " + load.name + " acts out of the x-y plane";
   }
   for (const Boundary& boundary : scene.boundaries) {
     const Point3 still{};
     if (any_out_of_plane(boundary.displacement.value_or(still), boundary.angular_velocity) ||
-        any_out_of_plane(boundary.velocity.value_or(still), still))
+        any_out_of_plane(boundary.velocity.value_or(still), still) || boundary.table.has(2) ||
+        boundary.table.has(3) || boundary.table.has(4))
       return "boundary: " + boundary.name + " moves out of the x-y plane";
   }
   return {};

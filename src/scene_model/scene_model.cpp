@@ -112,11 +112,12 @@ void add_water(const Scene& scene, Model<Spatial>& model) {
   // At a pace drag on faces asks for the volumes that it has found itself.
   const bool shared = scene.forces.drag && (scene.forces.buoyancy || scene.water_pace > 1);
   if (scene.waves.any()) {
-    const Waves waves(part, scene.gravity, scene.waves, scene.drag.current);
+    const Waves waves(part, scene.gravity, scene.waves, scene.drag.water());
     add_by(std::make_shared<SubmersionInWaves>(part, waves, scene.water_pace, shared), scene,
            model);
   } else {
-    add_by(std::make_shared<Submersion>(part, scene.water_pace, shared), scene, model);
+    add_by(std::make_shared<Submersion>(part, scene.water_pace, shared, scene.drag.level_table),
+           scene, model);
   }
 }
 

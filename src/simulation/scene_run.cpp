@@ -1,12 +1,24 @@
 #include "simulation/scene_run.h"
 
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "explicit/explicit.h"
 #include "implicit/implicit.h"
 #include "simulation/path_options.h"
 
 namespace floe {
+
+namespace {
+
+std::string fingerprints(const std::vector<SceneTable>& tables) {
+  std::string lines;
+  for (const SceneTable& table : tables) lines += table.key + ": " + fingerprint(table.rows) + "\n";
+  return lines;
+}
+
+}  // namespace
 
 std::string checkpoint_file(const Scene& scene) { return scene.output.dir + "/checkpoint.h5"; }
 
@@ -41,6 +53,7 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
                         .restart = scene.checkpoint.restart,
                         .lattice = hooks.lattice_id,
                         .obstacles = fingerprint(scene.obstacles),
+                        .tables = fingerprints(scene.tables),
                         .options = scene.options_yaml,
                         .scene = scene.path,
                         .wall_time = scene.checkpoint.wall_time,

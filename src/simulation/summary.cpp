@@ -100,7 +100,7 @@ void add_bending(const Scene& scene, const Sample& first, const Sample& last, Js
   const double k = scene.water_density * scene.gravity, h = scene.thickness, nu = scene.ice.poisson;
   const double plate = scene.ice.young * h * h * h / (12 * (1 - nu * nu));
   const double characteristic = std::pow(plate / k, 0.25);
-  const double force = load.ramp.value(last.time) * load.force[2];
+  const double force = load.force_at(last.time).z;
   const double wyman = -force / (8 * k * characteristic * characteristic);
   const double deflection = first.loads.at(load.name)[2] - last.loads.at(load.name)[2];
   json["deflection_max"] = deflection;
@@ -300,8 +300,11 @@ std::string tension_problem(const Scene& scene) {
 /// Returns why the scene is no bending test; empty if it is one.
 std::string bending_problem(const Scene& scene) {
   const Load* load = point_load(scene);
-  if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr || load->force[2] == 0)
+  if (!scene.has_sheet || !scene.forces.buoyancy || load == nullptr ||
+      (load->table.empty() && load->force[2] == 0))
     return "report: bending needs a floating sheet (buoyancy) and a vertical load at a point";
+  if (!load->table.empty())
+    return "report: bending compares a load that rises once; load: " + load->name + " has a table";
   if (scene.path_control.arc)
     return "report: bending compares the full load with theory; 'static: path' is arc";
   if (scene.loads.size() > 1)

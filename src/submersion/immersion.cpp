@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "floe/base/item.h"
 
@@ -19,7 +20,8 @@ void put(const Submerged& s, std::size_t lane, Immersion::Lane& below) {
 
 }  // namespace
 
-Immersion::Immersion(const Part& part, Wet wet) : part_(part), wet_(wet) {
+Immersion::Immersion(const Part& part, Wet wet, TimeTable level)
+    : part_(part), wet_(wet), level_(std::move(level)) {
   const auto owned = static_cast<std::size_t>(part.owned);
   blocks_.resize((owned + lanes - 1) / lanes);
   for (std::size_t b = 0; b < owned; ++b) {
@@ -110,7 +112,7 @@ Submerged Immersion::below(const State<Spatial>& state, std::int32_t body,
                            const SurfacePlane& plane) const {
   const auto b = static_cast<std::size_t>(body);
   return placed(body, product(plane.to_level(), of_unit_length(rotation(state, b))),
-                (height(state, body) - plane.level) / plane.steepness());
+                (centroid(state, body).z - plane.level) / plane.steepness());
 }
 
 /// The part of a body below z = 0.

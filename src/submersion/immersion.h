@@ -1,5 +1,6 @@
 /// \file
-/// The submerged part of each body, z < 0: exact at any place and tilt (model.md, "Water").
+/// The submerged part of each body, below the level of the water: exact at any place and tilt
+/// (model.md, "Water").
 ///
 /// Notation: (x, y, c) are the principal axes of a body with the origin at its centroid. R takes
 /// them to the world, and (s_x, s_y) = (R_31, R_32)/R_33 is the slope of the plan. The plan of a
@@ -121,12 +122,17 @@ class Immersion {
   /// volumes differ by rounding.
   enum class Wet { by_sphere, by_points };
   /// \param part  with shapes; must outlive this object
-  explicit Immersion(const Part& part, Wet wet = Wet::by_sphere);
+  /// \param level  of the water, one column; empty: z = 0
+  explicit Immersion(const Part& part, Wet wet = Wet::by_sphere, TimeTable level = {});
+
+  bool has_level() const { return !level_.empty(); }
+  /// Level of the water [m].
+  double level(double time) const { return level_.empty() ? 0.0 : level_.value(0, time); }
 
   /// Submerged part of an owned body; moments are about its centroid, in world axes.
   Submerged of(const State<Spatial>& state, std::int32_t body) const;
-  /// The part below another plane than z = 0, exact as well, in the axes that
-  /// SurfacePlane::to_level() takes the world's axes to.
+  /// The part below another plane, exact as well, in the axes that SurfacePlane::to_level() takes
+  /// the world's axes to.
   Submerged below(const State<Spatial>& state, std::int32_t body, const SurfacePlane& plane) const;
   /// The same by clipping the polyhedron, for any body.
   Submerged by_clipping(const State<Spatial>& state, std::int32_t body) const;
@@ -138,7 +144,7 @@ class Immersion {
   };
   /// Submerged parts of the bodies of one block. Lane k has body block * lanes + k; lanes beyond
   /// the last owned body repeat that body.
-  /// \param uz  displacements of the bodies along z [m]
+  /// \param uz  displacements of the bodies along z, over the water [m]
   /// \param q   rotations of the bodies from rest
   Lane of_block(const State<Spatial>& state, std::size_t block, const Lanes& uz,
                 const Quat<Lanes>& q) const {
@@ -180,7 +186,7 @@ class Immersion {
   /// Height of an owned body's centroid over the water [m].
   double height(const State<Spatial>& state, std::int32_t body) const {
     const auto b = static_cast<std::size_t>(body);
-    return part_.bodies.position[b][2] + state.record(b)[2];
+    return part_.bodies.position[b][2] + state.record(b)[2] - level(state.time);
   }
   /// Centroid of an owned body [m].
   Vec3<double> centroid(const State<Spatial>& state, std::int32_t body) const {
@@ -239,13 +245,15 @@ class Immersion {
 
   const Part& part_;
   Wet wet_;
+  TimeTable level_;
   std::vector<Block> blocks_;
   std::vector<VolumeProperties> whole_;
   std::vector<double> extent_;          ///< distance of the farthest vertex from the centroid [m]
   mutable std::vector<Point3> placed_;  ///< work space of the clipping
 };
 
-/// Displacements u, velocities v and rotations q of the bodies of a block, one body per lane.
+/// Displacements u, velocities v and rotations q of the bodies of a block, one body per lane; u_z
+/// is over the level of the water.
 struct BlockMotion {
   Vec3<Lanes> u, v;
   Quat<Lanes> q;
@@ -260,7 +268,8 @@ BlockMotion block_motion(const Immersion& immersion, const State<Spatial>& state
         [&](std::size_t lane) { return state.record(immersion.body_of(block, lane)) + offset; });
   };
   const auto a = four(0), b = four(4);
-  BlockMotion m{{a[0], a[1], a[2]}, {}, {a[3], b[0], b[1], b[2]}};
+  const Lanes z = a[2] - immersion.level(state.time);
+  BlockMotion m{{a[0], a[1], z}, {}, {a[3], b[0], b[1], b[2]}};
   if constexpr (with_velocity) {
     const auto c = four(8);
     m.v = {b[3], c[0], c[1]};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include "floe/base/petsc.h"
 
@@ -20,9 +21,10 @@ const Part& require_shapes(const Part& part, std::string_view force) {
   return part;
 }
 
-Submersion::Submersion(const Part& part, int pace, bool shared)
+Submersion::Submersion(const Part& part, int pace, bool shared, TimeTable level)
     : part_(part),
-      immersion_(part, pace > 1 ? Immersion::Wet::by_points : Immersion::Wet::by_sphere),
+      immersion_(part, pace > 1 ? Immersion::Wet::by_points : Immersion::Wet::by_sphere,
+                 std::move(level)),
       pace_(pace),
       shared_(shared) {
   if (shared) volumes_.resize(immersion_.blocks());

@@ -33,7 +33,8 @@ class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>,
   /// \param part    with shapes; must outlive this object
   /// \param pace    number of steps
   /// \param shared  whether several forces ask
-  Submersion(const Part& part, int pace, bool shared);
+  /// \param level   of the water, one column; empty: z = 0
+  Submersion(const Part& part, int pace, bool shared, TimeTable level = {});
 
   const Part& part() const { return part_; }
   const Immersion& immersion() const { return immersion_; }

@@ -1,7 +1,7 @@
 /// \file
 /// The water's surface and velocity around a body: a policy of the water's forces (model.md,
 /// "Water"). A policy is a plain type with
-///   static constexpr bool moves                     whether the surface differs from z = 0
+///   static constexpr bool moves                     whether the surface differs between bodies
 ///   SurfacePlane plane(b, centroid, time)           the surface around body b
 ///   Vec3<double> velocity(b, centroid, time)        velocity of the water at body b [m/s]
 /// so still water costs neither a branch nor a call.
@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "floe/lattice/state.h"
+#include "floe/water/water_motion.h"
 
 namespace floe {
 
@@ -33,13 +34,17 @@ struct SurfacePlane {
   }
 };
 
-/// Water at rest at z = 0, or with one current everywhere.
+/// Water without waves: one current and one level everywhere.
 struct StillWater {
   static constexpr bool moves = false;
-  Vec3<double> current{0, 0, 0};  ///< [m/s]
+  WaterMotion water;
 
-  static SurfacePlane plane(std::size_t, const Vec3<double>&, double) { return {}; }
-  Vec3<double> velocity(std::size_t, const Vec3<double>&, double) const { return current; }
+  SurfacePlane plane(std::size_t, const Vec3<double>&, double time) const {
+    return {.level = water.level(time)};
+  }
+  Vec3<double> velocity(std::size_t, const Vec3<double>&, double time) const {
+    return water.velocity(time);
+  }
 };
 
 }  // namespace floe

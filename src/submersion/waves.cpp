@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "base/collectives.h"
 #include "floe/base/item.h"
@@ -76,9 +77,8 @@ std::vector<WaveComponent> wave_components(const WaveOptions& options, double gr
   return waves;
 }
 
-Waves::Waves(const Part& part, double gravity, const WaveOptions& options,
-             const Vec3<double>& current)
-    : waves_(wave_components(options, gravity)), ramp_(options.ramp), current_(current) {
+Waves::Waves(const Part& part, double gravity, const WaveOptions& options, WaterMotion water)
+    : waves_(wave_components(options, gravity)), ramp_(options.ramp), water_(std::move(water)) {
   std::map<double, std::size_t> known;
   double widest = 0;
   const Vec3<double> along{std::cos(options.direction), std::sin(options.direction), 0};
@@ -128,7 +128,7 @@ Waves::Waves(const Part& part, double gravity, const WaveOptions& options,
 SurfacePlane Waves::plane(std::size_t b, const Vec3<double>& at, double time) const {
   const double rise = this->rise(time);
   const Decay* decay = &decay_[first(b)];
-  SurfacePlane plane;
+  SurfacePlane plane{.level = water_.level(time)};
   for (std::size_t n = 0; n < waves_.size(); ++n) {
     const WaveComponent& wave = waves_[n];
     const double angle = wave.kx * at.x + wave.ky * at.y - wave.omega * time + wave.phase;
@@ -143,7 +143,7 @@ SurfacePlane Waves::plane(std::size_t b, const Vec3<double>& at, double time) co
 Vec3<double> Waves::velocity(std::size_t b, const Vec3<double>& at, double time) const {
   const double rise = this->rise(time);
   const Decay* decay = &decay_[first(b)];
-  Vec3<double> v = current_;
+  Vec3<double> v = water_.velocity(time);
   for (std::size_t n = 0; n < waves_.size(); ++n) {
     const WaveComponent& wave = waves_[n];
     const double angle = wave.kx * at.x + wave.ky * at.y - wave.omega * time + wave.phase;
@@ -160,6 +160,8 @@ Waves::Change Waves::change(std::size_t b, const Vec3<double>& at, double time) 
   const double rise = this->rise(time), rising = ramp_ > 0 && time < ramp_ ? 1 / ramp_ : 0.0;
   const Decay* decay = &decay_[first(b)];
   Change change{};
+  change.level = water_.rise(time);
+  change.velocity = water_.acceleration(time);
   for (std::size_t n = 0; n < waves_.size(); ++n) {
     const WaveComponent& wave = waves_[n];
     const double angle = wave.kx * at.x + wave.ky * at.y - wave.omega * time + wave.phase;

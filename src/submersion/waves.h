@@ -36,9 +36,9 @@ class Waves {
 
   /// \param part     with shapes
   /// \param gravity  [m/s^2]
-  /// \param current  is added to the velocity of the water [m/s]
+  /// \param water    its current is added to the velocity of the waves, its level to theirs
   /// \throws InputError if a wave is shorter than 8 bodies; collective
-  Waves(const Part& part, double gravity, const WaveOptions& options, const Vec3<double>& current);
+  Waves(const Part& part, double gravity, const WaveOptions& options, WaterMotion water);
 
   SurfacePlane plane(std::size_t b, const Vec3<double>& at, double time) const;
   Vec3<double> velocity(std::size_t b, const Vec3<double>& at, double time) const;
@@ -63,7 +63,7 @@ class Waves {
   std::vector<std::size_t> draft_of_;  ///< per owned body: its draft
   std::vector<Decay> decay_;           ///< per draft, of each wave
   double ramp_;
-  Vec3<double> current_;
+  WaterMotion water_;
   double most_steepness_ = 1;
 };
 

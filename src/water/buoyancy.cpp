@@ -33,6 +33,7 @@ double heave_bound(const Immersion& immersion, const Part& part, double weight_d
 ///   delta int_V f dV = int_V delta f dV - int_W f (u_z + t_x r_y - t_y r_x) dA.
 class Buoyancy final : public Force<Spatial>,
                        public HasTangent<Spatial>,
+                       public DoesWork<Spatial>,
                        public LimitsStep<Spatial>,
                        public BearsLoad<Spatial> {
  public:
@@ -41,12 +42,15 @@ class Buoyancy final : public Force<Spatial>,
         submersion_(std::move(submersion)),
         immersion_(submersion_->immersion()),
         owned_(static_cast<std::size_t>(part_.owned)),
-        weight_(weight_density) {}
+        weight_(weight_density) {
+    if (immersion_.has_level()) last_.resize(owned_);
+  }
 
   std::string_view name() const override { return "buoyancy"; }
   Roles<Spatial> roles() override {
     Roles<Spatial> roles{
         .tangent = this, .step = this, .prepares = submersion_.get(), .load = this};
+    if (immersion_.has_level()) roles.work = this;
     if (submersion_->has_pace())
       roles.commits = submersion_.get(), roles.persists = submersion_.get();
     return roles;
@@ -81,6 +85,19 @@ class Buoyancy final : public Force<Spatial>,
     } else {
       add_by(wrenches, find);
     }
+    if (!last_.empty()) powers_with(state, std::span(&power_, 1));
+  }
+
+  /// Below a level that changes, as in waves, the water's pressure does work, and has no potential.
+  void powers(std::span<double> out) const override { out.front() = power_; }
+  LaterPowers later_powers() const override { return LaterPowers::at_once; }
+  void powers_with(const State<Spatial>& state, std::span<double> out) const override {
+    double power = 0;
+    for (std::size_t b = 0; b < last_.size(); ++b) {
+      const Vec3<double> spin = angular_velocity(state, b);
+      power += last_[b][0] * velocity(state, b).z + last_[b][1] * spin.x + last_[b][2] * spin.y;
+    }
+    out.front() = power;
   }
 
   bool add_tangent(const State<Spatial>& state, Tangent<Spatial>& tangent) const override {
@@ -131,8 +148,9 @@ class Buoyancy final : public Force<Spatial>,
 
   /// Reports the potential of the displaced water: rho g times int_V (-z) dV, the work of pushing
   /// the body from the air into the water.
-  void report(const State<Spatial>& state, std::span<const double>,
+  void report(const State<Spatial>& state, std::span<const double> works,
               Columns& columns) const override {
+    if (immersion_.has_level()) return columns.add("energy_external", works.front());
     double energy = 0;
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const Submerged s = immersion_.of(state, body);
@@ -144,7 +162,7 @@ class Buoyancy final : public Force<Spatial>,
  private:
   /// Adds the wrenches. \param below  function from a block to its submerged parts
   template <class Below>
-  [[gnu::flatten]] void add_by(Wrenches<Spatial>& wrenches, Below below_of) const {
+  [[gnu::flatten]] void add_by(Wrenches<Spatial>& wrenches, Below below_of) {
     const Lanes zero(0.0);
     for (std::size_t block = 0; block < immersion_.blocks(); ++block) {
       const Immersion::Lane below = below_of(block);
@@ -156,6 +174,9 @@ class Buoyancy final : public Force<Spatial>,
         double* w = wrenches.of(b);
         add_row(w, rows[b % lanes]);
         w[4] += turn_y[b % lanes];
+        if (!last_.empty())
+          last_[b] = {weight_ * below.volume[b % lanes], weight_ * below.moment.y[b % lanes],
+                      turn_y[b % lanes]};
       }
     }
   }
@@ -165,6 +186,10 @@ class Buoyancy final : public Force<Spatial>,
   const Immersion& immersion_;
   std::size_t owned_;
   double weight_;
+  /// Of the last evaluation, below a level that changes: force along z and moments about x and y of
+  /// each owned body [N, N m], and their power [W].
+  std::vector<std::array<double, 3>> last_;
+  double power_ = 0;
 };
 
 /// Buoyancy below waves. In axes in which the local plane is level the pressure is that of still
@@ -225,7 +250,7 @@ class BuoyancyInWaves final : public Force<Spatial>,
           fastest2, heave_bound(immersion_, part_, weight_, body) / item(part_.bodies.mass, body));
     return std::sqrt(waves_.most_steepness() * fastest2);
   }
-  double time_dependent_until() const override { return std::numeric_limits<double>::infinity(); }
+  std::vector<double> changes(double end) const override { return {end}; }
 
   void report(const State<Spatial>&, std::span<const double> works,
               Columns& columns) const override {

@@ -108,7 +108,7 @@ class Drag final : public Force<Space>,
   Drag(const Part& part, WettedBodies<Space> bodies, const DragOptions& options)
       : part_(part),
         bodies_(std::move(bodies)),
-        current_(options.current),
+        water_(options.water()),
         linear_(options.linear),
         coefficient_(0.5 * options.density * options.coefficient),
         quadratic_(options.coefficient > 0),
@@ -177,7 +177,8 @@ class Drag final : public Force<Space>,
   /// Derivative of the force to the velocity along the flow, over the mass.
   std::optional<double> rate_estimate(const State<Space>& state) const override {
     using std::sqrt;
-    const Vec3<Lanes> current{current_.x, current_.y, current_.z};
+    const Vec3<double> water = water_.velocity(state.time);
+    const Vec3<Lanes> current{water.x, water.y, water.z};
     double fastest = 0;
     for (std::size_t block = 0; block < bodies_.blocks(); ++block) {
       const MovingBlock m = bodies_.block(state, block);
@@ -201,7 +202,8 @@ class Drag final : public Force<Space>,
   [[gnu::flatten]] double add(const State<Space>& state, Wrenches<Space>& wrenches,
                               std::array<double, 4>* forces) const {
     using std::sqrt;
-    const Vec3<Lanes> current{current_.x, current_.y, current_.z};
+    const Vec3<double> water = water_.velocity(state.time);
+    const Vec3<Lanes> current{water.x, water.y, water.z};
     double sum = 0;
     for (std::size_t block = 0; block < bodies_.blocks(); ++block) {
       const MovingBlock m = bodies_.block(state, block);
@@ -223,7 +225,7 @@ class Drag final : public Force<Space>,
   }
   /// Velocity of an owned body relative to the water [m/s].
   Vec3<double> speed(const State<Space>& state, std::size_t b) const {
-    return velocity(state, b) - current_;
+    return velocity(state, b) - water_.velocity(state.time);
   }
   /// Drag on an owned body per wet area and speed [N s/m^3].
   double factor(const State<Space>& state, std::size_t b) const {
@@ -233,7 +235,7 @@ class Drag final : public Force<Space>,
 
   const Part& part_;
   WettedBodies<Space> bodies_;
-  Vec3<double> current_;
+  WaterMotion water_;
   double linear_, coefficient_;  ///< c [N s/m^3] and rho_w C_d/2 [N s^2/m^4]
   bool quadratic_;
   std::vector<std::array<double, 4>> forces_;  ///< of the last evaluation [N], padded

@@ -190,7 +190,7 @@ class FaceDrag final : public Force<Spatial>,
   void release(std::span<const std::array<std::int32_t, 2>> pairs) override {
     shelter_->release(pairs);
   }
-  double time_dependent_until() const override { return std::numeric_limits<double>::infinity(); }
+  std::vector<double> changes(double end) const override { return {end}; }
 
  private:
   /// Calls take(b, force, moment) for each owned body.
@@ -395,14 +395,15 @@ std::unique_ptr<Force<Spatial>> make_face_drag(const Part& part, const DragOptio
   require_shapes(part, "drag");
   if (waves.any())
     return make_face_drag(std::make_shared<SubmersionInWaves>(
-                              part, Waves(part, gravity, waves, options.current), 1, false),
+                              part, Waves(part, gravity, waves, options.water()), 1, false),
                           options, false);
-  return make_face_drag(std::make_shared<Submersion>(part, 1, false), options, false);
+  return make_face_drag(std::make_shared<Submersion>(part, 1, false, options.level_table), options,
+                        false);
 }
 std::unique_ptr<Force<Spatial>> make_face_drag(std::shared_ptr<Submersion> submersion,
                                                const DragOptions& options, bool leads) {
   return std::make_unique<FaceDrag<StillWater>>(std::move(submersion), options,
-                                                StillWater{options.current}, leads);
+                                                StillWater{options.water()}, leads);
 }
 std::unique_ptr<Force<Spatial>> make_face_drag(std::shared_ptr<SubmersionInWaves> submersion,
                                                const DragOptions& options, bool leads) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "floe/base/motion_table.h"
 #include "floe/base/ramp.h"
 #include "floe/geometry/polyhedron.h"
 
@@ -17,7 +18,8 @@ inline constexpr std::array<std::string_view, 6> component_names{"x", "y", "z", 
 
 /// Prescribed components of the motion of a set of bodies, in the order of component_names.
 /// Displacements are `displacement` times the ramp, or `velocity` times the integral of the ramp.
-/// Rotations are `angular_velocity` times the integral of the ramp.
+/// Rotations are `angular_velocity` times the integral of the ramp. Or a table says both; rates of
+/// its rotations are angular velocities.
 struct Boundary {
   std::string name, set;
   std::array<bool, 6> fixed{};
@@ -25,6 +27,7 @@ struct Boundary {
   std::optional<Point3> velocity;      ///< [m/s]
   Point3 angular_velocity{};           ///< [rad/s]
   Ramp ramp;
+  MotionTable table;  ///< in place of these; empty: none
 
   /// Prescribed displacement and rotation [m, rad] at `time` [s]; entries that are not fixed are 0.
   std::array<double, 6> value(double time) const;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "floe/base/ramp.h"
+#include "floe/base/time_table.h"
 #include "floe/geometry/polyhedron.h"
 
 namespace floe {
@@ -20,6 +21,11 @@ struct Load {
   Point3 force{};               ///< [N]
   Point3 moment{};              ///< [N m]
   Ramp ramp;
+  /// In place of force, moment and ramp; empty: none.
+  TimeTable table;  ///< its columns are the components of force and moment
+
+  Point3 force_at(double time) const;   ///< [N]
+  Point3 moment_at(double time) const;  ///< [N m]
 };
 
 }  // namespace floe

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "floe/base/motion_table.h"
+#include "floe/base/ramp.h"
 #include "floe/geometry/polyhedron.h"
 
 namespace floe {
@@ -37,13 +39,21 @@ class TensionCurve {
   std::vector<double> energy_;  ///< at the rows, from where the line is slack [J]
 };
 
-/// A line from a structure to the ground.
+/// A line from a structure to the ground, or to an anchor that moves: by its velocity times the
+/// integral of the ramp, or by a table.
 struct MooringLine {
   std::string name;
   std::int32_t body = -1;       ///< global index of the structure
   Point3 fairlead{}, anchor{};  ///< ends, the fairlead at rest [m]
   TensionCurve curve;
-  double damping = 0;  ///< along the taut line [N s/m]
+  double damping = 0;        ///< along the taut line [N s/m]
+  Point3 anchor_velocity{};  ///< after the ramp [m/s]
+  Ramp anchor_ramp;
+  MotionTable anchor_table;  ///< in place of these; empty: none
+
+  bool moves() const { return !anchor_table.empty() || !(anchor_velocity == Point3{}); }
+  Point3 anchor_at(double time) const;           ///< [m]
+  Point3 anchor_velocity_at(double time) const;  ///< [m/s]
 };
 
 }  // namespace floe

@@ -107,6 +107,25 @@ def check_moored_floater(test, run):
     expect_ledger(test, output)
 
 
+def check_towed_floe(test, run):
+    """The line bears drag and what the floes push."""
+    output = run()
+    time, tension = output.history("time"), output.history("tow_tension")
+    speed = np.hypot(output.history("berg_velocity_x"), output.history("berg_velocity_y"))
+    for begin, end, low, high in ((15, 30, 95e3, 112e3), (30, 60, 120e3, 150e3),
+                                  (65, 90, 85e3, 110e3)):
+        late = (time > begin) & (time < end)
+        test.assertTrue(low < tension[late].mean() < high, (begin, tension[late].mean()))
+    drag = 0.901 * 144 * (1010 * speed**2 + 50 * speed)
+    late = (time > 30) & (time < 60)
+    ice = -output.history("berg_force_x")
+    test.assertAlmostEqual((drag + ice)[late].mean() / tension[late].mean(), 1, delta=0.1)
+    test.assertGreater(output.history("berg_velocity_y")[-1], 0.1)
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 1e-3 * energy["external"])
+    test.assertGreater(energy["external"], 4e6)
+
+
 def check_ice_cone(test, run):
     output = run("-time_end", "2")
     test.assertGreater(output.summary["beams_broken"], 10)
