@@ -124,7 +124,7 @@ void join_part(Options& options, const Obstacle& part, const std::string& whole,
   if (part.is_half_space() || found->is_half_space())
     throw InputError(key + "a halfspace has no parts and is none");
   for (const auto* last : {"friction", "friction_wet", "velocity", "angular_velocity", "amplitude",
-                           "frequency", "ramp", "mass"})
+                           "table", "frequency", "ramp", "mass"})
     options.refuse_one("obstacle: NAME: " + std::string(last), part.name,
                        "belongs to '" + whole + "', of which it is a part");
   add_parts(*found, part);
