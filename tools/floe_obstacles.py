@@ -92,8 +92,8 @@ def columns_of_table(path):
 
 
 def of_column(time, values, smooth, periodic):
-    """The value of a column at any times, and its integral from time 0, as functions (docs/model.md,
-    "Tables in time")."""
+    """The value of a column at any times, and its integral from time 0, as functions
+    (docs/model.md, "Tables in time")."""
     first, last = time[0], time[-1]
     span, rows = last - first, (time, values)
     if periodic:  # slopes at the ends are those of the periods beside

@@ -124,7 +124,8 @@ class Loads(TableTest):
         natural = np.sqrt(stiffness / mass)
         scene = ALONE.replace("SUPPORT", DIAGONAL + f", support_damping_ratio: {zeta}").replace(
             "end: 3", "end: 30")
-        for ratio, interpolation in ((0.5, "smooth"), (1, "smooth"), (1, "linear"), (1.7, "smooth")):
+        for ratio, interpolation in ((0.5, "smooth"), (1, "smooth"), (1, "linear"),
+                                     (1.7, "smooth")):
             rate = ratio * natural
             time = np.linspace(0, 2 * np.pi / rate, 1001)
             self.table("p.csv", "time,fx", np.column_stack([time, force * np.sin(rate * time)]))
@@ -207,7 +208,8 @@ class Boundaries(TableTest):
         self.table("u.csv", "time,ux,wz", np.column_stack(
             [time, 0.1 * np.sin(np.pi * time), 0.2 * np.cos(np.pi * time)]))
         rows = self.rows(ALONE.replace("leg: {", "leg: {").replace(", SUPPORT", "") + (
-            "boundary: {names: [b], b: {set: leg, fix: x rx ry rz, table: u.csv, periodic: true}}\n"))
+            "boundary: {names: [b], b: {set: leg, fix: x rx ry rz, table: u.csv, "
+            "periodic: true}}\n"))
         expected = np.interp(rows["time"] % 2, time, 0.1 * np.sin(np.pi * time))
         np.testing.assert_allclose(rows["leg_x"], expected, rtol=0, atol=1e-13)
         # The rows' trapezoids.
@@ -327,8 +329,8 @@ time: {end: 1}
     def test_a_sudden_level(self):
         """A box heaves about the new level by rho g A/m."""
         self.table("l.csv", "time,level", [[0, 0], [1e-6, 0.1], [9, 0.1]])
-        rows = self.rows(ADRIFT.replace("drag, ", "").replace("WATER", "level_table: l.csv").replace(
-            "end: 20", "end: 8"))
+        rows = self.rows(ADRIFT.replace("drag, ", "").replace(
+            "WATER", "level_table: l.csv").replace("end: 20", "end: 8"))
         rate = np.sqrt(RHO * G * SIDE ** 2 / MASS)
         np.testing.assert_allclose(rows["leg_z"], 0.1 * (1 - np.cos(rate * rows["time"])), rtol=0,
                                    atol=1e-3)
@@ -454,7 +456,8 @@ class Bad(TableTest):
                          f"load: p: {key.split(':')[0]}: does not go with 'load: p: table'", p=good)
         self.refused(scene + LOAD.replace("table: p.csv", "force: [1, 0, 0], periodic: true"),
                      "load: p: periodic")
-        self.refused(scene + LOAD.replace("table: p.csv", "force: [1, 0, 0], interpolation: smooth"),
+        self.refused(scene + LOAD.replace("table: p.csv",
+                                          "force: [1, 0, 0], interpolation: smooth"),
                      "load: p: interpolation")
         motion = "time,ux\n0,0\n1,2\n"
         for key in ("velocity: [1, 0, 0]", "angular_velocity: [1, 0, 0]", "amplitude: [1, 0, 0]",

@@ -250,7 +250,7 @@ TEST(WavesThatFollow, ChangeAsTheyDo) {
   const Part part = partition(lattice, PETSC_COMM_SELF);
   WaveOptions options{.spectrum = WaveOptions::Spectrum::jonswap, .height = 1, .period = 9};
   options.direction = 0.7, options.ramp = 20;
-  const Waves waves(part, 9.81, options, {0.1, 0.2, 0});
+  const Waves waves(part, 9.81, options, {{0.1, 0.2, 0}, {}, {}});
   const double d = 1e-4;
   for (const double t : {3.0, 19.0, 40.0}) {
     const Vec3<double> at{3, -8, 0.2};

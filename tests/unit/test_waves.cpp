@@ -45,7 +45,7 @@ TEST(Waves, VelocityIsThatOfTheSurface) {
     const Part part = partition(lattice, PETSC_COMM_SELF);
     WaveOptions options{.height = 0.2, .period = 3, .direction = 0.6, .phase = 0.4};
     options.depth = depth;
-    const Waves waves(part, g, options, {0.1, 0, 0});
+    const Waves waves(part, g, options, {{0.1, 0, 0}, {}, {}});
     const double omega = 2 * pi / 3, k = wave_number(omega, g, depth), t = 0.7, d = 1e-5;
     const Vec3<double> at{1.3, -0.4, 0};
     const SurfacePlane now = waves.plane(0, at, t);

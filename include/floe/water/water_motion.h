@@ -10,8 +10,8 @@ namespace floe {
 /// Current and level of the water. Water rises with its level.
 struct WaterMotion {
   Point3 current{};         ///< [m/s]
-  TimeTable current_table;  ///< of its x, y, z, in place of it; empty: none
-  TimeTable level_table;    ///< of its height over z = 0 [m]; empty: 0
+  TimeTable current_table{};  ///< of its x, y, z, in place of it; empty: none
+  TimeTable level_table{};    ///< of its height over z = 0 [m]; empty: 0
 
   Point3 velocity(double time) const;      ///< with the rise of the level [m/s]
   Point3 acceleration(double time) const;  ///< of a smooth table [m/s^2]
