@@ -389,7 +389,7 @@ constexpr std::array table{
     OptionSpec{"obstacle: NAME: unit", number, "1", "m", ">= 1e-6, <= 1e6",
                "STL, OBJ: length of the file's unit"},
     OptionSpec{"obstacle: NAME: tolerance", number, "0.01", "m", ">= 0, <= 1e6",
-               "STL, OBJ: by which convex parts may reach out of the solid; 0: rounding"},
+               "STL, OBJ: distance of convex parts from the solid's surface; 0: rounding"},
     OptionSpec{"obstacle: NAME: most_parts", integer, "1000", "", ">= 1, <= 100000",
                "STL, OBJ: a solid of more convex parts is refused"},
     OptionSpec{"obstacle: NAME: mass", number, "(it is fixed, or moves as it is told)", "kg",

@@ -38,7 +38,7 @@ Obstacle read_solid(Options& options, const std::string& name, const std::string
                           " triangles around " + text_of(parts.volume) + " m^3 are " +
                           std::to_string(number) + " convex part" + (number == 1 ? "" : "s") +
                           " of " + text_of(parts.parts_volume) + " m^3, at most " +
-                          text_of(parts.distance) + " m out of the solid");
+                          text_of(parts.distance) + " m from its surface");
   return polyhedra(parts.shapes, options.vector(key("point"), name));
 }
 

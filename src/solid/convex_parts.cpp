@@ -14,6 +14,7 @@
 #include "floe/base/petsc.h"
 #include "floe/geometry/half_space.h"
 #include "geometry/overlap.h"
+#include "solid/coarse_hull.h"
 #include "solid/cut_planes.h"
 #include "solid/hull_distance.h"
 #include "solid/piece.h"
@@ -153,8 +154,18 @@ class Divider {
       if (found > tolerance_) return false;
       parts_.distance = std::max(parts_.distance, found);
     }
-    append_hull(parts_.shapes, one.hull, of_faces_);
+    append_hull(parts_.shapes, tolerance_ > of_file_ ? coarse(one) : one.hull, of_faces_);
     return true;
+  }
+  /// Returns the hull of a piece with no more vertices than the tolerance asks for.
+  Surface coarse(const Hulled& one) {
+    std::vector<HalfSpace> cuts;
+    for (const std::int32_t p : one.piece.plane)
+      if (p >= parts_.triangles) cuts.push_back(item(planes_, p));
+    double found = 0;
+    Surface hull = coarse_hull(one.hull, cuts, tolerance_, of_faces_, found);
+    parts_.distance = std::max(parts_.distance, found);
+    return hull;
   }
   /// Whether every triangle of a piece bounds its hull.
   bool is_convex(const Hulled& one) const {

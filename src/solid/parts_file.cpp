@@ -24,7 +24,7 @@ namespace floe {
 namespace {
 
 /// Rises when the same file would be divided otherwise.
-constexpr std::uint64_t version_of_parts = 1;
+constexpr std::uint64_t version_of_parts = 2;
 
 constexpr std::array numbers{"triangles", "volume", "parts_volume", "distance"};
 

@@ -1,20 +1,24 @@
 // Convex parts of solids: their number, volume and place against the solids themselves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
 #include "geometry/overlap.h"
+#include "solid/coarse_hull.h"
 #include "solid/convex_parts.h"
 #include "solid/hull_distance.h"
 #include "solid/predicates.h"
 #include "solid/triangle_tree.h"
+#include "support/random.h"
 #include "support/solids.h"
 
 namespace floe::test {
@@ -182,17 +186,59 @@ TEST(Solid, CurvedWithinATolerance) {
   EXPECT_EQ(parts.triangles, 2000);
   EXPECT_LE(parts.shapes.bodies(), 24);
   EXPECT_GE(parts.shapes.bodies(), 8);
-  EXPECT_GT(parts.parts_volume, parts.volume);
-  EXPECT_LT(parts.parts_volume, 1.05 * parts.volume);
+  EXPECT_NEAR(parts.parts_volume, parts.volume, 0.1 * parts.volume);
   EXPECT_LE(parts.distance, 0.1);
   EXPECT_LE(common_volume(parts.shapes), 1e-10 * parts.volume);
-  // No vertex of the solid is outside the parts, none of the parts far outside the solid.
+  // No vertex of the solid is farther from all parts than the tolerance.
   for (const Point3& p : solid.vertices) {
     double least = 1e300;
     for (std::int32_t b = 0; b < parts.shapes.bodies(); ++b)
       least = std::min(least, beyond(parts.shapes, b, p));
-    EXPECT_LT(least, 1e-9);
+    EXPECT_LE(least, 0.1);
   }
+}
+
+/// A ball of many triangles loses vertices until the rest is just within the tolerance, the same in
+/// all eight octants.
+TEST(Solid, HullsLoseVerticesWithinTheTolerance) {
+  Surface ball;
+  test::Random random(5);
+  std::vector<Point3> points;
+  for (int k = 0; k < 150; ++k) {
+    const Vec3<double> p = random.direction();
+    for (const double x : {1.0, -1.0})
+      for (const double y : {1.0, -1.0})
+        for (const double z : {1.0, -1.0}) points.push_back({x * p.x, y * p.y, z * p.z});
+  }
+  ball = convex_hull(points);
+  std::size_t before = ball.vertices.size();
+  for (const double tolerance : {0.01, 0.03, 0.1}) {
+    double distance = 0;
+    const Surface coarse = coarse_hull(ball, {}, tolerance, 1e-9, distance);
+    EXPECT_LT(coarse.vertices.size(), before);
+    before = coarse.vertices.size();
+    EXPECT_LE(distance, tolerance);
+    EXPECT_GT(distance, 0.2 * tolerance);
+    for (const Point3& p : coarse.vertices)
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        Point3 mirrored = p;
+        mirrored[axis] = -p[axis];
+        EXPECT_TRUE(std::find(coarse.vertices.begin(), coarse.vertices.end(), mirrored) !=
+                    coarse.vertices.end());
+      }
+  }
+  // Faces between parts stay: vertices in a kept plane are all there.
+  double distance = 0;
+  const HalfSpace plane{{1, 0, 0}, 0};
+  Surface half = convex_hull(points);
+  std::erase_if(half.vertices, [](const Point3& p) { return p.x < 0; });
+  for (const Point3& p : points) half.vertices.push_back({0, p.y, p.z});
+  half = convex_hull(half.vertices);
+  const auto in_plane = [](const Surface& s) {
+    return std::count_if(s.vertices.begin(), s.vertices.end(),
+                         [](const Point3& p) { return std::abs(p.x) < 1e-9; });
+  };
+  EXPECT_EQ(in_plane(coarse_hull(half, std::span(&plane, 1), 0.1, 1e-9, distance)), in_plane(half));
 }
 
 /// Two hooks in each other's bays: the hulls overlap, so a tolerance must not make parts of them.

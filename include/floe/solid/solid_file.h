@@ -10,7 +10,7 @@ namespace floe {
 struct SolidFile {
   std::string path;
   double unit = 1;        ///< metres per unit of the file's coordinates
-  double tolerance = 0;   ///< by which the parts may reach out of the solid [m]
+  double tolerance = 0;   ///< distance of the parts from the solid's surface [m]
   int most_parts = 1000;  ///< more are refused
 };
 
