@@ -5,26 +5,11 @@
 #include <limits>
 #include <vector>
 
-#include "floe/base/item.h"
-#include "solid/hull_distance.h"
 #include "solid/predicates.h"
+#include "solid/triangle_tree.h"
 
 namespace floe {
 namespace {
-
-/// Returns how far each point is beyond the planes of a hull's triangles [m].
-std::vector<double> beyond(const std::vector<Point3>& points, const Surface& hull) {
-  std::vector<double> most(points.size(), -std::numeric_limits<double>::infinity());
-  for (const auto& [a, b, c] : hull.triangles) {
-    const Point3& o = item(hull.vertices, a);
-    Point3 n = cross(item(hull.vertices, b) - o, item(hull.vertices, c) - o);
-    n = (1 / length(n)) * n;
-    const double offset = dot(n, o);
-    for (std::size_t k = 0; k < points.size(); ++k)
-      most[k] = std::max(most[k], dot(n, points[k]) - offset);
-  }
-  return most;
-}
 
 /// The vertices that are taken.
 class Choice {
@@ -32,12 +17,27 @@ class Choice {
   explicit Choice(const std::vector<Point3>& all) : all_(all), taken_(all.size(), false) {}
 
   void take(std::size_t k) { taken_[k] = true; }
-  /// Takes all vertices with the largest of some numbers, equal up to rounding.
-  void take_largest(const std::vector<double>& of) {
-    const double most = *std::max_element(of.begin(), of.end());
-    constexpr double rounding = 1e-6;
+  /// Takes vertices in the order of some numbers above a least one, those that are not near one
+  /// with a larger number that is taken before: nearer than half of the way to those taken earlier.
+  void take_largest(const std::vector<double>& of, double least) {
+    std::vector<std::size_t> order;
     for (std::size_t k = 0; k < of.size(); ++k)
-      if (of[k] >= most - rounding * std::abs(most)) take(k);
+      if (of[k] > least) order.push_back(k);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return of[a] != of[b] ? of[a] > of[b] : a < b; });
+    std::vector<double> alone;  // squared distance from those taken earlier
+    for (const std::size_t k : order) alone.push_back(to_taken(all_[k]));
+    constexpr double equal = 1 - 1e-6;
+    std::vector<std::size_t> chosen;  // places in `order`
+    for (std::size_t n = 0; n < order.size(); ++n) {
+      const auto is_covered = [&](std::size_t m) {
+        const Vec3<double> apart = all_[order[n]] - all_[order[m]];
+        return of[order[n]] < equal * of[order[m]] &&
+               dot(apart, apart) < 0.25 * std::min(alone[n], alone[m]);
+      };
+      if (std::none_of(chosen.begin(), chosen.end(), is_covered)) chosen.push_back(n);
+    }
+    for (const std::size_t n : chosen) take(order[n]);
   }
   Surface hull() const {
     std::vector<Point3> points;
@@ -47,6 +47,13 @@ class Choice {
   }
 
  private:
+  double to_taken(const Point3& p) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < all_.size(); ++k)
+      if (taken_[k]) least = std::min(least, dot(all_[k] - p, all_[k] - p));
+    return least;
+  }
+
   const std::vector<Point3>& all_;
   std::vector<bool> taken_;
 };
@@ -69,26 +76,19 @@ Surface coarse_hull(const Surface& hull, std::span<const HalfSpace> kept, double
   for (std::size_t k = 0; k < all.size(); ++k)
     for (const HalfSpace& plane : kept)
       if (std::abs(dot(plane.normal, all[k]) - plane.offset) <= rounding) choice.take(k);
-  double allowed = tolerance;
   for (;;) {
     Surface coarse = choice.hull();
-    if (coarse.triangles.empty()) {
+    if (coarse.triangles.empty()) {  // flat so far
       distance = 0;
       return hull;
     }
-    const std::vector<double> out = beyond(all, coarse);
-    const double most = *std::max_element(out.begin(), out.end());
-    if (most > allowed) {
-      choice.take_largest(out);
-      continue;
-    }
-    // The distance from planes is below that from the hull where several planes count.
-    const double found = hull_distance(hull, coarse, tolerance, rounding);
-    if (found <= tolerance || most <= rounding) {
-      distance = found;
-      return coarse;
-    }
-    allowed = 0.7 * most;
+    // The distance from a convex body is a convex function: it is largest at a vertex.
+    const TriangleTree tree(coarse);
+    std::vector<double> out;
+    for (const Point3& p : all) out.push_back(tree.nearest(p).distance);
+    distance = *std::max_element(out.begin(), out.end());
+    if (distance <= tolerance) return coarse;
+    choice.take_largest(out, tolerance);
   }
 }
 

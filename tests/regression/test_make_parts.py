@@ -165,7 +165,7 @@ class MakeHull(Tools):
             facts = dict(file["shapes"].attrs)
             faces = len(file["shapes/corner_of"]) - 1
         self.assertLess(facts["distance"], 0.05)
-        self.assertLess(faces, len(read_stl(ship)) / 4)
+        self.assertLess(faces, len(read_stl(ship)) / 1.5)
         self.assertAlmostEqual(facts["volume"], floe_hull.volume(read_stl(ship)), 6)
         self.assertAlmostEqual(facts["parts_volume"] / facts["volume"], 1, delta=5e-3)
 
