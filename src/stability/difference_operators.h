@@ -120,8 +120,9 @@ class Operators {
     }
     // Quadratic drag depends on the present velocities, so the difference is taken about them, by
     // 1e-3 of them to either side; otherwise the images of a search's vectors would not be those of
-    // one linear map.
-    const double change = 1e3 * step * speed_ / model_.length_scale();
+    // one linear map. Changes below 1e-6 m/s would be lost in the rounding of large forces, and
+    // quadratic drag at such speeds is negligible.
+    const double change = 1e6 * step * std::max(1e-3 * speed_, slow) / model_.length_scale();
     damping = difference(z, 0, change);
     damping *= 0.5 / change;
   }

@@ -23,8 +23,13 @@ using Vector = Eigen::VectorXd;
 /// A trial vector z and its images k = K z, c = C z.
 struct Trial {
   Vector z, k, c;  ///< c is empty if no force damps
-  void scale(double s) { z *= s, k *= s, c *= s; }
-  void add(double s, const Trial& other) { z += s * other.z, k += s * other.k, c += s * other.c; }
+  /// Rounding of the images, as a multiple of that of images that were measured at unit length.
+  double error = 1;
+  void scale(double s) { z *= s, k *= s, c *= s, error *= std::abs(s); }
+  void add(double s, const Trial& other) {
+    z += s * other.z, k += s * other.k, c += s * other.c;
+    error = std::hypot(error, s * other.error);
+  }
   Vector image(const Weights& weights) const {
     if (c.size() == 0) return weights.stiffness * k;
     return weights.stiffness * k + weights.damping * c;
@@ -158,6 +163,11 @@ std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
   constexpr int most = 400;
   Progress progress("stable step", 0);
   constexpr double converged = 1e-6;  // relative change of the value, three times in a row
+  // The images of a direction that lies almost in the space of the others would be the rounding of
+  // differences of forces, enlarged to a rate without any force behind it. Without rounding a
+  // residual is at right angles to the last space, so only a search that has arrived loses such a
+  // direction, or one whose start was far from the mode.
+  constexpr double most_error = 1e3;
   int quiet = 0;
   for (int it = 0; it < most && quiet < 3; ++it) {
     if (it > 0) progress.update(it, "iteration " + std::to_string(it));
@@ -173,6 +183,7 @@ std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
         if (norm < 1e-12) return;
         t.scale(1 / norm);
       }
+      if (t.error > most_error) return;
       space.push_back(std::move(t));
     };
     const Weights weights = search.weights();
@@ -180,8 +191,8 @@ std::optional<Trial> top_mode(Operators<Space>& a, Vector start, auto& search) {
     const double size_of_image = std::sqrt(a.dot(residual, residual));
     residual -= a.dot(space[0].z, residual) * space[0].z;
     const double norm = std::sqrt(a.dot(residual, residual));
-    // Images are differences, no more exact than this. A model of few modes (one damped body among
-    // others at rest) is through at once, and what is left is rounding that further steps enlarge.
+    // Images are differences, at best as exact as this. A model of few modes (one damped body among
+    // others at rest) is through at once, and what is left is rounding.
     constexpr double rounding = 1e-10;
     if (norm < std::max(1e-12, rounding * size_of_image)) {
       x = std::move(space[0]);

@@ -379,6 +379,24 @@ output: {history: 0.05}
 checkpoint: {every: 10000}
 """
 
+# A box that a load pulls along a guide between two lines, and that comes to rest.
+GUIDED = """integrator: explicit
+forces: [contact]
+lattice_file: block.h5
+contact: {young: 1e6}
+obstacle:
+  names: [box]
+  box: {shape: box, centre: [20, 0, 0], size: [4, 4, 2], mass: 16160}
+line:
+  names: [east, west]
+  east: {structure: box, fairlead: [22, 0, 0], anchor: [312, 0, 0], LAW, damping: DAMPING}
+  west: {structure: box, fairlead: [18, 0, 0], anchor: [-272, 0, 0], LAW}
+boundary: {names: [guide], guide: {set: box, fix: y z rx ry rz}}
+load: {names: [pull], pull: {set: box, force: [1e5, 0, 0], ramp: 5}}
+time: {end: 25, dt: DT}
+output: {history: 0.5}
+""".replace("LAW", "stiffness: 6e4, pretension: 1e5")
+
 
 class Lines(StructureTest):
     def test_offset_against_statics(self):
@@ -437,6 +455,42 @@ class Lines(StructureTest):
         two = rows_of(self.folder / "out/two")
         for column in ("box_x", "east_tension", "energy_lines"):
             np.testing.assert_array_equal(rows[column], two[column])
+
+    def test_rest_keeps_the_stable_step(self):
+        """A box that comes to rest on lines, the only body that feels forces, near the origin and
+        far from it: the stable step is that of the lines and of contacts that may come all the
+        time, on one and two ranks; dt^2 k/m + 2 dt c/m = 4 with the line's 'damping'."""
+        stiffness, mass, damping = 6e4, 16160, 1e5
+        for where in (20, 20000):
+            scene = GUIDED
+            for old in (20, 22, 312, 18, -272):
+                scene = scene.replace(f"[{old}, 0", f"[{old + where - 20}, 0")
+            limits = []
+            for damped in (0, damping):
+                for dt in ("5e-3", "auto"):
+                    done = self.run_scene(scene.replace("DAMPING", str(damped))
+                                          .replace("DT", dt))
+                    self.assertNotIn("fallen", done.stderr)
+                    summary = self.summary()
+                    self.assertGreaterEqual(summary["time"], 25)
+                    limits.append(summary["stable_dt"])
+                self.assertAlmostEqual(limits[-2] / limits[-1], 1, delta=1e-4)
+            # Contacts that may come add one and the same h/m.
+            free, held = limits[0], limits[2]
+            rate = 4 / free ** 2  # (2 k + h)/m
+            c = damping / mass
+            self.assertGreater(rate, 2 * stiffness / mass)
+            self.assertAlmostEqual(held / ((np.sqrt(c * c + 4 * rate) - c) / rate), 1, delta=1e-4)
+            for dt in ("5e-3", "auto"):
+                moving = scene.replace("DAMPING", str(damping)).replace("DT", dt)
+                self.run_scene(moving, name="one")
+                self.run_scene(moving, name="two", ranks=2)
+                self.assertAlmostEqual(self.summary("two")["stable_dt"] / held, 1, delta=1e-6)
+                one, two = (rows_of(self.folder / "out" / name) for name in ("one", "two"))
+                if dt == "auto":  # sums over ranks differ by rounding
+                    np.testing.assert_allclose(two["box_x"][-1], one["box_x"][-1], rtol=1e-9)
+                else:
+                    np.testing.assert_array_equal(two["box_x"], one["box_x"])
 
     def test_refusals(self):
         with open(self.folder / "line.csv", "w") as file:

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "forces/mooring_line.h"
 #include "stability/stable_step.h"
+#include "support/blocks.h"
 #include "support/dynamics.h"
 #include "support/random.h"
 #include "support/record.h"
@@ -92,6 +95,88 @@ TEST(StableStep, IsWhereAPerturbationBeginsToGrow) {
               .note = note});
     }
   }
+}
+
+/// Stands for contacts that may come.
+class Hidden final : public Force<Spatial>, public LimitsStep<Spatial> {
+ public:
+  explicit Hidden(double stiffness) : stiffness_(stiffness) {}
+  std::string_view name() const override { return "hidden"; }
+  Roles<Spatial> roles() override { return {.step = this}; }
+  void add(const State<Spatial>&, Wrenches<Spatial>&) override {}
+  void report(const State<Spatial>&, std::span<const double>, Columns&) const override {}
+  double stiffness_bound(std::int32_t) const override { return 0; }
+  Rates hidden_stiffness() const override { return {.stiffness = stiffness_}; }
+
+ private:
+  double stiffness_;  // [1/s^2]
+};
+
+/// A structure between two lines of 1e5 N/m, which moves along them only; perhaps with light blocks
+/// that feel nothing.
+struct Moored {
+  double at = 0;       ///< [m]
+  double tension = 0;  ///< of the lines [N]
+  double damping = 0;  ///< of each line [N s/m]
+  double hidden = 0;   ///< [1/s^2]
+  int blocks = 0;
+  double speed = 0;  ///< [m/s]
+
+  static constexpr double stiffness = 1e5, reach = 290;  // [N/m, m]
+
+  StableStep step() const {
+    Lattice lattice;
+    append_block(lattice, {4, 4, 2}, {at, 0, 0});
+    lattice.sets["box"] = {0};
+    for (int k = 0; k < blocks; ++k) append_block(lattice, {0.1, 0.2, 0.1}, {at, 10.0 + k, 0});
+    Boundary guide;
+    guide.name = guide.set = "box";
+    guide.fixed = {false, true, true, true, true, true};
+    Model<Spatial> model(lattice, PETSC_COMM_SELF, {guide});
+    std::vector<MooringLine> lines;
+    for (const double side : {-1.0, 1.0}) {
+      const double slack = reach - tension / stiffness;
+      lines.push_back({.name = "line",
+                       .body = 0,
+                       .fairlead = {at + 2 * side, 0, 0},
+                       .anchor = {at + (2 + reach) * side, 0, 0},
+                       .curve = TensionCurve({{slack, 0}, {slack + 1, stiffness}}),
+                       .damping = damping});
+    }
+    model.add_force(make_mooring_lines(model.part(), std::move(lines)));
+    if (hidden > 0) model.add_force(std::make_unique<Hidden>(hidden));
+    State<Spatial> state(static_cast<std::size_t>(model.part().local));
+    state.record(0)[Spatial::velocity] = speed;
+    return stable_step(model, state);
+  }
+  /// From dt^2 (h + 2 k/m) + 2 dt (2 c/m) = 4.
+  double expected() const {
+    const double mass = 920 * 4 * 4 * 2, k = hidden + 2 * stiffness / mass, c = 2 * damping / mass;
+    return (std::sqrt(c * c + 4 * k) - c) / k;
+  }
+};
+
+/// A model of one mode is where the search arrives at once; what is left then is the rounding of
+/// differences of large forces far from the origin, which is no rate.
+TEST(StableStep, RoundingIsNoRate) {
+  double worst = 0;
+  int searches = 0;
+  for (const double at : {0.0, 20.0, 2e4, 1e5})
+    for (const double tension : {1e5, 1e7})
+      for (const double damping : {0.0, 1e4, 1e5})
+        for (const double hidden : {0.0, 3e4})
+          for (const int blocks : {0, 1, 20})
+            for (const double speed : {0.0, 1.1e-6, 1e-5, 1e-3}) {
+              const Moored moored{at, tension, damping, hidden, blocks, speed};
+              const StableStep found = moored.step();
+              ++searches;
+              worst = std::max(worst, std::abs(found.dt / moored.expected() - 1));
+              ASSERT_NEAR(found.dt / moored.expected(), 1, 1e-3)
+                  << "at " << at << " m, " << tension << " N, " << damping << " N s/m, hidden "
+                  << hidden << ", " << blocks << " blocks, " << speed << " m/s: " << found.dt
+                  << " s after " << found.evaluations << " evaluations";
+            }
+  std::printf("%d searches, largest error %.2g\n", searches, worst);
 }
 
 }  // namespace
