@@ -48,8 +48,8 @@ struct MooringLine {
   TensionCurve curve;
   double damping = 0;        ///< along the taut line [N s/m]
   Point3 anchor_velocity{};  ///< after the ramp [m/s]
-  Ramp anchor_ramp;
-  MotionTable anchor_table;  ///< in place of these; empty: none
+  Ramp anchor_ramp{};
+  MotionTable anchor_table{};  ///< in place of these; empty: none
 
   bool moves() const { return !anchor_table.empty() || !(anchor_velocity == Point3{}); }
   Point3 anchor_at(double time) const;           ///< [m]
