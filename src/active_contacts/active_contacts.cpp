@@ -23,16 +23,4 @@ void ActiveContacts::begin_forces() {
   std::fill(on_parts_.begin(), on_parts_.end(), TermWrenches{});
 }
 
-/// Keeps the forces of a block. \param first, number  contacts of the block
-void ActiveContacts::keep(std::size_t first, std::size_t number, std::uint32_t enclosed,
-                          const LanesOfWrench& elastic, const LanesOfWrench& viscous,
-                          const LanesOfWrench& friction) {
-  forces_.resize(std::max(forces_.size(), first + number));
-  for (std::size_t lane = 0; lane < number; ++lane)
-    forces_[first + lane] = (enclosed >> lane & 1U) != 0 ? Vec3<double>{}
-                                                         : one_lane<Vec3>(elastic.force, lane) +
-                                                               one_lane<Vec3>(viscous.force, lane) +
-                                                               one_lane<Vec3>(friction.force, lane);
-}
-
 }  // namespace floe

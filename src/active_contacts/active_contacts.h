@@ -151,11 +151,7 @@ class ActiveContacts {
   }
 
  private:
-  using LanesOfWrench = ContactWrenchOf<Lanes>;
   void begin_forces();
-  void keep(std::size_t first, std::size_t number, std::uint32_t enclosed,
-            const LanesOfWrench& elastic, const LanesOfWrench& viscous,
-            const LanesOfWrench& friction);
   const ContactBlock& block(std::size_t contact) const { return blocks_[contact / lanes]; }
   std::span<const std::int32_t> pairs_from(std::size_t first) const {
     return std::span(pairs_).subspan(first, std::min(lanes, pairs_.size() - first));
@@ -193,7 +189,13 @@ void ActiveContacts::act(const PairList& list, auto force_of) {
         friction(contact.friction.force, contact.friction.couple * n, arm_a, arm_b);
     const LaneRows<TermWrenchesOf> on_a({elastic.a, viscous.a, friction.a}),
         on_b({elastic.b, viscous.b, friction.b});
-    if (keeps_forces_) keep(first, pairs.size(), active.enclosed, elastic.a, viscous.a, friction.a);
+    if (keeps_forces_) {
+      const Vec3<Lanes> force = elastic.a.force + viscous.a.force + friction.a.force;
+      forces_.resize(std::max(forces_.size(), first + pairs.size()));
+      for (std::size_t lane = 0; lane < pairs.size(); ++lane)
+        forces_[first + lane] =
+            (active.enclosed >> lane & 1U) != 0 ? Vec3<double>{} : one_lane<Vec3>(force, lane);
+    }
     for (std::size_t lane = 0; lane < pairs.size(); ++lane) {
       if ((active.enclosed >> lane & 1U) != 0) continue;
       const Pair& pair = list.pair(pairs[lane]);

@@ -27,6 +27,7 @@ EXPECTED = {
     "monopile_lockin.yaml": structures.check_monopile_lockin,
     "bridge_pier.yaml": structures.check_bridge_pier,
     "moored_floater.yaml": structures.check_moored_floater,
+    "ship.yaml": structures.check_ship,
     "towed_floe.yaml": structures.check_towed_floe,
     "ice_cone.yaml": structures.check_ice_cone,
     "ice_cylinder.yaml": structures.check_ice_cylinder,

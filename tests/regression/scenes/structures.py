@@ -107,6 +107,20 @@ def check_moored_floater(test, run):
     expect_ledger(test, output)
 
 
+def check_ship(test, run):
+    """The bow goes in: it is pushed back and up, and breaks ice."""
+    output = run("-time_end", "3")
+    time = output.history("time")
+    late = time > 2
+    back, up = (output.history(f"hull_force_{axis}")[late].mean() for axis in "xz")
+    test.assertTrue(-45e3 < back < -15e3, back)
+    test.assertTrue(1.3 < -up / back < 2.5, up / back)
+    test.assertGreater(output.summary["beams_broken"], 20)
+    test.assertGreater((output.folder / "pressure.csv").stat().st_size, 1000)
+    energy = output.summary["energy"]
+    test.assertLess(abs(energy["balance_error"]), 1e-3 * energy["external"])
+
+
 def check_towed_floe(test, run):
     """The line bears drag and what the floes push."""
     output = run()
