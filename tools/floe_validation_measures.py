@@ -7,6 +7,6 @@ import floe_validation_sheets as sheets
 
 MEASURES = {function.__name__: function for function in (
     sheets.buckling, sheets.slope_failure, sheets.uplift, sheets.cantilever, sheets.waves,
-    loads.iso, loads.crushing, loads.scaling, loads.scatter, loads.wide,
-    loads.endless, loads.floe_shape, loads.lock_in, loads.pressure_area, moored.moored, ice.punch, ice.ridging,
+    loads.iso, loads.crushing, loads.scaling, loads.scatter, loads.wide, loads.endless,
+    loads.floe_shape, loads.lock_in, loads.pressure_area, moored.moored, ice.punch, ice.ridging,
     ice.ridge_building, ice.rafting, ice.porosity, ice.shear_box, ice.keel_punch)}

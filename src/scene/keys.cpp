@@ -384,7 +384,8 @@ constexpr std::array table{
     OptionSpec{"obstacle: NAME: facets", integer, "24", "", ">= 3, <= 1000",
                "cone, cylinder: sides of the polygon inside the circle"},
     OptionSpec{"obstacle: NAME: file", text, "(required)", "", "",
-               "file: HDF5 file whose /shapes hold convex polyhedra, the parts of the obstacle; or STL or OBJ "
+               "file: HDF5 file whose /shapes hold convex polyhedra, the parts of the obstacle; or "
+               "STL or OBJ "
                "file of closed surfaces, which are divided into convex parts"},
     OptionSpec{"obstacle: NAME: unit", number, "1", "m", ">= 1e-6, <= 1e6",
                "STL, OBJ: length of the file's unit"},

@@ -16,8 +16,8 @@ struct ConvexParts {
   std::int64_t triangles = 0;  ///< of the solid's surface
   double volume = 0;           ///< of the solid [m^3]
   double parts_volume = 0;     ///< of all parts [m^3]
-  /// Largest distance of a point of a piece's hull from the piece, or from the part in its place, as
-  /// hull_distance() finds it [m]; 0 if every part is a piece of the solid up to rounding.
+  /// Largest distance of a point of a piece's hull from the piece, or from the part in its place,
+  /// as hull_distance() finds it [m]; 0 if every part is a piece of the solid up to rounding.
   double distance = 0;
 };
 

@@ -137,10 +137,10 @@ class WholeAndParts(SceneTest):
     def test_refusals(self):
         for part, line in (
                 ("b: {shape: box, centre: [0.1, 0, -1.5], size: [2, 3, 1], part_of: step}",
-                 "obstacle: step: its parts 'b' and 'd' overlap by 0.3 m^3; parts may meet at faces, "
-                 "not overlap"),
-                ("b: {shape: box, part_of: leg}", "obstacle: b: part_of: there is no obstacle 'leg' "
-                                                  "of its own (there are step)"),
+                 "obstacle: step: its parts 'b' and 'd' overlap by 0.3 m^3; parts may meet at "
+                 "faces, not overlap"),
+                ("b: {shape: box, part_of: leg}",
+                 "obstacle: b: part_of: there is no obstacle 'leg' of its own (there are step)"),
                 ("b: {shape: box, part_of: c}", "obstacle: b: part_of: there is no obstacle 'c'"),
                 ("b: {shape: halfspace, part_of: step}",
                  "obstacle: b: part_of: a halfspace has no parts and is none"),

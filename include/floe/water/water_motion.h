@@ -9,7 +9,7 @@ namespace floe {
 
 /// Current and level of the water. Water rises with its level.
 struct WaterMotion {
-  Point3 current{};         ///< [m/s]
+  Point3 current{};           ///< [m/s]
   TimeTable current_table{};  ///< of its x, y, z, in place of it; empty: none
   TimeTable level_table{};    ///< of its height over z = 0 [m]; empty: 0
 
