@@ -46,10 +46,14 @@ def flat_flow(text, path, scene):
 
 def scene_of(text):
     """A scene of a text that uses a small part of YAML, as those of input/ do."""
-    scene, open_keys = {}, []
+    scene, open_keys, begun = {}, [], ""
     for line in text.splitlines():
         line = re.sub(r"(^|\s)#.*", "", line).rstrip()
         if not line:
+            continue
+        line = f"{begun} {line.strip()}" if begun else line
+        begun = line if sum(map(line.count, "[{")) > sum(map(line.count, "]}")) else ""
+        if begun:  # a list or map that goes on in the next line
             continue
         indent = len(line) - len(line.lstrip())
         key, value = line.strip().split(":", 1)
