@@ -30,7 +30,9 @@ def in_short_form(name, part):
 
 # What tools/env exports. Of a build with sanitizers: MPI and PETSc keep what they have until the
 # process ends, and what is too large is refused as by any allocator.
-ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1", **os.environ,
+ENVIRONMENT = {"ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1",
+               # where the parts of solids are kept, not in the home of who runs the tests
+               "XDG_CACHE_HOME": str(Path(tempfile.gettempdir()) / "floe_tests"), **os.environ,
                **dict(re.findall(r"^ *export (\w+)=(\S*)$", (REPOSITORY / "tools/env").read_text(),
                                  re.M))}
 
