@@ -189,7 +189,7 @@ void ActiveContacts::act(const PairList& list, auto force_of) {
         friction(contact.friction.force, contact.friction.couple * n, arm_a, arm_b);
     const LaneRows<TermWrenchesOf> on_a({elastic.a, viscous.a, friction.a}),
         on_b({elastic.b, viscous.b, friction.b});
-    if (keeps_forces_) {
+    if (keeps_forces_) [[unlikely]] {
       const Vec3<Lanes> force = elastic.a.force + viscous.a.force + friction.a.force;
       forces_.resize(std::max(forces_.size(), first + pairs.size()));
       for (std::size_t lane = 0; lane < pairs.size(); ++lane)

@@ -56,10 +56,9 @@ std::vector<BodyPair> Contacts::offload(std::size_t count) {
 
 std::size_t Contacts::offloadable() const {
   const auto entries = history_.entries();
-  return static_cast<std::size_t>(
-      std::count_if(entries.begin(), entries.end(), [&](const ContactHistory::Entry& entry) {
-        return entry.pair >= 0 && !list_.pair(entry.pair).one_of_several;
-      }));
+  return static_cast<std::size_t>(std::count_if(
+      entries.begin(), entries.end(),
+      [&](const ContactHistory::Entry& entry) { return !list_.pair(entry.pair).one_of_several; }));
 }
 
 void Contacts::take_on(std::span<const BodyPair> pairs) {
@@ -132,7 +131,7 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
   const auto number = static_cast<std::int32_t>(pairs.size());
   while (index < number) {
     Pair& pair = item(pairs, index);
-    if (pair.one_of_several) {
+    if (pair.one_of_several) [[unlikely]] {
       index = meet_parts(law, index, histories);
       continue;
     }
@@ -155,9 +154,10 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
 /// Takes over the contacts of a body with an obstacle of several parts.
 /// \param first  index of the first of their pairs
 /// \returns the index behind their last pair
+// Not inlined: the loop over all pairs is not to pay for it.
 template <IsContactLaw Law>
-std::int32_t Contacts::meet_parts(const Law& law, std::int32_t first,
-                                  ContactHistory::Cursor& histories) {
+[[gnu::noinline]] std::int32_t Contacts::meet_parts(const Law& law, std::int32_t first,
+                                                    ContactHistory::Cursor& histories) {
   const std::span<Pair> pairs = list_.pairs();
   const Pair& one = item(pairs, first);
   const std::size_t obstacle = solids_.obstacle_number(one.b);
@@ -358,14 +358,14 @@ Contacts::OnObstacle Contacts::on_obstacle_of(std::size_t contact) const {
   Placed image;
   const Placed &a = places_.of_a(pair), &b = places_.image_of_b(pair, image);
   const auto local = [&](const Vec3<double>& r) { return b.axes.to_local(r); };
-  const Vec3<double> apart = a.x - b.x;
+  const auto [turn, x] = Relative(a, b);
   return {.obstacle = static_cast<std::int32_t>(solids_.obstacle_number(pair.b)),
           .counted = pair.counted,
           .force = -1.0 * active_.force(contact),
-          .centre = local(active_.centre(contact) + apart),
+          .centre = local(active_.centre(contact)) + x,
           .normal = local(active_.normal(contact)),
-          .axes = {local(a.axes.e1), local(a.axes.e2), local(a.axes.e3)},
-          .x = local(apart),
+          .axes = turn,
+          .x = x,
           .radius = solids_.radius(pair.a),
           .planes = solids_.planes(pair.a),
           .worn = wear_.of(pair.a)};

@@ -22,16 +22,6 @@ void place(std::span<const Vec3<double>> vertices, const Triad<double>& axes, co
   for (const Vec3<double>& r : vertices) placed.push_back(x + axes.to_world(r));
 }
 
-/// Axes and origin of the frame of A in that of B.
-struct Relative {
-  Triad<double> turn;
-  Vec3<double> x;
-
-  Relative(const Placed& a, const Placed& b)
-      : turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2), b.axes.to_local(a.axes.e3)},
-        x(b.axes.to_local(a.x - b.x)) {}
-};
-
 /// The gaps of a pair at the planes of its faces. A face is a plane of B, or, counted on, of A.
 class Faces {
  public:
@@ -179,10 +169,7 @@ void NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair, co
                           const Placed& b, PairOverlap& met) {
   const auto [turn, x] = Relative(a, b);
   worn_.clear();
-  for (const HalfSpace& left : wear.of(pair.a)) {
-    const Vec3<double> normal = turn.to_world(left.normal);
-    worn_.push_back({normal, left.offset + dot(normal, x)});
-  }
+  for (const HalfSpace& left : wear.of(pair.a)) worn_.push_back(placed(left, turn, x));
   met = {};
   Overlap& o = met.overlap;
   clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)}, o);

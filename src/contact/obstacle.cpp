@@ -3,6 +3,7 @@
 #include "floe/base/item.h"
 
 #include "contact/part_faces.h"
+#include "geometry/append_faces.h"
 #include "geometry/convex_polygon.h"
 #include "geometry/overlap.h"
 
@@ -106,12 +107,7 @@ void find_inner_faces(Obstacle& obstacle) {
 
 /// Appends the faces of all bodies of `shapes`, moved, to the one body of `to`.
 void append_to_body(Shapes& to, const Shapes& shapes, const Vec3<double>& way) {
-  const auto first = static_cast<std::int32_t>(to.vertices.size());
-  const auto corner = static_cast<std::int32_t>(to.corners.size());
-  for (const Vec3<double>& r : shapes.vertices) to.vertices.push_back(r + way);
-  for (const std::int32_t c : shapes.corners) to.corners.push_back(first + c);
-  for (std::size_t f = 1; f < shapes.corner_of.size(); ++f)
-    to.corner_of.push_back(corner + shapes.corner_of[f]);
+  append_faces(to, shapes, way);
   to.face_of = {0, static_cast<std::int32_t>(to.corner_of.size()) - 1};
   to.vertex_of = {0, static_cast<std::int32_t>(to.vertices.size())};
 }

@@ -20,16 +20,6 @@ bool is_next_to(const Solids& solids, const Pair& one, const Pair& other) {
                      [&](const InnerFace& face) { return face.other == part; });
 }
 
-/// Places half-spaces in another frame. \param axes, x  axes and origin of theirs in the other
-void place(std::span<const HalfSpace> planes, const Triad<double>& axes, const Vec3<double>& x,
-           std::vector<HalfSpace>& placed) {
-  placed.clear();
-  for (const HalfSpace& plane : planes) {
-    const Vec3<double> normal = axes.to_world(plane.normal);
-    placed.push_back({normal, plane.offset + dot(normal, x)});
-  }
-}
-
 }  // namespace
 
 void PartContacts::add(std::int32_t index, const Pair& pair, const PairOverlap& overlap,
@@ -46,30 +36,30 @@ std::span<const PartContacts::Joined> PartContacts::join(const Solids& solids, c
                                                          std::span<const Pair> pairs,
                                                          const Placed& a, const Placed& b,
                                                          std::span<const std::int32_t> known) {
-  joined_.clear();
   const std::span<Met> all = met();
-  if (all.empty()) return joined_;
+  if (all.empty()) return {};
   const std::int32_t body = item(pairs, all[0].pair).a;
   if (all.size() > 1) {
-    const Triad<double> turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2),
-                             b.axes.to_local(a.axes.e3)};
-    const Vec3<double> x = b.axes.to_local(a.x - b.x);
-    place(wear.of(body), turn, x, worn_);
-    place(solids.planes(body), turn, x, planes_a_);
-    planes_a_.insert(planes_a_.end(), worn_.begin(), worn_.end());
+    const auto [turn, x] = Relative(a, b);
+    planes_a_.clear();
+    for (const HalfSpace& plane : solids.planes(body)) planes_a_.push_back(placed(plane, turn, x));
+    for (const HalfSpace& plane : wear.of(body)) planes_a_.push_back(placed(plane, turn, x));
   }
-  joined_.resize(find_meetings(solids, pairs));
-  choose_pairs(solids, pairs, known);
-  for (std::size_t k = 0; k < joined_.size(); ++k) sum(with_patch, a, b, k);
-  std::sort(joined_.begin(), joined_.end(),
+  const std::size_t number = find_meetings(solids, pairs);
+  joined_.resize(std::max(joined_.size(), number));
+  const std::span<Joined> contacts(joined_.data(), number);
+  for (Joined& contact : contacts) contact.pair = -1, contact.known.clear();
+  choose_pairs(solids, pairs, known, contacts);
+  for (std::size_t k = 0; k < number; ++k) sum(with_patch, a, b, k);
+  std::sort(contacts.begin(), contacts.end(),
             [](const Joined& p, const Joined& q) { return p.pair < q.pair; });
-  return joined_;
+  return contacts;
 }
 
 /// Finds where met parts meet inside A, and numbers the contacts. \returns their number
 std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pair> pairs) {
   const std::span<Met> all = met();
-  meetings_.clear();
+  meetings_ = 0;
   for (std::size_t k = 0; k < all.size(); ++k) all[k].contact = k;
   if (all.size() == 1) return 1;
   for (std::size_t one = 0; one < all.size(); ++one) {
@@ -84,7 +74,10 @@ std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pa
         cut(corners_, plane, work_);
       }
       if (corners_.size() < 3) continue;
-      meetings_.push_back({one, other, corners_});
+      if (meetings_ == meeting_room_.size()) meeting_room_.emplace_back();
+      Meeting& meeting = meeting_room_[meetings_++];
+      meeting.part = one;
+      meeting.corners.assign(corners_.begin(), corners_.end());
       const std::size_t from = all[other].contact, to = all[one].contact;
       for (Met& met : all)
         if (met.contact == std::max(from, to)) met.contact = std::min(from, to);
@@ -101,13 +94,13 @@ std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pa
 /// Gives histories to contacts, and each contact its pair: that of its history as long as A touches
 /// the part, else that of the largest overlap.
 void PartContacts::choose_pairs(const Solids& solids, std::span<const Pair> pairs,
-                                std::span<const std::int32_t> known) {
+                                std::span<const std::int32_t> known, std::span<Joined> contacts) {
   const std::span<Met> all = met();
   for (const std::int32_t pair : known) {
     auto found =
         std::find_if(all.begin(), all.end(), [&](const Met& met) { return met.pair == pair; });
     if (found != all.end()) {
-      Joined& contact = joined_[found->contact];
+      Joined& contact = contacts[found->contact];
       if (contact.pair < 0) contact.pair = pair;
       contact.known.push_back(pair);
       continue;
@@ -115,15 +108,15 @@ void PartContacts::choose_pairs(const Solids& solids, std::span<const Pair> pair
     found = std::find_if(all.begin(), all.end(), [&](const Met& met) {
       return is_next_to(solids, item(pairs, met.pair), item(pairs, pair));
     });
-    if (found != all.end()) joined_[found->contact].known.push_back(pair);
+    if (found != all.end()) contacts[found->contact].known.push_back(pair);
   }
-  for (std::size_t k = 0; k < joined_.size(); ++k) {
-    if (joined_[k].pair >= 0) continue;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    if (contacts[k].pair >= 0) continue;
     double most = 0;
     for (const Met& met : all) {
       if (met.contact != k || !(met.overlap.overlap.volume > most)) continue;
       most = met.overlap.overlap.volume;
-      joined_[k].pair = met.pair;
+      contacts[k].pair = met.pair;
     }
   }
 }
@@ -140,8 +133,8 @@ void PartContacts::sum(bool with_patch, const Placed& a, const Placed& b, std::s
   whole_.clear();
   for (const Met& met : all)
     if (is_of(met)) whole_.add(met.overlap.overlap, met.facets, b.axes, origin);
-  for (Meeting& meeting : meetings_) {
-    if (!is_of(all[meeting.one])) continue;
+  for (Meeting& meeting : std::span(meeting_room_.data(), meetings_)) {
+    if (!is_of(all[meeting.part])) continue;
     for (Vec3<double>& r : meeting.corners) r = origin + b.axes.to_world(r);
     whole_.leave_out(meeting.corners);
   }

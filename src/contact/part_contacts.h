@@ -52,24 +52,25 @@ class PartContacts {
   };
   /// What of a common face of two parts lies in A, in the frame of the obstacle.
   struct Meeting {
-    std::size_t one, other;  ///< of met_
+    std::size_t part = 0;  ///< one of the two, of met()
     std::vector<Vec3<double>> corners;
   };
 
   std::size_t find_meetings(const Solids& solids, std::span<const Pair> pairs);
   void choose_pairs(const Solids& solids, std::span<const Pair> pairs,
-                    std::span<const std::int32_t> known);
+                    std::span<const std::int32_t> known, std::span<Joined> contacts);
   void sum(bool with_patch, const Placed& a, const Placed& b, std::size_t contact);
 
   std::span<Met> met() { return {room_.data(), number_}; }
 
   std::vector<Met> room_;  ///< its first entries are in use
   std::size_t number_ = 0;
-  std::vector<Meeting> meetings_;
+  std::vector<Meeting> meeting_room_;
+  std::size_t meetings_ = 0;  ///< of its entries are in use
   std::vector<Joined> joined_;
   JoinedOverlap whole_;
   std::vector<Vec3<double>> corners_, work_;
-  std::vector<HalfSpace> planes_a_, worn_;
+  std::vector<HalfSpace> planes_a_;
 };
 
 }  // namespace floe

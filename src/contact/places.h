@@ -35,6 +35,16 @@ struct Placed {
   double travelled = 0;     ///< bound of the travel of its points since the last build [m]
 };
 
+/// Axes and origin of the frame of A in that of B.
+struct Relative {
+  Triad<double> turn;
+  Vec3<double> x;
+
+  Relative(const Placed& a, const Placed& b)
+      : turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2), b.axes.to_local(a.axes.e3)},
+        x(b.axes.to_local(a.x - b.x)) {}
+};
+
 /// Returns an obstacle on its motion.
 /// \param position  time of its place [s]
 /// \param motion    time of its velocities [s]

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/convex_polygon.h"
 #include "geometry/overlap.h"
 
 namespace floe {
@@ -58,8 +59,13 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
     faces_.push_back(faces_of(shapes_, b));
   }
   add_parts();
-  for (const Obstacle& o : obstacles_)
-    if (o.is_carried()) carriers_.push_back(o.body);
+  for (const Obstacle& o : obstacles_) {
+    if (!o.is_carried()) continue;
+    carriers_.push_back(o.body);
+    for (const ConvexPart& part : o.parts)  // each inner face is one of both parts
+      for (const InnerFace& face : part.inner_faces)
+        item(faces_, o.body).area -= length(area_vector(face.corners));
+  }
   std::sort(carriers_.begin(), carriers_.end());
   carriers_.erase(std::unique(carriers_.begin(), carriers_.end()), carriers_.end());
   if (!carriers_.empty()) carries_.assign(bodies_.size(), 0);

@@ -153,11 +153,12 @@ std::vector<SurfacePatch> surface_patches(const Obstacle& obstacle, double size)
       const Polygon face = face_in(part, plane, near);
       if (face.empty()) continue;
       cutting.add(plane, face, false);
+      const auto is_in_plane = [&, &plane = plane](const Vec3<double>& r) {
+        return std::abs(dot(r, plane.normal) - plane.offset) < near;
+      };
       for (const InnerFace& inner : part.inner_faces)
         if (dot(area_vector(inner.corners), plane.normal) > 0 &&
-            std::abs(dot(inner.corners[0], plane.normal) - plane.offset) < near &&
-            std::abs(dot(inner.corners[1], plane.normal) - plane.offset) < near &&
-            std::abs(dot(inner.corners[2], plane.normal) - plane.offset) < near)
+            std::all_of(inner.corners.begin(), inner.corners.end(), is_in_plane))
           cutting.add(plane, inner.corners, true);
     }
   }

@@ -42,14 +42,8 @@ void PatchForces::share_out(const Contacts& contacts, std::size_t contact) {
   const std::vector<SurfacePatch>& patches = contacts.solids().obstacles()[k].patches;
   if (patches.empty()) return;
   planes_.clear();
-  for (const HalfSpace& plane : of.planes) {
-    const Vec3<double> normal = of.axes.to_world(plane.normal);
-    planes_.push_back({normal, plane.offset + dot(normal, of.x)});
-  }
-  for (const HalfSpace& plane : of.worn) {
-    const Vec3<double> normal = of.axes.to_world(plane.normal);
-    planes_.push_back({normal, plane.offset + dot(normal, of.x)});
-  }
+  for (const auto& planes : {of.planes, of.worn})
+    for (const HalfSpace& plane : planes) planes_.push_back(placed(plane, of.axes, of.x));
   touched_.clear();
   areas_.clear();
   double sum = 0, shortest = std::numeric_limits<double>::infinity();

@@ -1,8 +1,6 @@
 #include "geometry/joined_overlap.h"
 
-#include <tuple>
-
-#include "geometry/across.h"
+#include "geometry/patch_sums.h"
 
 namespace floe {
 
@@ -54,38 +52,18 @@ Overlap JoinedOverlap::sum(bool with_patch) {
   return whole;
 }
 
-/// Sums over triangles as Clipper::patch() does. \param n  unit vector along S
+/// \param n  unit vector along S
 Patch JoinedOverlap::patch(const Vec3<double>& n) {
   const Vec3<double> apex = parts_[0].centroid;
-  Patch sum;
-  std::tie(sum.u, sum.v) = basis_across(n);
-  const auto across = [&](const Vec3<double>& r) {
-    return Across<double>{dot(sum.u, r), dot(sum.v, r)};
-  };
-  Vec3<double> first{};           // int r dA, from the apex
-  double uu = 0, vv = 0, uv = 0;  // 12 times those about the apex
-  for (std::size_t k = 0; k < weights_.size(); ++k) {
-    const Vec3<double> p = corners_[3 * k] - apex, q = corners_[3 * k + 1] - apex,
-                       r = corners_[3 * k + 2] - apex;
-    const Across<double> a = across(p), b = across(q), c = across(r);
-    const Across<double> s{a.u + b.u + c.u, a.v + b.v + c.v};
-    const double area = 0.5 * weights_[k] * length(cross(q - p, r - p));
-    sum.area += area;
-    first = first + area * (p + q + r);
-    uu += area * (a.u * a.u + b.u * b.u + c.u * c.u + s.u * s.u);
-    vv += area * (a.v * a.v + b.v * b.v + c.v * c.v + s.v * s.v);
-    uv += area * (a.u * a.v + b.u * b.v + c.u * c.v + s.u * s.v);
-  }
+  PatchSums sums(n, apex);
+  for (std::size_t k = 0; k < weights_.size(); ++k)
+    sums.add(corners_[3 * k] - apex, corners_[3 * k + 1] - apex, corners_[3 * k + 2] - apex,
+             weights_[k]);
+  Patch sum = sums.patch();
   if (!(sum.area > 0)) return {};
-  const Vec3<double> middle = (1 / (3 * sum.area)) * first;
-  const Across<double> m = across(middle);
-  sum.middle = apex + middle;
-  sum.uu = uu / 12 - sum.area * m.u * m.u;
-  sum.vv = vv / 12 - sum.area * m.v * m.v;
-  sum.uv = uv / 12 - sum.area * m.u * m.v;
   join_edges();
   for (const Edge& edge : edges_)
-    sum.reach += reach_of_edge(across(edge.a - sum.middle), across(edge.b - sum.middle));
+    sum.reach += reach_of_edge(sums.across(edge.a - sum.middle), sums.across(edge.b - sum.middle));
   return sum;
 }
 

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "floe/base/item.h"
-#include "geometry/across.h"
+#include "geometry/patch_sums.h"
 
 namespace floe {
 namespace {
@@ -268,54 +267,28 @@ Overlap Clipper::integrals() const {
   return o;
 }
 
-/// Sums over the triangles of the facets on B. A triangle with corners p_k, s their sum, has
-/// int r r^T dA = (A/12) (sum p_k p_k^T + s s^T).
 /// \param n  unit vector along S
 Patch Clipper::patch(const Vec3<double>& n) const {
   const Vec3<double> apex = now_.points[0];
   const auto corner = [&](std::int32_t c) {
     return item(now_.points, item(now_.corners, c)) - apex;
   };
-  Patch sum;
-  std::tie(sum.u, sum.v) = basis_across(n);
-  const auto across = [&](const Vec3<double>& r) {
-    return Across<double>{dot(sum.u, r), dot(sum.v, r)};
-  };
-  Vec3<double> first{};           // int r dA, from the apex
-  double uu = 0, vv = 0, uv = 0;  // 12 times those about the apex
+  PatchSums sums(n, apex);
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     if (!face.on_b) continue;
     const Vec3<double> p = corner(face.begin);
-    Vec3<double> q = corner(face.begin + 1);
-    const Across<double> a = across(p);
-    Across<double> b = across(q);
-    for (std::int32_t k = face.begin + 2; k < face.end; ++k) {
-      const Vec3<double> r = corner(k);
-      const Across<double> c = across(r), s{a.u + b.u + c.u, a.v + b.v + c.v};
-      const double area = 0.5 * length(cross(q - p, r - p));
-      sum.area += area;
-      first = first + area * (p + q + r);
-      uu += area * ((a.u * a.u + b.u * b.u) + (c.u * c.u + s.u * s.u));
-      vv += area * ((a.v * a.v + b.v * b.v) + (c.v * c.v + s.v * s.v));
-      uv += area * ((a.u * a.v + b.u * b.v) + (c.u * c.v + s.u * s.v));
-      q = r;
-      b = c;
-    }
+    for (std::int32_t k = face.begin + 2; k < face.end; ++k) sums.add(p, corner(k - 1), corner(k));
   }
+  Patch sum = sums.patch();
   if (!(sum.area > 0)) return {};
-  const Vec3<double> middle = (1 / (3 * sum.area)) * first;
-  const Across<double> m = across(middle);
-  sum.middle = apex + middle;
-  sum.uu = uu / 12 - sum.area * m.u * m.u;
-  sum.vv = vv / 12 - sum.area * m.v * m.v;
-  sum.uv = uv / 12 - sum.area * m.u * m.v;
+  const Vec3<double> middle = sum.middle - apex;
   for (std::size_t f = 0; f < now_.faces.size(); ++f) {
     const Face& face = now_.faces[f];
     if (!face.on_b) continue;
-    Across<double> a = across(corner(face.end - 1) - middle);
+    Across<double> a = sums.across(corner(face.end - 1) - middle);
     for (std::int32_t k = face.begin; k < face.end; ++k) {
-      const Across<double> b = across(corner(k) - middle);
+      const Across<double> b = sums.across(corner(k) - middle);
       sum.reach += reach_of_edge(a, b);
       a = b;
     }

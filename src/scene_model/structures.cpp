@@ -8,6 +8,7 @@
 #include "floe/base/item.h"
 #include "forces/mooring_line.h"
 #include "forces/support.h"
+#include "geometry/append_faces.h"
 
 namespace floe {
 namespace {
@@ -85,13 +86,9 @@ void move_to(Obstacle& obstacle, const Point3& centre, const Triad<double>& axes
   obstacle.point = centre;
 }
 
+/// Appends a shape as a body.
 void append_shape(Shapes& to, const Shapes& shape) {
-  const auto first = static_cast<std::int32_t>(to.vertices.size());
-  const auto corner = static_cast<std::int32_t>(to.corners.size());
-  to.vertices.insert(to.vertices.end(), shape.vertices.begin(), shape.vertices.end());
-  for (const std::int32_t c : shape.corners) to.corners.push_back(first + c);
-  for (std::size_t f = 1; f < shape.corner_of.size(); ++f)
-    to.corner_of.push_back(corner + shape.corner_of[f]);
+  append_faces(to, shape);
   to.face_of.push_back(static_cast<std::int32_t>(to.corner_of.size()) - 1);
   to.vertex_of.push_back(static_cast<std::int32_t>(to.vertices.size()));
 }

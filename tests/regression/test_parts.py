@@ -10,6 +10,8 @@ from scipy.spatial import ConvexHull
 from launch import REPOSITORY
 from scene_runs import SceneTest, rows_of
 from test_restart import contents
+from test_structures import ICE as STRUCTURE_ICE
+from test_structures import SOFT
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
 import floe_lattice as fl  # noqa: E402
@@ -35,26 +37,14 @@ PARTS = """  names: [b, step, c, d]
   c: {shape: box, centre: [0, 0, -0.5], size: [2, 3, 1], part_of: step}
   d: {shape: box, centre: [2, 0, -1], size: [2, 3, 2], part_of: step}"""
 # Ice that drives against a leg of three parts, breaks and slides past.
-ICE = """integrator: explicit
-forces: [beam, fracture, gravity, buoyancy, drag, contact]
-ice: {young: 4e8}
-sheet: {length: 12, width: 8, thickness: 0.5, element_size: 1, iterations: 20}
-beam: {damping_ratio: 0.1}
-fracture: {tensile_strength: 1e5, shear_strength: 1e5, energy: 15}
-water: {drag_linear: 200, current: [1, 0, 0]}
-contact: {young: 1e7, friction: 0.2, restitution: 0.3, plastic_limit: 1e6}
-obstacle:
-  names: [leg, toe, top]
+ICE = STRUCTURE_ICE.replace("""  names: [leg]
+  leg: {shape: cylinder, base: [7.6, 0, -3], radius: 1.5, height: 5, friction: 0.1, LEG}
+""", """  names: [leg, toe, top]
   leg: {shape: box, centre: [7.5, 0, 0], size: [2, 2, 2], friction: 0.1, LEG}
   toe: {shape: cone, base: [7.5, 0, -3], radius: 2, top_radius: 1, height: 2, part_of: leg}
   top: {shape: box, centre: [7.5, 0, 1.5], size: [3, 3, 1], part_of: leg}
-boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [1, 0, 0], ramp: 0.1}}
-time: {end: 1.5, dt: 2e-4}
-output: {history: 0.02, fields: 0.5}
-checkpoint: {every: 1000}
-"""
-SOFT = ("mass: 2e4, support_stiffness: [2e6, 2e6, 1e7, 1e7, 1e7, 1e7], "
-        "support_damping_ratio: 0.02")
+""")
+assert "part_of" in ICE
 
 
 def write_hulls(path, parts):
