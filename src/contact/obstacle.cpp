@@ -205,6 +205,7 @@ std::optional<PartsOverlap> overlap_of_parts(const Obstacle& obstacle) {
   if (parts < 2) return std::nullopt;
   const Shapes shapes = parts_of(obstacle);
   std::vector<double> volumes;
+  volumes.reserve(obstacle.parts.size());
   for (std::int32_t k = 0; k < parts; ++k) volumes.push_back(volume_properties(shapes, k).volume);
   Clipper clipper;
   for (std::int32_t one = 0; one < parts; ++one) {
