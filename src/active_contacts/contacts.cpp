@@ -1,6 +1,7 @@
 #include "active_contacts/contacts.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace floe {
@@ -151,16 +152,19 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
   if (met_.number > 0) find_trials(law);
 }
 
-/// Takes over the contacts of a body with an obstacle of several parts.
-/// \param first  index of the first of their pairs
-/// \returns the index behind their last pair
+/// Takes over the contacts of a body, or of an obstacle that a body carries, with an obstacle,
+/// where one of them has several parts or both are obstacles. \param first  index of the first of
+/// their pairs \returns the index behind their last pair
 // Not inlined: the loop over all pairs is not to pay for it.
 template <IsContactLaw Law>
 [[gnu::noinline]] std::int32_t Contacts::meet_parts(const Law& law, std::int32_t first,
                                                     ContactHistory::Cursor& histories) {
   const std::span<Pair> pairs = list_.pairs();
   const Pair& one = item(pairs, first);
-  const std::size_t obstacle = solids_.obstacle_number(one.b);
+  const auto is_of_the_same = [&](std::int32_t index, std::int32_t other) {
+    if (!is_obstacle(index) || !is_obstacle(other)) return index == other;
+    return solids_.obstacle_number(index) == solids_.obstacle_number(other);
+  };
   Placed image;
   const Placed &a = places_.of_a(one), &b = places_.image_of_b(one, image);
   parts_.start();
@@ -169,8 +173,7 @@ template <IsContactLaw Law>
   std::int32_t index = first;
   for (; index < static_cast<std::int32_t>(pairs.size()); ++index) {
     Pair& pair = item(pairs, index);
-    if (pair.a != one.a || !is_obstacle(pair.b) || solids_.obstacle_number(pair.b) != obstacle)
-      break;
+    if (!is_of_the_same(pair.a, one.a) || !is_of_the_same(pair.b, one.b)) break;
     if (const PairHistory* memory = histories.of(index)) {
       known_.push_back(index);
       known_memory_.push_back(memory);
@@ -314,7 +317,7 @@ void Contacts::find_crushed() {
   for (std::size_t k = 0; k < active_.size(); ++k) {
     const double after = active_.plastic(k);
     const Pair& pair = list_.pair(active_.pair(k));
-    if (!pair.counted || after == 0) continue;
+    if (!pair.counted || after == 0 || is_obstacle(pair.a)) continue;  // obstacles lose nothing
     const PairHistory* memory = before.of(active_.pair(k));
     const double born = pair.newly_eligible ? after : 0.0;
     crushing_.take(pair, memory != nullptr ? memory->plastic : born, after, active_.normal(k),
@@ -352,23 +355,27 @@ void Contacts::restore_wear(std::span<const double> crushed, std::span<const dou
   wear_.restore(solids_, worn);
 }
 
-Contacts::OnObstacle Contacts::on_obstacle_of(std::size_t contact) const {
+Contacts::OnObstacle Contacts::on_obstacle_of(std::size_t contact, bool on_a) const {
   const Pair& pair = list_.pair(active_.pair(contact));
-  if (!is_obstacle(pair.b)) return {};
+  const std::int32_t index = on_a ? pair.a : pair.b, other = on_a ? pair.b : pair.a;
+  if (!is_obstacle(index)) return {};
   Placed image;
   const Placed &a = places_.of_a(pair), &b = places_.image_of_b(pair, image);
-  const auto local = [&](const Vec3<double>& r) { return b.axes.to_local(r); };
-  const auto [turn, x] = Relative(a, b);
-  return {.obstacle = static_cast<std::int32_t>(solids_.obstacle_number(pair.b)),
+  const Placed &obstacle = on_a ? a : b, &body = on_a ? b : a;
+  const auto local = [&](const Vec3<double>& r) { return obstacle.axes.to_local(r); };
+  const auto [turn, x] = Relative(body, obstacle);
+  const double sign = on_a ? 1 : -1;  // force and normal of the contact are on A and out of B
+  return {.obstacle = static_cast<std::int32_t>(solids_.obstacle_number(index)),
           .counted = pair.counted,
-          .force = -1.0 * active_.force(contact),
-          .centre = local(active_.centre(contact)) + x,
-          .normal = local(active_.normal(contact)),
+          .force = sign * active_.force(contact),
+          .centre = local(active_.centre(contact)) + local(a.x - obstacle.x),
+          .normal = -sign * local(active_.normal(contact)),
           .axes = turn,
           .x = x,
-          .radius = solids_.radius(pair.a),
-          .planes = solids_.planes(pair.a),
-          .worn = wear_.of(pair.a)};
+          .radius = solids_.is_half_space(other) ? std::numeric_limits<double>::infinity()
+                                                 : solids_.radius(other),
+          .planes = solids_.planes(other),
+          .worn = wear_.of(other)};
 }
 
 std::vector<BodyPair> Contacts::enclosed() const {

@@ -141,7 +141,8 @@ class Contacts {
   void keep_forces() { active_.keep_forces(); }
   /// Returns the number of contacts of the last evaluation, until it is committed.
   std::size_t contacts() const { return active_.size(); }
-  /// A contact between a body and an obstacle; all in the frame of the obstacle but the force.
+  /// A contact of an obstacle with a body, or with another obstacle in its place; all in the frame
+  /// of the obstacle but the force.
   struct OnObstacle {
     std::int32_t obstacle = -1;               ///< number; -1: it is a contact between bodies
     bool counted = false;                     ///< this rank owns the body
@@ -152,7 +153,8 @@ class Contacts {
     double radius = 0;                        ///< [m]
     std::span<const HalfSpace> planes, worn;  ///< that bound it, in its own frame
   };
-  OnObstacle on_obstacle_of(std::size_t contact) const;
+  /// \param on_a  whether the obstacle is that of A, of pairs of two obstacles; else that of B
+  OnObstacle on_obstacle_of(std::size_t contact, bool on_a) const;
   /// Returns the number of overlapping counted pairs in the last evaluation.
   std::int64_t touching() const { return active_.touching(); }
   /// Adds the power of the contacts of the last evaluation on an involved body that moves so.

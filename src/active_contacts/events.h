@@ -12,7 +12,7 @@ namespace floe {
 struct ContactEvent {
   bool happened = false;
   double time = 0;            ///< [s]
-  std::int32_t a = 0, b = 0;  ///< bodies; b < 0: obstacle -1 - b
+  std::int32_t a = 0, b = 0;  ///< indices of the pair
 };
 
 /// Events among the committed counted pairs.

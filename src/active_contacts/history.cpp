@@ -25,14 +25,24 @@ void ContactHistory::move(std::int32_t from, std::int32_t to, std::span<const Pa
   }
 }
 
-/// Both the histories and the pairs are sorted by (A, B).
+/// Both the histories and the pairs are sorted by (A, B), but for the few pairs of two obstacles,
+/// which come first in both.
 void ContactHistory::take_over(std::span<Pair> pairs) {
   next_.clear();
-  auto entry = entries_.cbegin();
+  const auto first = entries_.cbegin();
+  const auto of_bodies =
+      std::find_if(first, entries_.cend(), [](const Entry& e) { return !is_obstacle(e.a); });
+  auto entry = of_bodies;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     Pair& p = pairs[k];
-    while (entry != entries_.cend() && std::tie(entry->a, entry->b) < std::tie(p.a, p.b)) ++entry;
-    if (entry == entries_.cend() || entry->a != p.a || entry->b != p.b) continue;
+    const auto is_of = [&](const Entry& e) { return e.a == p.a && e.b == p.b; };
+    if (is_obstacle(p.a)) {
+      entry = std::find_if(first, of_bodies, is_of);
+      if (entry == of_bodies) continue;
+    } else {
+      while (entry != entries_.cend() && std::tie(entry->a, entry->b) < std::tie(p.a, p.b)) ++entry;
+      if (entry == entries_.cend() || !is_of(*entry)) continue;
+    }
     p.newly_eligible = false;
     next_.push_back(
         {.a = p.a, .b = p.b, .pair = static_cast<std::int32_t>(k), .memory = entry->memory});

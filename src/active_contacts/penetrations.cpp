@@ -7,8 +7,10 @@ namespace {
 
 /// Returns the smaller size of a pair [m].
 double smaller_size(const Solids& solids, const Pair& pair) {
-  const double size_of_b = is_obstacle(pair.b) ? solids.width(pair.b) : solids.size(pair.b);
-  return std::min(solids.size(pair.a), size_of_b);
+  const auto size = [&](std::int32_t index) {
+    return is_obstacle(index) ? solids.width(index) : solids.size(index);
+  };
+  return std::min(size(pair.a), size(pair.b));
 }
 
 }  // namespace

@@ -12,6 +12,16 @@ PairConstants pair_constants(const Solids& solids, const ContactOptions& options
   const auto at_place = [&](double dry, const std::optional<double>& below) {
     return wet && below ? *below : dry;
   };
+  if (is_obstacle(pair.a)) {  // of two obstacles
+    const Obstacle &one = solids.obstacle(pair.a), &other = solids.obstacle(pair.b);
+    const double other_size = solids.size(pair.b);
+    const double smaller = other_size > 0 ? std::min(size, other_size) : size;
+    return {.stiffness = options.young / (0.5 * (size + other_size)),
+            .area = smaller * smaller,
+            .friction = std::max(at_place(one.friction, one.friction_wet),
+                                 at_place(other.friction, other.friction_wet)),
+            .half_space = solids.is_half_space(pair.b) ? 1.0 : 0.0};
+  }
   if (is_obstacle(pair.b)) {
     const Obstacle& obstacle = solids.obstacle(pair.b);
     return {.stiffness = options.young / (0.5 * size),
@@ -44,8 +54,8 @@ ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
   double most = 0, touch = 0;
   std::int32_t touching = -1;
   for (std::int32_t b = 0; b < solids.bodies(); ++b) {
-    // A structure is touched by bodies of any size, all over its surface.
-    const double size = solids.carries(b) ? least_size : solids.size(b);
+    // A structure is touched by bodies of any size, all over its surface, and by obstacles.
+    const double size = solids.carries(b) ? std::min(least_size, solids.size(b)) : solids.size(b);
     const Solids::Faces& faces = solids.faces(b);
     const double k = stiffest / (0.5 * size + smallest);
     const double steeper =
@@ -53,9 +63,9 @@ ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
     most = std::max(most, 2 * k * steeper * faces.area / solids.mass(b));
     // k_v/m_r is 2 E_c/size/m on an obstacle and between bodies of one size alike; of two sizes the
     // smaller body's own bound holds.
-    if (solids.carries(b)) continue;
+    if (solids.carries(b) && !solids.obstacles_touch()) continue;
     double of_face = 2 * stiffest / size * steeper * faces.widest / solids.mass(b);
-    if (mobility > 0) of_face *= 1 + mobility * solids.mass(b);
+    if (mobility > 0 && !solids.carries(b)) of_face *= 1 + mobility * solids.mass(b);
     if (of_face > touch) {
       touch = of_face;
       touching = b;

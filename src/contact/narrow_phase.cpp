@@ -154,7 +154,8 @@ void NarrowPhase::clip(const Solids& solids, Pair& pair, const Triad<double>& tu
   }
   by_graph_ = false;
   place(solids.vertices(pair.a), turn, x, vertices_a_);
-  found = clipper_.overlap(solids.shapes(), pair.a, vertices_a_, planes, with_patch_, further);
+  found = clipper_.overlap(solids.shapes_with(pair.a), solids.shape_number(pair.a), vertices_a_,
+                           planes, with_patch_, further);
 }
 
 void NarrowPhase::facets_on_b(const Pair& pair, FacetsOnB& facets) const {

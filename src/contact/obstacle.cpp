@@ -112,8 +112,9 @@ void append_to_body(Shapes& to, const Shapes& shapes, const Vec3<double>& way) {
   to.vertex_of = {0, static_cast<std::int32_t>(to.vertices.size())};
 }
 
-/// Returns the parts as bodies of their own.
-Shapes parts_of(const Obstacle& obstacle) {
+}  // namespace
+
+Shapes shapes_of_parts(const Obstacle& obstacle) {
   Shapes shapes = obstacle.shape;
   shapes.face_of = {0};
   shapes.vertex_of = {0};
@@ -127,8 +128,6 @@ Shapes parts_of(const Obstacle& obstacle) {
   }
   return shapes;
 }
-
-}  // namespace
 
 double Obstacle::radius() const { return size_of(*this); }
 
@@ -203,7 +202,7 @@ std::optional<PartsOverlap> overlap_of_parts(const Obstacle& obstacle) {
   constexpr double rounding = 1e-9;
   const auto parts = static_cast<std::int32_t>(obstacle.parts.size());
   if (parts < 2) return std::nullopt;
-  const Shapes shapes = parts_of(obstacle);
+  const Shapes shapes = shapes_of_parts(obstacle);
   std::vector<double> volumes;
   volumes.reserve(obstacle.parts.size());
   for (std::int32_t k = 0; k < parts; ++k) volumes.push_back(volume_properties(shapes, k).volume);

@@ -3,7 +3,8 @@
 ///
 /// Notation: of two bodies A is the one with the smaller global index. Obstacles consist of convex
 /// parts; part k of all parts of all obstacles has the index -1 - k, so B is a part of an obstacle
-/// where its index is below 0.
+/// where its index is below 0. A is a part of an obstacle in pairs of two obstacles; a body carries
+/// the obstacle of A then.
 #pragma once
 
 #include <array>
@@ -27,14 +28,14 @@ constexpr std::int32_t part_index(std::size_t k) { return -1 - static_cast<std::
 
 /// A pair of the list. Every step looks at all of them, so they are small.
 struct Pair {
-  std::int32_t a = 0, b = 0;  ///< global bodies; b < 0: part -1 - b of obstacles
+  std::int32_t a = 0, b = 0;  ///< global bodies; below 0: part -1 - index of obstacles
   /// slots of the bodies, of that which carries an obstacle too; -1 for an obstacle on its own
   std::int32_t slot_a = -1, slot_b = -1;
   bool counted : 1 = false;         ///< this rank owns A, and so counts the pair's energies
   bool newly_eligible : 1 = false;  ///< the first overlap of the pair counts as stress-free
   bool broken : 1 = false;          ///< a beam between A and B broke: they have new faces
   bool offloaded : 1 = false;       ///< another rank computes the overlap of the pair
-  bool one_of_several : 1 = false;  ///< B is one of several parts of its obstacle
+  bool one_of_several : 1 = false;  ///< A or B is one of several parts, or both are obstacles
   bool met : 1 = false;             ///< of these: it overlapped in the last evaluation
   std::int16_t face = -1;  ///< of the last gap: number of a plane of B, then of A; -1: axis
   std::int32_t cuts = -1;  ///< place of the record of its cuts (NarrowPhase); -1: none

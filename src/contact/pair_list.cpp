@@ -38,8 +38,10 @@ void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const 
   narrow.forget_cuts();
   list_bodies(search);
   list_obstacles(search);
+  if (solids.obstacles_touch()) list_touching_obstacles(search);
   std::sort(pairs_.begin(), pairs_.end(),
             [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
+  bring_together(solids);
   taken_on_.clear();
   find_involved(solids);
   changed_ = false;
@@ -107,6 +109,46 @@ void PairList::list_obstacles(const Search& search) {
   }
 }
 
+/// Lists the parts of obstacles that bodies carry with those of other obstacles.
+void PairList::list_touching_obstacles(const Search& search) {
+  const Solids& solids = search.solids;
+  const std::vector<Obstacle>& obstacles = solids.obstacles();
+  const auto is_here = [&](const Obstacle& o) { return o.is_carried() && search.is_here(o.body); };
+  const auto place = [&](const Obstacle& o) {
+    return o.is_carried() ? item(search.bodies, o.body) : place_of(o, search.time, search.time);
+  };
+  for (std::size_t one = 0; one < obstacles.size(); ++one) {
+    if (!obstacles[one].is_carried()) continue;
+    const Placed a = place(obstacles[one]);
+    const auto [first_a, end_a] = solids.parts_of(one);
+    for (std::size_t other = 0; other < obstacles.size(); ++other) {
+      if (other == one || obstacles[other].body == obstacles[one].body) continue;
+      if (obstacles[other].is_carried() && other < one) continue;
+      if (!is_here(obstacles[one]) && !is_here(obstacles[other])) continue;
+      const Placed b = place(obstacles[other]);
+      const auto [first_b, end_b] = solids.parts_of(other);
+      const double radii = solids.radius(part_index(first_a)) + solids.radius(part_index(first_b));
+      if (!obstacles[other].is_half_space() && length(periods_.nearest(a.x - b.x)) > radii + reach_)
+        continue;
+      for (std::size_t p = first_a; p < end_a; ++p)
+        for (std::size_t q = first_b; q < end_b; ++q)
+          list(search, {part_index(p), part_index(q)}, a, b);
+    }
+  }
+}
+
+/// Brings the pairs of the same two obstacles together, in the order of the obstacles.
+void PairList::bring_together(const Solids& solids) {
+  const auto end = std::find_if(pairs_.begin(), pairs_.end(),
+                                [](const Pair& pair) { return !is_obstacle(pair.a); });
+  std::stable_sort(pairs_.begin(), end, [&](const Pair& p, const Pair& q) {
+    const auto obstacles = [&](const Pair& pair) {
+      return std::array{solids.obstacle_number(pair.a), solids.obstacle_number(pair.b)};
+    };
+    return obstacles(p) < obstacles(q);
+  });
+}
+
 /// Lists a pair unless its gap exceeds the reach.
 void PairList::list(const Search& search, const BodyPair& bodies, const Placed& a,
                     const Placed& itself) {
@@ -115,9 +157,9 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
   constexpr int tries = 20;
   Pair pair{.a = bodies[0],
             .b = bodies[1],
-            .counted = search.is_here(bodies[0]),
+            .counted = search.is_here(search.solids.body_of(bodies[0])),
             .newly_eligible = stress_free_,
-            .one_of_several = search.solids.is_one_of_several(bodies[1])};
+            .one_of_several = is_obstacle(bodies[0]) || search.solids.is_one_of_several(bodies[1])};
   if (!is_obstacle(pair.b)) {
     pair.newly_eligible =
         stress_free_ || (changed_ && eligibility_.became_eligible(pair.a, pair.b));
@@ -135,7 +177,7 @@ void PairList::find_involved(const Solids& solids) {
   involved_ = solids.carriers();
   for (const std::vector<Pair>* pairs : {&pairs_, &taken_on_}) {
     for (const Pair& p : *pairs) {
-      involved_.push_back(p.a);
+      if (!is_obstacle(p.a)) involved_.push_back(p.a);
       if (!is_obstacle(p.b)) involved_.push_back(p.b);
     }
   }
@@ -143,8 +185,8 @@ void PairList::find_involved(const Solids& solids) {
   involved_.erase(std::unique(involved_.begin(), involved_.end()), involved_.end());
   for (std::vector<Pair>* pairs : {&pairs_, &taken_on_}) {
     for (Pair& p : *pairs) {
-      p.slot_a = slot_of(p.a);
-      const std::int32_t b = is_obstacle(p.b) ? solids.obstacle(p.b).body : p.b;
+      p.slot_a = slot_of(solids.body_of(p.a));
+      const std::int32_t b = solids.body_of(p.b);
       p.slot_b = b < 0 ? -1 : slot_of(b);
     }
   }

@@ -17,9 +17,9 @@
 
 namespace floe {
 
-/// The pairs of one rank, sorted by (A, B), and the pairs that this rank has taken on from other
-/// ranks. The bodies in all these pairs are involved; their places in the sorted list of involved
-/// bodies are the slots.
+/// The pairs of one rank, sorted by (A, B), those of the same two obstacles one after the other,
+/// and the pairs that this rank has taken on from other ranks. The bodies in all these pairs are
+/// involved; their places in the sorted list of involved bodies are the slots.
 class PairList {
  public:
   /// \param joined       pairs with an unbroken beam, sorted, the smaller index first
@@ -83,7 +83,9 @@ class PairList {
   struct Search;
   void list_bodies(const Search& search);
   void list_obstacles(const Search& search);
+  void list_touching_obstacles(const Search& search);
   void list(const Search& search, const BodyPair& bodies, const Placed& a, const Placed& b);
+  void bring_together(const Solids& solids);
   void find_involved(const Solids& solids);
 
   Eligibility eligibility_;

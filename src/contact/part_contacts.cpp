@@ -7,17 +7,23 @@
 namespace floe {
 namespace {
 
-/// Returns the number of the part of a pair in its obstacle.
-std::int32_t part_of(const Solids& solids, const Pair& pair) {
-  const std::size_t first = solids.parts_of(solids.obstacle_number(pair.b))[0];
-  return static_cast<std::int32_t>(part_number(pair.b) - first);
+/// Returns the number of a part in its obstacle.
+std::int32_t part_of(const Solids& solids, std::int32_t index) {
+  const std::size_t first = solids.parts_of(solids.obstacle_number(index))[0];
+  return static_cast<std::int32_t>(part_number(index) - first);
 }
 
-bool is_next_to(const Solids& solids, const Pair& one, const Pair& other) {
-  const auto& faces = solids.part(one.b).inner_faces;
+bool is_next_to(const Solids& solids, std::int32_t one, std::int32_t other) {
+  const auto& faces = solids.part(one).inner_faces;
   const std::int32_t part = part_of(solids, other);
   return std::any_of(faces.begin(), faces.end(),
                      [&](const InnerFace& face) { return face.other == part; });
+}
+
+/// Whether the parts of two pairs are the same or next to each other, in A and in B.
+bool are_next(const Solids& solids, const Pair& one, const Pair& other) {
+  return (one.a == other.a || is_next_to(solids, one.a, other.a)) &&
+         (one.b == other.b || is_next_to(solids, one.b, other.b));
 }
 
 }  // namespace
@@ -38,50 +44,42 @@ std::span<const PartContacts::Joined> PartContacts::join(const Solids& solids, c
                                                          std::span<const std::int32_t> known) {
   const std::span<Met> all = met();
   if (all.empty()) return {};
-  const std::int32_t body = item(pairs, all[0].pair).a;
-  if (all.size() > 1) {
-    const auto [turn, x] = Relative(a, b);
-    planes_a_.clear();
-    for (const HalfSpace& plane : solids.planes(body)) planes_a_.push_back(placed(plane, turn, x));
-    for (const HalfSpace& plane : wear.of(body)) planes_a_.push_back(placed(plane, turn, x));
-  }
-  const std::size_t number = find_meetings(solids, pairs);
+  const std::size_t number = find_meetings(solids, wear, pairs, a, b);
   joined_.resize(std::max(joined_.size(), number));
   const std::span<Joined> contacts(joined_.data(), number);
   for (Joined& contact : contacts) contact.pair = -1, contact.known.clear();
   choose_pairs(solids, pairs, known, contacts);
-  for (std::size_t k = 0; k < number; ++k) sum(with_patch, a, b, k);
+  for (std::size_t k = 0; k < number; ++k) sum(solids, pairs, with_patch, a, b, k);
   std::sort(contacts.begin(), contacts.end(),
             [](const Joined& p, const Joined& q) { return p.pair < q.pair; });
   return contacts;
 }
 
-/// Finds where met parts meet inside A, and numbers the contacts. \returns their number
-std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pair> pairs) {
+/// Finds where met parts meet inside A and B, and numbers the contacts. \returns their number
+std::size_t PartContacts::find_meetings(const Solids& solids, const Wear& wear,
+                                        std::span<const Pair> pairs, const Placed& a,
+                                        const Placed& b) {
   const std::span<Met> all = met();
   meetings_ = 0;
   for (std::size_t k = 0; k < all.size(); ++k) all[k].contact = k;
   if (all.size() == 1) return 1;
+  const auto [turn, x] = Relative(a, b);
+  std::int32_t of = 0;
   for (std::size_t one = 0; one < all.size(); ++one) {
-    for (const InnerFace& face : solids.part(item(pairs, all[one].pair).b).inner_faces) {
-      std::size_t other = one + 1;  // parts descend in the list, so each face is found once
-      while (other < all.size() && part_of(solids, item(pairs, all[other].pair)) != face.other)
-        ++other;
-      if (other == all.size()) continue;
-      corners_ = face.corners;
-      for (const HalfSpace& plane : planes_a_) {
-        if (corners_.size() < 3) break;
-        cut(corners_, plane, work_);
-      }
-      if (corners_.size() < 3) continue;
-      if (meetings_ == meeting_room_.size()) meeting_room_.emplace_back();
-      Meeting& meeting = meeting_room_[meetings_++];
-      meeting.part = one;
-      meeting.corners.assign(corners_.begin(), corners_.end());
-      const std::size_t from = all[other].contact, to = all[one].contact;
-      for (Met& met : all)
-        if (met.contact == std::max(from, to)) met.contact = std::min(from, to);
+    const Pair& pair = item(pairs, all[one].pair);
+    if (one == 0 || pair.a != of) {
+      of = pair.a;
+      planes_a_.clear();
+      for (const auto& planes : {solids.planes(of), wear.of(of)})
+        for (const HalfSpace& plane : planes) planes_a_.push_back(placed(plane, turn, x));
     }
+    find_meetings_in_a(solids, pairs, one);
+    if (!is_obstacle(of)) continue;
+    const auto [turn_b, x_b] = Relative(b, a);
+    planes_b_.clear();
+    for (const HalfSpace& plane : solids.planes(pair.b))
+      planes_b_.push_back(placed(plane, turn_b, x_b));
+    find_meetings_in_b(solids, pairs, one);
   }
   std::size_t number = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -89,6 +87,62 @@ std::size_t PartContacts::find_meetings(const Solids& solids, std::span<const Pa
     all[k].contact = first == k ? number++ : all[first].contact;
   }
   return number;
+}
+
+/// Finds where the part of B of an overlap meets others inside the same part of A. Parts descend in
+/// the list, so each face is found once.
+void PartContacts::find_meetings_in_a(const Solids& solids, std::span<const Pair> pairs,
+                                      std::size_t one) {
+  const std::span<Met> all = met();
+  const Pair& pair = item(pairs, all[one].pair);
+  for (const InnerFace& face : solids.part(pair.b).inner_faces) {
+    for (std::size_t other = one + 1; other < all.size(); ++other) {
+      const Pair& next = item(pairs, all[other].pair);
+      if (next.a != pair.a) break;
+      if (part_of(solids, next.b) != face.other) continue;
+      corners_ = face.corners;
+      if (!is_inside(planes_a_)) break;
+      if (meetings_ == meeting_room_.size()) meeting_room_.emplace_back();
+      Meeting& meeting = meeting_room_[meetings_++];
+      meeting.part = one;
+      meeting.corners.assign(corners_.begin(), corners_.end());
+      unite(one, other);
+      break;
+    }
+  }
+}
+
+/// Finds where the part of A of an overlap meets others inside the same part of B.
+void PartContacts::find_meetings_in_b(const Solids& solids, std::span<const Pair> pairs,
+                                      std::size_t one) {
+  const std::span<Met> all = met();
+  const Pair& pair = item(pairs, all[one].pair);
+  for (const InnerFace& face : solids.part(pair.a).inner_faces) {
+    for (std::size_t other = one + 1; other < all.size(); ++other) {
+      const Pair& next = item(pairs, all[other].pair);
+      if (next.b != pair.b || part_of(solids, next.a) != face.other) continue;
+      corners_ = face.corners;
+      if (is_inside(planes_b_)) unite(one, other);
+      break;
+    }
+  }
+}
+
+/// Cuts corners_ off at planes. \returns whether something is left
+bool PartContacts::is_inside(std::span<const HalfSpace> planes) {
+  for (const HalfSpace& plane : planes) {
+    if (corners_.size() < 3) return false;
+    cut(corners_, plane, work_);
+  }
+  return corners_.size() >= 3;
+}
+
+/// Makes the contacts of two overlaps one.
+void PartContacts::unite(std::size_t one, std::size_t other) {
+  const std::span<Met> all = met();
+  const std::size_t from = all[other].contact, to = all[one].contact;
+  for (Met& met : all)
+    if (met.contact == std::max(from, to)) met.contact = std::min(from, to);
 }
 
 /// Gives histories to contacts, and each contact its pair: that of its history as long as A touches
@@ -106,7 +160,7 @@ void PartContacts::choose_pairs(const Solids& solids, std::span<const Pair> pair
       continue;
     }
     found = std::find_if(all.begin(), all.end(), [&](const Met& met) {
-      return is_next_to(solids, item(pairs, met.pair), item(pairs, pair));
+      return are_next(solids, item(pairs, met.pair), item(pairs, pair));
     });
     if (found != all.end()) contacts[found->contact].known.push_back(pair);
   }
@@ -121,7 +175,8 @@ void PartContacts::choose_pairs(const Solids& solids, std::span<const Pair> pair
   }
 }
 
-void PartContacts::sum(bool with_patch, const Placed& a, const Placed& b, std::size_t contact) {
+void PartContacts::sum(const Solids& solids, std::span<const Pair> pairs, bool with_patch,
+                       const Placed& a, const Placed& b, std::size_t contact) {
   Joined& joined = joined_[contact];
   const auto is_of = [&](const Met& met) { return met.contact == contact; };
   const std::span<Met> all = met();
@@ -139,6 +194,11 @@ void PartContacts::sum(bool with_patch, const Placed& a, const Placed& b, std::s
     whole_.leave_out(meeting.corners);
   }
   joined.overlap = {.overlap = whole_.sum(with_patch), .depth = 0};
+  const std::int32_t of_b = item(pairs, joined.pair).b;
+  if (!solids.is_half_space(of_b)) return;
+  const HalfSpace& face = solids.planes(of_b)[0];
+  const Vec3<double> centroid = b.axes.to_local(joined.overlap.overlap.centroid - origin);
+  joined.overlap.depth = face.offset - dot(face.normal, centroid);
 }
 
 }  // namespace floe

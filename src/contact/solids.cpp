@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/append_faces.h"
 #include "geometry/convex_polygon.h"
 #include "geometry/overlap.h"
 
@@ -58,7 +59,7 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
     add(b, item(masses, b), graphs);
     faces_.push_back(faces_of(shapes_, b));
   }
-  add_parts();
+  add_parts(graphs);
   for (const Obstacle& o : obstacles_) {
     if (!o.is_carried()) continue;
     carriers_.push_back(o.body);
@@ -78,7 +79,7 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
   for (const Part& part : parts_) thinnest_ = std::min(thinnest_, part.width);
 }
 
-void Solids::add_parts() {
+void Solids::add_parts(Graphs& known) {
   for (std::size_t k = 0; k < obstacles_.size(); ++k) {
     double radius = 0, thickest = 0;
     for (const ConvexPart& part : obstacles_[k].parts) {
@@ -90,6 +91,14 @@ void Solids::add_parts() {
                         .radius = radius,
                         .width = thickest,
                         .first_coordinate = add_lists(part.vertices)});
+    if (obstacles_[k].is_carried()) {
+      const std::int32_t first = carried_shapes_.bodies();
+      append_bodies(carried_shapes_, shapes_of_parts(obstacles_[k]));
+      for (std::size_t p = first_part_.back(); p < parts_.size(); ++p) {
+        parts_[p].shape = first + static_cast<std::int32_t>(p - first_part_.back());
+        parts_[p].graph = add_graph(carried_shapes_, parts_[p].shape, known);
+      }
+    }
     first_part_.push_back(parts_.size());
   }
 }
@@ -106,8 +115,8 @@ std::size_t Solids::add_lists(std::span<const Vec3<double>> vertices) {
 
 /// Returns the place of the graph of a body in graphs_, or -1.
 /// \param known  places of the graphs in graphs_
-std::int32_t Solids::add_graph(std::int32_t body, Graphs& known) {
-  const std::optional<EdgeGraph> graph = edge_graph(shapes_, body);
+std::int32_t Solids::add_graph(const Shapes& shapes, std::int32_t body, Graphs& known) {
+  const std::optional<EdgeGraph> graph = edge_graph(shapes, body);
   if (!graph) return -1;
   const auto [place, is_new] = known.try_emplace(*graph, static_cast<std::int32_t>(graphs_.size()));
   if (is_new) graphs_.push_back(*graph);
@@ -125,7 +134,7 @@ void Solids::add(std::int32_t body, double mass, Graphs& known) {
   const auto first = static_cast<std::size_t>(added.first_vertex);
   added.first_coordinate = add_lists(
       std::span(shapes_.vertices).subspan(first, static_cast<std::size_t>(added.vertices)));
-  added.graph = add_graph(body, known);
+  added.graph = add_graph(shapes_, body, known);
   append_half_spaces(shapes_, body, planes_);
   added.planes = static_cast<std::int32_t>(planes_.size()) - added.first_plane;
   const VolumeProperties properties = volume_properties(shapes_, body);
@@ -148,6 +157,11 @@ bool Solids::has_friction(const ContactOptions& options) const {
 }
 
 double Solids::mean_radius() const {
+  if (bodies_.size() == carriers_.size()) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Body& body : bodies_) least = std::min(least, body.size);
+    return least;
+  }
   double mean = 0;
   const auto number = static_cast<double>(bodies_.size() - carriers_.size());
   for (std::int32_t b = 0; b < bodies(); ++b)

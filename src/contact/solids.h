@@ -70,10 +70,20 @@ class Solids {
     const double* x = coordinates_.data() + first;
     return {.x = x, .y = x + length, .z = x + 2 * length, .number = number};
   }
-  /// Returns the graph of the surface of a body; null if it has too many vertices.
-  const EdgeGraph* graph(std::int32_t body) const {
-    const std::int32_t graph = item(bodies_, body).graph;
+  /// Returns the graph of the surface of a body, or of a part that a body carries; null if it has
+  /// too many vertices.
+  const EdgeGraph* graph(std::int32_t index) const {
+    const std::int32_t graph =
+        is_obstacle(index) ? part_of(index).graph : item(bodies_, index).graph;
     return graph < 0 ? nullptr : &item(graphs_, graph);
+  }
+  /// Returns the shapes among which that of a body is, or of a part that a body carries.
+  const Shapes& shapes_with(std::int32_t index) const {
+    return is_obstacle(index) ? carried_shapes_ : shapes_;
+  }
+  /// Returns the number of its shape among these.
+  std::int32_t shape_number(std::int32_t index) const {
+    return is_obstacle(index) ? part_of(index).shape : index;
   }
   /// Returns the planes of the faces, in the frame of the body or obstacle.
   std::span<const HalfSpace> planes(std::int32_t index) const {
@@ -83,14 +93,22 @@ class Solids {
   }
   /// Whether a body carries obstacles: it touches as these.
   bool carries(std::int32_t body) const { return !carries_.empty() && item(carries_, body) != 0; }
+  /// Returns a body itself, the body that carries a part, or -1 for a part that no body carries.
+  std::int32_t body_of(std::int32_t index) const {
+    return is_obstacle(index) ? obstacle(index).body : index;
+  }
   /// Returns the bodies that carry obstacles, sorted.
   const std::vector<std::int32_t>& carriers() const { return carriers_; }
   bool is_half_space(std::int32_t index) const {
     return is_obstacle(index) && part(index).vertices.empty();
   }
 
-  /// Returns the cube root of the volume of a body [m].
-  double size(std::int32_t body) const { return item(bodies_, body).size; }
+  /// Returns the cube root of the volume of a body, or of that which carries a part [m]; 0 for a
+  /// part that no body carries.
+  double size(std::int32_t index) const {
+    const std::int32_t body = body_of(index);
+    return body < 0 ? 0 : item(bodies_, body).size;
+  }
   /// Returns the mass of a body [kg].
   double mass(std::int32_t body) const { return item(bodies_, body).mass; }
   /// Returns the inverse mass and moments of inertia of a body with the density of its shape, the
@@ -110,7 +128,9 @@ class Solids {
   double width(std::int32_t index) const {
     return is_obstacle(index) ? part_of(index).width : item(bodies_, index).width;
   }
-  /// Returns the mean radius of all bodies that carry no obstacle [m].
+  /// Whether obstacles may touch each other: where a body carries one of several.
+  bool obstacles_touch() const { return !carriers_.empty() && obstacles_.size() > 1; }
+  /// Returns the mean radius of all bodies that carry no obstacle [m]; if all do, the least size.
   double mean_radius() const;
   /// Returns the least width of all bodies and obstacles [m].
   double thinnest() const { return thinnest_; }
@@ -138,13 +158,14 @@ class Solids {
     std::size_t obstacle = 0;
     double radius = 0, width = 0;
     std::size_t first_coordinate = 0;
+    std::int32_t graph = -1, shape = -1;  ///< if a body carries it: in graphs_, carried_shapes_
   };
 
   const Part& part_of(std::int32_t index) const { return parts_[part_number(index)]; }
-  void add_parts();
-  std::size_t add_lists(std::span<const Vec3<double>> vertices);
   using Graphs = std::map<EdgeGraph, std::int32_t>;
-  std::int32_t add_graph(std::int32_t body, Graphs& known);
+  void add_parts(Graphs& known);
+  std::size_t add_lists(std::span<const Vec3<double>> vertices);
+  std::int32_t add_graph(const Shapes& shapes, std::int32_t body, Graphs& known);
   void add(std::int32_t body, double mass, Graphs& known);
 
   Shapes shapes_;
@@ -156,6 +177,7 @@ class Solids {
   std::vector<Body> bodies_;
   std::vector<Faces> faces_;                ///< per body
   std::vector<Part> parts_;                 ///< of all obstacles
+  Shapes carried_shapes_;                   ///< of the parts that bodies carry
   std::vector<std::size_t> first_part_{0};  ///< per obstacle, then the number of parts
   std::vector<std::uint8_t> carries_;       ///< per body; empty: none does
   std::vector<std::int32_t> carriers_;      ///< sorted

@@ -45,7 +45,7 @@ void refuse_enclosed(const Contacts& contacts, MPI_Comm comm) {
   if (all.empty()) return;
   BodyPair first{all[0], all[1]};  // the first pair, independent of the ranks
   for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
-  const std::string body = "body " + std::to_string(first[0]);
+  const std::string body = name_of(contacts.solids(), first[0]);
   if (!is_obstacle(first[1]))
     throw InputError("forces: contact: " + body + " and body " + std::to_string(first[1]) +
                      ": one lies wholly inside the other, they would feel nothing");
@@ -64,10 +64,10 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
   const std::vector<double> all = all_gathered(mine, comm);
   if (all.empty()) return {};
   const PenetrationRow worst = worst_of(all);
-  const std::string pair = "body " + text(worst.a) + " and " +
-                           name_of(contacts.solids(), static_cast<std::int32_t>(worst.b)) +
-                           " overlap by " + text(worst.depth) + " m at the start, " +
-                           text(worst.share) + " of the smaller one's size";
+  const std::string pair =
+      name_of(contacts.solids(), static_cast<std::int32_t>(worst.a)) + " and " +
+      name_of(contacts.solids(), static_cast<std::int32_t>(worst.b)) + " overlap by " +
+      text(worst.depth) + " m at the start, " + text(worst.share) + " of the smaller one's size";
   const bool pressing = contacts.options().initial_overlap == InitialOverlap::press;
   if (pressing && worst.share > deep)
     throw InputError("forces: contact: " + pair + " (at most " + text(deep) +
@@ -122,8 +122,8 @@ std::vector<Remark> ContactRemarks::take(const Contacts& contacts) {
                         const std::string& why) {
     if (told || !event.happened) return;
     told = true;
-    remarks.push_back({event.time, "contact: from " + text(event.time) + " s on body " +
-                                       std::to_string(event.a) + what +
+    remarks.push_back({event.time, "contact: from " + text(event.time) + " s on " +
+                                       name_of(contacts.solids(), event.a) + what +
                                        name_of(contacts.solids(), event.b) + ": " + why});
   };
   tell(contacts.events().first_enclosed(), told_enclosed_, " and ",

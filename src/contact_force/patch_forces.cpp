@@ -18,7 +18,10 @@ PatchSample PatchForces::sample(const Contacts& contacts,
                                 std::span<const Vec3<double>> on_obstacles, double time,
                                 MPI_Comm comm) {
   forces_.assign(first_.back(), {});
-  for (std::size_t k = 0; k < contacts.contacts(); ++k) share_out(contacts, k);
+  for (std::size_t k = 0; k < contacts.contacts(); ++k) {
+    share_out(contacts.solids().obstacles(), contacts.on_obstacle_of(k, true));
+    share_out(contacts.solids().obstacles(), contacts.on_obstacle_of(k, false));
+  }
   if (size(comm) > 1 && !forces_.empty())
     sum_over_ranks(std::span(&forces_[0].x, 3 * forces_.size()), comm);
   PatchSample sample{.time = time, .obstacles = {}};
@@ -35,11 +38,12 @@ PatchSample PatchForces::sample(const Contacts& contacts,
   return sample;
 }
 
-void PatchForces::share_out(const Contacts& contacts, std::size_t contact) {
-  const Contacts::OnObstacle of = contacts.on_obstacle_of(contact);
+/// Shares the force of a contact out over the patches that lie in it.
+void PatchForces::share_out(const std::vector<Obstacle>& obstacles,
+                            const Contacts::OnObstacle& of) {
   if (of.obstacle < 0 || !of.counted) return;
   const auto k = static_cast<std::size_t>(of.obstacle);
-  const std::vector<SurfacePatch>& patches = contacts.solids().obstacles()[k].patches;
+  const std::vector<SurfacePatch>& patches = obstacles[k].patches;
   if (patches.empty()) return;
   planes_.clear();
   for (const auto& planes : {of.planes, of.worn})

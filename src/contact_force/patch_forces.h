@@ -27,7 +27,7 @@ class PatchForces {
                      double time, MPI_Comm comm);
 
  private:
-  void share_out(const Contacts& contacts, std::size_t contact);
+  void share_out(const std::vector<Obstacle>& obstacles, const Contacts::OnObstacle& of);
 
   std::vector<std::size_t>
       first_;  ///< place of the first patch of each obstacle, then their number

@@ -17,4 +17,15 @@ inline void append_faces(Shapes& to, const Shapes& shapes, const Point3& way = {
     to.corner_of.push_back(corner + shapes.corner_of[f]);
 }
 
+/// Appends all bodies of `shapes`.
+inline void append_bodies(Shapes& to, const Shapes& shapes) {
+  const auto face = static_cast<std::int32_t>(to.corner_of.size()) - 1;
+  const auto vertex = static_cast<std::int32_t>(to.vertices.size());
+  append_faces(to, shapes);
+  for (std::size_t b = 1; b < shapes.face_of.size(); ++b) {
+    to.face_of.push_back(face + shapes.face_of[b]);
+    to.vertex_of.push_back(vertex + shapes.vertex_of[b]);
+  }
+}
+
 }  // namespace floe

@@ -78,16 +78,16 @@ void JoinedOverlap::join_edges() {
     return dot(gap, gap) <= reach * reach && length(next.along - one.along) <= near;
   };
   for (std::size_t k = 0; k < edges_.size(); ++k) {
+    if (edges_[k].length == 0) continue;  // it is part of another edge
     for (std::size_t m = 0; m < edges_.size(); ++m) {
-      if (m == k || !goes_on(edges_[k], edges_[m])) continue;
+      if (m == k || edges_[m].length == 0 || !goes_on(edges_[k], edges_[m])) continue;
       edges_[k].b = edges_[m].b;
       edges_[k].length += edges_[m].length;
-      edges_[m] = edges_.back();
-      edges_.pop_back();
-      if (k == edges_.size()) k = m;     // the edge itself was the last one, and is there now
-      m = static_cast<std::size_t>(-1);  // look for what goes on from its new end
+      edges_[m].length = 0;
+      m = static_cast<std::size_t>(-1);  // look for what goes on from the new end
     }
   }
+  std::erase_if(edges_, [](const Edge& edge) { return edge.length == 0; });
 }
 
 }  // namespace floe

@@ -86,13 +86,6 @@ void move_to(Obstacle& obstacle, const Point3& centre, const Triad<double>& axes
   obstacle.point = centre;
 }
 
-/// Appends a shape as a body.
-void append_shape(Shapes& to, const Shapes& shape) {
-  append_faces(to, shape);
-  to.face_of.push_back(static_cast<std::int32_t>(to.corner_of.size()) - 1);
-  to.vertex_of.push_back(static_cast<std::int32_t>(to.vertices.size()));
-}
-
 }  // namespace
 
 void add_structures(const Scene& scene, Lattice& lattice) {
@@ -116,7 +109,7 @@ void add_structures(const Scene& scene, Lattice& lattice) {
     bodies.orientation.push_back({p.axes.w, p.axes.x, p.axes.y, p.axes.z});
     bodies.mass.push_back(structure.mass);
     bodies.inertia.push_back(p.moments);
-    append_shape(lattice.shapes, obstacle.shape);
+    append_bodies(lattice.shapes, obstacle.shape);
   }
 }
 

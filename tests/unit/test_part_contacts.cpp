@@ -205,5 +205,127 @@ TEST(PartContacts, ABodyInsideSeveralPartsFeelsNothing) {
   EXPECT_EQ(length(on_body.moment), 0);
 }
 
+/// Returns an obstacle whose frame has its origin at that of the world, on a body.
+Obstacle carried(const Obstacle& obstacle, std::int32_t body, double friction) {
+  Shapes shapes = shapes_of_parts(obstacle);
+  for (Vec3<double>& r : shapes.vertices) r = r + obstacle.point;
+  Obstacle moved = polyhedra(shapes, {});
+  moved.body = body;
+  moved.friction = friction;
+  return moved;
+}
+
+/// Bodies that are set to places by hand.
+struct Two {
+  Contacts contacts;
+  double time = 0;
+
+  Two(const Lattice& lattice, const ContactOptions& options,
+      const std::vector<Obstacle>& obstacles = {})
+      : contacts(lattice.shapes, lattice.bodies.mass, {}, options, obstacles,
+                 lattice.bodies.inertia) {}
+
+  /// Returns the wrenches on both after a step.
+  std::vector<ContactWrench> step(const std::vector<MovingPose>& bodies) {
+    constexpr double dt = 1e-3;
+    std::vector<Pose> poses;
+    for (const MovingPose& body : bodies) poses.push_back(body.pose);
+    contacts.build(poses, std::vector<std::uint8_t>(bodies.size(), 1), time);
+    std::vector<MovingPose> involved;
+    for (const std::int32_t b : contacts.list().involved())
+      involved.push_back(bodies[static_cast<std::size_t>(b)]);
+    std::vector<ContactWrench> wrenches(involved.size());
+    contacts.place(involved, time, time - 0.5 * dt);
+    contacts.evaluate(wrenches);
+    if (contacts.damps()) contacts.damp(std::vector<Acceleration>(involved.size()), wrenches);
+    contacts.commit();
+    time += dt;
+    wrenches.resize(bodies.size());  // nothing acts where nobody is involved
+    return wrenches;
+  }
+};
+
+/// One block slides, turns and rocks over another, which tilts.
+std::vector<MovingPose> slide_at(double s) {
+  MovingPose above, below;
+  above.pose.x = {-1.7 + s, 0.3 * std::sin(s), 0.72 + 0.03 * std::sin(9 * s)};
+  above.pose.q = exp_rotation({0.04 * std::sin(3 * s), 0.05 * std::cos(2 * s), 0.8 * s});
+  above.velocity = {10, 3 * std::cos(s), 2.7 * std::cos(9 * s)};
+  above.spin = {0.12 * std::cos(3 * s), -0.1 * std::sin(2 * s), 8};
+  below.pose.x = {0, 0, 0.02 * std::sin(5 * s)};
+  below.pose.q = exp_rotation({0.01 * std::sin(4 * s), 0, 0.3 * s});
+  below.velocity = {0, 0, 1 * std::cos(5 * s)};
+  below.spin = {0.4 * std::cos(4 * s), 0, 3};
+  return {above, below};
+}
+
+/// Obstacles that bodies carry touch as these bodies would: the first block's wrench is that of
+/// bodies of ice, however the shapes are cut, and momentum stays.
+TEST(PartContacts, ObstaclesOfTwoBodiesTouchAsTheBodies) {
+  const Vec3<double> small{1.1, 0.7, 0.5}, large{3.8, 2, 1};
+  Lattice lattice;
+  test::append_block(lattice, small, {});
+  test::append_block(lattice, large, {});
+  for (const ContactLaw law : {ContactLaw::overlap, ContactLaw::potential}) {
+    for (const double damping : {0.0, 0.36}) {
+      ContactOptions options{.law = law, .young = 1e7, .friction = 0.3};
+      options.damping_ratio = damping;
+      Two ice(lattice, options),
+          whole(lattice, options,
+                {carried(box({}, small, {}), 0, 0.3), carried(box({}, large, {}), 1, 0.2)}),
+          cut(lattice, options,
+              {carried(cut_box({}, small, 2, 1, 2), 0, 0.3),
+               carried(cut_box({}, large, 3, 2, 2), 1, 0.3)});
+      double most = 0;
+      std::size_t pairs = 0;
+      for (int step = 0; step < 400; ++step) {
+        const std::vector<MovingPose> at = slide_at(0.01 * step);
+        const auto expected = ice.step(at);
+        const auto one = whole.step(at), several = cut.step(at);
+        for (std::size_t b = 0; b < 2; ++b)
+          most = std::max(most, length(expected[b].force) + length(expected[b].moment));
+        for (std::size_t b = 0; b < 2; ++b) {
+          expect_same(one[b], expected[b], 1e-10 * most, "whole", step);
+          expect_same(several[b], expected[b], 1e-10 * most, "cut", step);
+        }
+        expect_same({several[0].force + several[1].force, {}}, {}, 1e-13 * most, "sum", step);
+        ASSERT_EQ(cut.contacts.touching(), ice.contacts.touching()) << step;
+        pairs = std::max(pairs, cut.contacts.list().size());
+      }
+      EXPECT_GT(most, 1e3);
+      EXPECT_GE(pairs, 8U);
+    }
+  }
+}
+
+/// A block carries two obstacles, one in the other, and slides on a plane and a box: as
+/// a block of ice does, with the box as a body of no size.
+TEST(PartContacts, AnObstacleOfABodyTouchesFixedObstacles) {
+  const Vec3<double> size{1.1, 0.7, 0.5};
+  const Lattice lattice = one_block(size);
+  const Obstacle block = carried(cut_box({}, size, 2, 2, 1), 0, 0.1),
+                 knob = carried(box({}, {0.2, 0.2, 0.2}, {}), 0, 0.1);
+  const ContactOptions options{.young = 1e7, .friction = 0.2};
+  Obstacle plane = half_space({0, 0, -0.5}, {0, 0, 1}), stone = box({2, 0, -0.69}, {2, 2, 0.4}, {});
+  plane.friction = stone.friction = 0.2;
+  Two ice(lattice, options, {plane, stone}),
+      of_parts(lattice, options, {block, plane, stone, knob});
+  double most = 0;
+  for (int step = 0; step < 300; ++step) {
+    const double s = 0.01 * step;
+    MovingPose body;
+    body.pose.x = {s, 0, -0.25 - 0.02 * std::cos(7 * s)};
+    body.pose.q = exp_rotation({0.02 * std::sin(3 * s), 0.03 * std::sin(5 * s), 0.2 * s});
+    body.velocity = {10, 0, 14 * std::sin(7 * s)};
+    const auto expected = ice.step({body}), got = of_parts.step({body});
+    most = std::max(most, length(expected[0].force));
+    expect_same(got[0], expected[0], 1e-10 * most, "block", step);
+    for (const std::size_t k : {0U, 1U})
+      expect_same(of_parts.contacts.on_obstacle(k + 1), ice.contacts.on_obstacle(k), 1e-10 * most,
+                  "obstacle", step);
+  }
+  EXPECT_GT(most, 1e3);
+}
+
 }  // namespace
 }  // namespace floe

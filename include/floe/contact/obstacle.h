@@ -74,6 +74,9 @@ std::vector<NamedShape> shapes_of(const std::vector<Obstacle>& obstacles);
 /// The bodies of `shapes`, all in one frame, as the parts of an obstacle with the origin of its
 /// frame at `point` [m].
 Obstacle polyhedra(const Shapes& shapes, const Vec3<double>& point);
+/// Returns the parts of an obstacle, which is not a half-space, as bodies of their own in its
+/// frame.
+Shapes shapes_of_parts(const Obstacle& obstacle);
 /// Appends the parts of another obstacle, which is not a half-space, and finds all inner faces.
 void add_parts(Obstacle& obstacle, const Obstacle& further);
 
