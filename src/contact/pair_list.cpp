@@ -122,7 +122,7 @@ void PairList::list_touching_obstacles(const Search& search) {
     const Placed a = place(obstacles[one]);
     const auto [first_a, end_a] = solids.parts_of(one);
     for (std::size_t other = 0; other < obstacles.size(); ++other) {
-      if (other == one || obstacles[other].body == obstacles[one].body) continue;
+      if (!may_touch(obstacles[one], obstacles[other])) continue;
       if (obstacles[other].is_carried() && other < one) continue;
       if (!is_here(obstacles[one]) && !is_here(obstacles[other])) continue;
       const Placed b = place(obstacles[other]);

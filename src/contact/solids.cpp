@@ -62,6 +62,9 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
   add_parts(graphs);
   for (const Obstacle& o : obstacles_) {
     if (!o.is_carried()) continue;
+    obstacles_touch_ =
+        obstacles_touch_ || std::any_of(obstacles_.begin(), obstacles_.end(),
+                                        [&](const Obstacle& p) { return may_touch(o, p); });
     carriers_.push_back(o.body);
     for (const ConvexPart& part : o.parts)  // each inner face is one of both parts
       for (const InnerFace& face : part.inner_faces)

@@ -128,8 +128,8 @@ class Solids {
   double width(std::int32_t index) const {
     return is_obstacle(index) ? part_of(index).width : item(bodies_, index).width;
   }
-  /// Whether obstacles may touch each other: where a body carries one of several.
-  bool obstacles_touch() const { return !carriers_.empty() && obstacles_.size() > 1; }
+  /// Whether obstacles may touch each other.
+  bool obstacles_touch() const { return obstacles_touch_; }
   /// Returns the mean radius of all bodies that carry no obstacle [m]; if all do, the least size.
   double mean_radius() const;
   /// Returns the least width of all bodies and obstacles [m].
@@ -181,6 +181,7 @@ class Solids {
   std::vector<std::size_t> first_part_{0};  ///< per obstacle, then the number of parts
   std::vector<std::uint8_t> carries_;       ///< per body; empty: none does
   std::vector<std::int32_t> carriers_;      ///< sorted
+  bool obstacles_touch_ = false;
   double thinnest_ = std::numeric_limits<double>::infinity();
 };
 

@@ -72,7 +72,9 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
   if (pressing && worst.share > deep)
     throw InputError("forces: contact: " + pair + " (at most " + text(deep) +
                      "): they would burst apart; move one of them, or let "
-                     "'contact: initial_overlap: stress_free' take what overlaps as rest");
+                     "'contact: initial_overlap: stress_free' take what overlaps as rest" +
+                     (worst.a < 0 ? ", or let a structure touch nothing but ice ('touches: ice')"
+                                  : ""));
   const std::size_t pairs = all.size() / 4;
   return "contact: " + pair + (pressing ? "; overlaps press apart" : "; overlaps count as rest") +
          " (pairs with more than " + text(slight) + ": " + std::to_string(pairs) + ")";

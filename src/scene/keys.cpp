@@ -405,6 +405,8 @@ constexpr std::array table{
                "structure: that of the water along x, y, z and about rx, ry, rz", 6},
     OptionSpec{"obstacle: NAME: floats", flag, "false", "", "",
                "structure: weight and water act on its shape; false: its support carries it"},
+    OptionSpec{"obstacle: NAME: touches", choice, "all", "", "all | ice",
+               "structure: what it touches; ice: it passes through obstacles and structures"},
     OptionSpec{"obstacle: NAME: support_stiffness", numbers, "0 0 0 0 0 0", "N/m, N m/rad",
                ">= 0, <= 1e20", "structure: of springs to the ground along x, y, z, rx, ry, rz", 6},
     OptionSpec{"obstacle: NAME: support_matrix", numbers, "(support_stiffness)", "N/m, N, N m/rad",

@@ -11,9 +11,9 @@ namespace floe {
 namespace {
 
 constexpr std::array keys_of_structures{
-    "inertia",         "centre_of_mass",        "added_mass",
-    "floats",          "support_stiffness",     "support_matrix",
-    "support_damping", "support_damping_ratio", "support_point",
+    "inertia",           "centre_of_mass", "added_mass",      "floats",
+    "support_stiffness", "support_matrix", "support_damping", "support_damping_ratio",
+    "support_point",     "touches",
 };
 
 std::string key(const char* last) { return "obstacle: NAME: " + std::string(last); }
@@ -91,7 +91,7 @@ void read_support(Options& options, const std::string& name, Structure& structur
 
 }  // namespace
 
-Structure read_structure(Options& options, const Obstacle& obstacle) {
+Structure read_structure(Options& options, Obstacle& obstacle) {
   const std::string& name = obstacle.name;
   if (obstacle.is_half_space())
     throw InputError("obstacle: " + name +
@@ -119,6 +119,8 @@ Structure read_structure(Options& options, const Obstacle& obstacle) {
   structure.added_mass = options.numbers<6>(key("added_mass"), name);
   structure.floats = options.flag(key("floats"), name);
   read_support(options, name, structure);
+  enum class Touched { all, ice };
+  obstacle.touches_obstacles = options.choice<Touched>(key("touches"), name) == Touched::all;
   return structure;
 }
 
@@ -140,6 +142,8 @@ void check_structures(const Scene& scene) {
       if (floe.name == name)
         throw InputError("obstacle: names: '" + name + "' is the name of a floe too");
     if (scene.drag.faces) refuse("mass", "structures do not go with 'water: drag' faces");
+    if (!scene.obstacles[s.obstacle].touches_obstacles && scene.obstacles.size() == 1)
+      refuse("touches", "would have no effect: there is no other obstacle");
     if (!s.floats) continue;
     if (!scene.forces.buoyancy || !scene.forces.gravity)
       refuse("floats", "needs gravity and buoyancy among 'forces'");

@@ -87,7 +87,7 @@ MotionTable read_motion_table(Options& options, Scene& scene, const std::string&
 void require_start(const MotionTable& motion, const std::string& label);
 
 /// Reads an obstacle that has a mass.
-Structure read_structure(Options& options, const Obstacle& obstacle);
+Structure read_structure(Options& options, Obstacle& obstacle);
 /// Refuses the keys of a structure where an obstacle has no mass.
 void refuse_structure(Options& options, const std::string& name);
 /// Reads the mooring lines of structures.

@@ -42,6 +42,7 @@ struct Obstacle {
   /// The body of the model that carries it, of which the frame is this one's then; -1: it follows
   /// `motion`.
   std::int32_t body = -1;
+  bool touches_obstacles = true;  ///< whether it touches others
 
   bool is_carried() const { return body >= 0; }
   bool is_half_space() const { return shape.empty(); }
@@ -49,6 +50,11 @@ struct Obstacle {
   /// Distance of the farthest vertex from the origin of the frame [m].
   double radius() const;
 };
+
+/// Whether two obstacles touch each other: bodies carry both, or one, and not the same body.
+inline bool may_touch(const Obstacle& one, const Obstacle& other) {
+  return one.body != other.body && one.touches_obstacles && other.touches_obstacles;
+}
 
 /// A half-space.
 /// \param point   on its surface [m]
