@@ -141,10 +141,11 @@ void check_structures(const Scene& scene) {
     for (const Floe& floe : scene.floes)
       if (floe.name == name)
         throw InputError("obstacle: names: '" + name + "' is the name of a floe too");
-    if (scene.drag.faces) refuse("mass", "structures do not go with 'water: drag' faces");
     if (!scene.obstacles[s.obstacle].touches_obstacles && scene.obstacles.size() == 1)
       refuse("touches", "would have no effect: there is no other obstacle");
     if (!s.floats) continue;
+    if (scene.drag.faces && scene.obstacles[s.obstacle].parts.size() > 1)
+      refuse("floats", "drag on faces ('water: drag') is for structures of one convex part");
     if (!scene.forces.buoyancy || !scene.forces.gravity)
       refuse("floats", "needs gravity and buoyancy among 'forces'");
     for (const std::size_t k : {2U, 3U, 4U}) {

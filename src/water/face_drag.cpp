@@ -93,7 +93,8 @@ class FaceDrag final : public Force<Spatial>,
     for (auto* corners : {&corners_, &wet_corners_}) corners->reserve(most + 2);
     for (auto* points : {&wet_, &half_}) points->reserve(most + 3);
     for (std::int32_t body = 0; body < part.owned; ++body)
-      area_per_volume_.push_back(immersion_.plan_area(body) / immersion_.volume(body));
+      area_per_volume_.push_back(
+          immersion_.volume(body) > 0 ? immersion_.plan_area(body) / immersion_.volume(body) : 0);
     if (faces_ && submersion_->has_pace()) found_.resize(forces_.size());
   }
 

@@ -50,8 +50,8 @@ Shelter::Shelter(const Part& part, double distance) : part_(part), distance_(dis
     for (std::int32_t v = shapes_.vertex_of[b]; v < shapes_.vertex_of[b + 1]; ++v)
       radius = std::max(radius, length(item(shapes_.vertices, v)));
     radius_.push_back(radius);
-    widest_ = std::max(widest_, radius);
   }
+  choose_large();
   poses_.resize(bodies);
   cells_.reserve(bodies);
   const std::size_t faces =
@@ -63,6 +63,22 @@ Shelter::Shelter(const Part& part, double distance) : part_(part), distance_(dis
   gather_poses(State<Spatial>(static_cast<std::size_t>(part.local)));
   join_faces();
   if (renews()) find_near();
+}
+
+/// The few bodies that are far larger than the mean are in no cell: cells of their size would hold
+/// too many of the others.
+void Shelter::choose_large() {
+  constexpr double far_larger = 4;
+  double sum = 0;
+  const auto bodies = static_cast<double>(
+      std::count_if(radius_.begin(), radius_.end(), [](double radius) { return radius > 0; }));
+  for (const double radius : radius_) sum += radius;
+  for (std::size_t b = 0; b < radius_.size(); ++b) {
+    if (radius_[b] * bodies > far_larger * sum)
+      large_.push_back(static_cast<std::int32_t>(b));
+    else
+      widest_ = std::max(widest_, radius_[b]);
+  }
 }
 
 /// Gives every rank the shapes of all bodies.
@@ -182,7 +198,8 @@ std::int64_t Shelter::cell_of(const Vec3<double>& at, int dx, int dy, int dz) co
 void Shelter::sort_cells() {
   cells_.clear();
   for (std::size_t b = 0; b < poses_.size(); ++b)
-    cells_.emplace_back(cell_of(poses_[b].at, 0, 0, 0), static_cast<std::int32_t>(b));
+    if (radius_[b] > 0 && radius_[b] <= widest_)
+      cells_.emplace_back(cell_of(poses_[b].at, 0, 0, 0), static_cast<std::int32_t>(b));
   std::sort(cells_.begin(), cells_.end());
 }
 
@@ -213,6 +230,8 @@ bool Shelter::hits(std::int32_t other, const Vec3<double>& from, const Vec3<doub
 
 bool Shelter::any_near(std::int32_t body, const Vec3<double>& from,
                        const Vec3<double>& along) const {
+  for (const std::int32_t other : large_)
+    if (other != body && hits(other, from, along)) return true;
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dz = -1; dz <= 1; ++dz) {

@@ -20,7 +20,7 @@ struct Spatial;
 /// Finds the sheltered faces of the owned bodies: those that a whole beam joins to another body,
 /// and those that have another body within a distance along their normal. The second are found
 /// anew, from the places of all bodies, before bodies can have moved far. Every rank holds the
-/// shapes of all bodies. Obstacles shelter nothing.
+/// shapes of all bodies. Obstacles, and structures that do not float, shelter nothing.
 class Shelter {
  public:
   /// Collective.
@@ -49,6 +49,7 @@ class Shelter {
     Quat<double> axes{1, 0, 0, 0};
   };
   void gather_shapes();
+  void choose_large();
   void join_faces();
   void gather_poses(const State<Spatial>& state);
   void find_near();
@@ -64,7 +65,8 @@ class Shelter {
   std::vector<Vec3<double>> normal_;  ///< outward, per face of all bodies, in the body's axes
   std::vector<Vec3<double>> middle_;  ///< mean of the corners, likewise [m]
   std::vector<double> radius_;        ///< per body: of its farthest vertex [m]
-  double widest_ = 0;                 ///< the largest of them [m]
+  double widest_ = 0;                 ///< the largest of them but large_ [m]
+  std::vector<std::int32_t> large_;   ///< bodies in no cell
   double fastest_ = 0;                ///< speed of a point of a body [m/s]
   std::vector<Pose> poses_;           ///< of all bodies
   std::vector<std::pair<std::int64_t, std::int32_t>> cells_;  ///< cell and body, sorted

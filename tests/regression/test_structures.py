@@ -444,6 +444,32 @@ class Floats(StructureTest):
             self.assertEqual(np.max(np.abs(rows[column])), 0, column)
 
 
+    def test_drag_on_faces(self):
+        """A structure that floats feels the current on its faces as a body of ice does that is
+        like it, and one on a support feels nothing."""
+        fl.blocks(np.array([[2.0, 1, 0.5]]), np.array([[0.0, 0, 0]]), density=900).write(
+            self.folder / "block.h5")
+        scene = ALONE.replace("forces: [contact]", "forces: [gravity, buoyancy, drag, contact]")
+        scene = scene[:scene.index("obstacle:")] + """obstacle:
+  names: [twin, leg]
+  twin: {shape: box, centre: [0, 20, 0], size: [2, 1, 0.5], mass: 900, floats: true}
+  leg: {shape: box, centre: [0, 40, 0], size: [2, 1, 8], mass: 900, support_stiffness: SIX}
+water: {drag: faces, drag_linear: 30, drag_form: 1.1, drag_skin: 0.1, shelter: 0.5,
+  current: [0.8, 0.5, 0]}
+initial: {names: [turn, too], turn: {set: all, angular_velocity: [0.1, 0, 0.4]},
+  too: {set: twin, angular_velocity: [0.1, 0, 0.4]}}
+time: {end: 4}
+output: {history: 0.02, fields: 0.5}
+"""
+        self.run_scene(scene.replace("SIX", "[1e5, 1e5, 1e5, 1e5, 1e5, 1e5]"), name="s")
+        output = Output(self.folder / "out/s")
+        ice, twin, _ = output.field("bodies_displacement", 4)
+        self.assertGreater(ice[0], 0.5)
+        np.testing.assert_allclose(twin, ice, rtol=1e-9, atol=1e-9)
+        rows = rows_of(self.folder / "out/s")
+        self.assertEqual(np.max(np.abs(rows["leg_x"])), 0)
+
+
 # A floating box between four lines.
 MOORED = """integrator: explicit
 forces: [gravity, buoyancy, contact]
