@@ -42,6 +42,31 @@ void Options::index_table() {
   }
 }
 
+namespace {
+
+/// Returns the section and the name in an option that would be one of a named section if the name
+/// were one: "obstacle", "my_leg" of obstacle_my_leg_centre; else nothing.
+/// \param named  lines with NAME, by section
+template <class Named>
+std::pair<std::string, std::string> ill_named(const Named& named, std::string_view option) {
+  const auto first = option.find('_');
+  if (first == std::string_view::npos) return {};
+  const auto lines = named.find(option.substr(0, first));
+  if (lines == named.end()) return {};
+  const std::string_view rest = option.substr(first + 1);
+  std::string_view name;
+  for (const OptionSpec* line : lines->second) {
+    const std::string word = "_" + std::string(last_word(line->key));
+    if (!rest.ends_with(word)) continue;
+    const std::string_view before = rest.substr(0, rest.size() - word.size());
+    if (name.empty() || before.size() < name.size()) name = before;  // by the longest key
+  }
+  if (name.empty() || is_name(name)) return {};
+  return {std::string(lines->first), std::string(name)};
+}
+
+}  // namespace
+
 /// Returns the line of the table to which an option belongs; null if there is none.
 Options::Match Options::match(std::string_view option) const {
   if (const auto plain = by_option_.find(option); plain != by_option_.end())
@@ -80,6 +105,10 @@ void Options::sort_given(const GivenOptions& all) {
 }
 
 void Options::refuse_unknown(const std::string& option, const Given& given) const {
+  if (const auto [section, name] = ill_named(named_, option); !name.empty())
+    throw InputError(section + ": names: '" + name +
+                     "' is no name: a name has letters and digits, at most 40" +
+                     in_brackets(given.place));
   const std::string small = lower(option);
   std::string hint;
   if (small != option && (match(small).line != nullptr || is_section(small))) {

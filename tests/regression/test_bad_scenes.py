@@ -234,6 +234,10 @@ SCENES = {
          "initial: j: set: body "),
     "section with a capital letter": (GOOD.replace("sheet:", "Sheet:"),
                                       "unknown option; keys are in lower case: 'sheet_"),
+    "name with an underscore": (GOOD + "obstacle: {names: [my_leg], my_leg: {shape: box, centre: "
+                                       "[9, 0, 0], size: [2, 2, 6]}}\n",
+                                "obstacle: names: 'my_leg' is no name: a name has letters and "
+                                "digits, at most 40"),
     "key with a capital letter": (GOOD.replace("length:", "Length:"),
                                   "keys are in lower case: 'sheet_length'"),
     "load step beyond the end": (GOOD + "time: {end: 1, dt: 2}\n", "time: dt"),
