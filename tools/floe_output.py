@@ -298,6 +298,13 @@ class Output(Lattice):
             raise BadInput(f"{self.folder / 'history.csv'}: has no column {name}")
         return np.array([float(row[name]) for row in rows])
 
+    def water_levels(self, times):
+        """The level of still water at these times [m], None unless it changes."""
+        rows = rows_of(self.folder)
+        if not rows or "water_level" not in rows[0]:
+            return None
+        return np.interp(times, self.history("time"), self.history("water_level"))
+
     def options(self):
         """options_of the folder."""
         return options_of(self.folder)

@@ -161,7 +161,7 @@ def scene_of(output, forces, most):
     origin = np.round(middle.mean(axis=0), 3)
     places = (ice.position[bodies] - origin).T / step
     breaks = floe_breaks.at_end(output)
-    options = output.options()
+    options, levels = output.options(), output.water_levels(times)
     of_bodies = len(ice.position) - len(structures(options))
     are_all = len(bodies) == of_bodies and cast.life is None
     return {
@@ -169,6 +169,7 @@ def scene_of(output, forces, most):
         "step": step, "turn_step": TURN_STEP, "origin": origin.tolist(),
         "times": [round(float(t), 6) for t in times], "of_frames": len(output.times),
         "water": "buoyancy" in options.get("forces", ""),
+        "levels": None if levels is None else np.round(levels - origin[2], 4).tolist(),
         "current": [float(v) for v in options.get("water_current", "0, 0, 0").split(",")],
         "ids": None if are_all else pack(ice.names[bodies][None]),
         "life": None if cast.life is None else pack(cast.life[:, bodies]),

@@ -59,6 +59,7 @@ def colour(display, job):
 
 
 def show_bodies(job, view):
+    """Shows the bodies; the filter that gives them their height above the water."""
     reader = pv.OpenDataFile(job["fields"])
     height = pv.Calculator(Input=pv.ExtractSurface(Input=bodies_of(reader)))
     height.AttributeType = "Point Data"
@@ -70,6 +71,7 @@ def show_bodies(job, view):
     display.LineWidth = 0.5
     colour(display, job)
     display.SetScalarBarVisibility(view, False)
+    return height
 
 
 def bodies_of(reader):
@@ -108,6 +110,8 @@ def show_surroundings(job, view, towards):
         display.SetRepresentationType("Surface")
         display.DiffuseColor = display.AmbientColor = BLUE
         display.Opacity = 0.3
+        if job["levels"]:
+            moving.append((display, [[[0, 0, z], [0, 0, 0]] for z in job["levels"]]))
     return moving
 
 
@@ -120,13 +124,15 @@ def main():
     view.Background = [1, 1, 1]
     view.OrientationAxesVisibility = 0
     view.UseLight = 1
-    show_bodies(job, view)
+    height = show_bodies(job, view)
     towards = place_camera(view, job)
     moving = show_surroundings(job, view, towards)
     for k, (time, file) in enumerate(zip(job["times"], job["files"])):
         view.ViewTime = time
         for display, placements in moving:
             display.Position, display.Orientation = placements[k]
+        if job["levels"]:
+            height.Function = f"coordsZ - ({job['levels'][k]})"
         pv.SaveScreenshot(file, view, ImageResolution=job["size"], OverrideColorPalette="",
                           CompressionLevel="9")
 

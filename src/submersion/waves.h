@@ -49,6 +49,8 @@ class Waves {
     Vec3<double> velocity;  ///< [m/s^2]
   };
   Change change(std::size_t b, const Vec3<double>& at, double time) const;
+  /// Returns the motion of the water without the waves.
+  const WaterMotion& water() const { return water_; }
   /// Bound of SurfacePlane::steepness().
   double most_steepness() const { return most_steepness_; }
 

@@ -27,6 +27,11 @@ double heave_bound(const Immersion& immersion, const Part& part, double weight_d
   return high > low ? 3.0 * weight_density * immersion.volume(body) / (high - low) : 0.0;
 }
 
+/// Adds the level of still water [m]; one rank tells it.
+void add_level(double level, const Part& part, Columns& columns) {
+  columns.add("water_level", rank(part.comm) == 0 ? level : 0.0);
+}
+
 /// Buoyancy of the owned bodies. With r from the centroid of a body, its submerged part V and its
 /// waterplane W (Submerged has the volume, the area and the moments): force rho g V, moment
 /// rho g (m_y, -m_x, 0), m = int_V r dV. By Reynolds' theorem, for a displacement u and a spin t,
@@ -150,7 +155,11 @@ class Buoyancy final : public Force<Spatial>,
   /// the body from the air into the water.
   void report(const State<Spatial>& state, std::span<const double> works,
               Columns& columns) const override {
-    if (immersion_.has_level()) return columns.add("energy_external", works.front());
+    if (immersion_.has_level()) {
+      add_level(immersion_.level(state.time), part_, columns);
+      columns.add("energy_external", works.front());
+      return;
+    }
     double energy = 0;
     for (std::int32_t body = 0; body < part_.owned; ++body) {
       const Submerged s = immersion_.of(state, body);
@@ -252,8 +261,10 @@ class BuoyancyInWaves final : public Force<Spatial>,
   }
   std::vector<double> changes(double end) const override { return {end}; }
 
-  void report(const State<Spatial>&, std::span<const double> works,
+  void report(const State<Spatial>& state, std::span<const double> works,
               Columns& columns) const override {
+    if (const WaterMotion& water = waves_.water(); !water.level_table.empty())
+      add_level(water.level(state.time), part_, columns);
     columns.add("energy_external", works.front());
   }
 

@@ -311,13 +311,14 @@ time: {end: 1}
         self.table("l.csv", "time,level", [[0, 0], [1, 0], [19, 0.4], [20, 0.4]])
         for name, more in (("still", ""), ("waves", "waves: {height: 1e-9, period: 8}\n")):
             for law in ("drag_linear: 10", "drag_linear: 1e4", "drag: faces, shelter: 0"):
-                if "faces" in law:  # not for structures
-                    continue
                 rows = self.rows(ADRIFT.replace(
                     "WATER", law + ", level_table: l.csv, level_interpolation: smooth") + more,
                     "-output_overwrite", name=name)
                 level = np.interp(rows["time"], [0, 1, 19, 20], [0, 0, 0.4, 0.4])
                 middle = (rows["time"] > 4) & (rows["time"] < 16)
+                np.testing.assert_allclose(np.interp([1, 10, 19, 20], rows["time"],
+                                                     rows["water_level"]), [0, 0.2, 0.4, 0.4],
+                                           atol=1e-6)
                 self.assertLess(np.max(np.abs(rows["leg_z"] - level)), 0.05)
                 self.assertAlmostEqual(rows["leg_z"][-1], 0.4, delta=0.02)
                 if "1e4" in law:

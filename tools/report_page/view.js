@@ -143,11 +143,11 @@ class FloeView {
 
   makeWater() {
     const {low, high} = this.extent(), room = 0.15 * Math.hypot(high[0] - low[0], high[1] - low[1]);
-    const z = -this.scene.origin[2];
+    const z = 0;  // its level is that of its pose
     const [x0, y0, x1, y1] = [low[0] - room, low[1] - room, high[0] + room, high[1] + room];
     const position = new Float32Array([x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z]);
     const pose = floeScene.textureFor(1);
-    floeScene.put(pose.data, 0, {place: [0, 0, 0], turn: [0, 0, 0, 1]}, 1, [0, 0, 0]);
+    this.waterPose = pose;
     this.water = this.add(new THREE.Mesh(
       this.geometry(position, new Float32Array(4), new Uint32Array([0, 1, 2, 0, 2, 3])),
       this.material(floeScene.plainShader, pose.texture, {
@@ -250,6 +250,7 @@ class FloeView {
     this.paint();
     this.poses.texture.needsUpdate = true;
     this.placeObstacles(k, f);
+    this.placeWater(k, f);
     this.placeArrows(Math.round(this.frame));
     if (this.cracks) this.cracks.material.uniforms.now.value = this.time;
     for (const listener of this.listeners) listener(this);
@@ -319,6 +320,16 @@ class FloeView {
                     [0.50, 0.48, 0.46]);
     });
     if (this.places) this.places.texture.needsUpdate = true;
+  }
+
+  placeWater(k, f) {
+    const {levels, origin} = this.scene;
+    const z = !levels ? -origin[2] :
+      f > 0 ? levels[k] + f * (levels[k + 1] - levels[k]) : levels[k];
+    this.bodies.material.uniforms.level.value = z;
+    if (!this.water) return;
+    floeScene.put(this.waterPose.data, 0, {place: [0, 0, z], turn: [0, 0, 0, 1]}, 1, [0, 0, 0]);
+    this.waterPose.texture.needsUpdate = true;
   }
 
   placeArrows(k) {
