@@ -198,6 +198,29 @@ class InBrowser(FolderTest):
         self.shows_colours()
         self.assertEqual(self.browser.complaints, [])
 
+    def test_water_rises(self):
+        """The water is drawn at its level, and heights of ice are above it."""
+        (self.folder / "level.csv").write_text("time,level\n0,0\n1,0.5\n")
+        (self.folder / "scene.yaml").write_text("""integrator: explicit
+forces: [beam, gravity, buoyancy, drag]
+sheet: {length: 6, thickness: 1, element_size: 2, iterations: 10}
+water: {drag_linear: 1e4, level_table: level.csv}
+time: {end: 1}
+output: {history: 0.1, fields: 0.25}
+""")
+        subprocess.run([FLOE, "scene.yaml", "-output_dir", "a"], cwd=self.folder, check=True,
+                       capture_output=True, env=ENVIRONMENT)
+        make_report(self.folder / "a")
+        file = self.folder / "a/report.html"
+        self.open(file, 1200)
+        bottom = data_in(file.read_text())["scene"]["origin"][2]
+        for frame, level in ((0, 0), (2.5, 0.3125), (4, 0.5)):
+            self.browser.run(f"{VIEW}.setFrame({frame})")
+            for seen in (f"{VIEW}.bodies.material.uniforms.level.value",
+                         f"{VIEW}.waterPose.data[2]"):
+                self.assertAlmostEqual(self.browser.run(seen), level - bottom, delta=1e-3)
+        self.assertEqual(self.browser.complaints, [])
+
     def test_telephone_and_ensemble(self):
         for seed in (1, 2):
             run_cone(self.folder / f"runs/s{seed}", "-sheet_seed", str(seed), "-time_end", "3")
