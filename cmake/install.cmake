@@ -16,17 +16,19 @@ foreach(level IN LISTS levels)
 endforeach()
 
 # -- its tools, scenes, manual and documentation --------------------------------------------------
-# Of tools/ what floe runs by name, and their modules; the rest is for the source tree.
+# Of tools/ what floe runs by name, and modules of these; the rest is for the source tree.
 set(subcommands ${PROJECT_SOURCE_DIR}/src/program/subcommands.cpp)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${subcommands})
 file(STRINGS ${subcommands} tools REGEX "^ *Subcommand{\"")
 list(TRANSFORM tools REPLACE "^ *Subcommand{\"([a-z_]+)\".*$" "${PROJECT_SOURCE_DIR}/tools/\\1")
 file(GLOB modules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tools/*.py)
+list(FILTER modules EXCLUDE REGEX "/tools/(floe_|draw_)")
 set(share ${CMAKE_INSTALL_DATADIR}/floe)
 install(PROGRAMS ${tools} DESTINATION ${share}/tools COMPONENT program)
 install(FILES ${modules} DESTINATION ${share}/tools COMPONENT program)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/tools/report_page DESTINATION ${share}/tools
-        COMPONENT program)
+# The package that the tools are made of; it needs nothing that is compiled.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/floe DESTINATION ${share}/python
+        COMPONENT program PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input DESTINATION ${share} COMPONENT program)
 
 # The page is what the program says, like docs/options.md.

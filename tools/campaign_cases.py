@@ -7,7 +7,7 @@ from typing import Callable
 
 import numpy as np
 
-from floe_plate import plate, profile
+from floe.sheets.plate import plate, profile
 
 INTEGRATORS = ["quasistatic", "explicit", "implicit"]
 STARTS = ["step", "smooth"]
@@ -156,7 +156,7 @@ def slid(sheet, integrator, start):
 
 def sliding(output, sheet):
     """Mean shear stress of the moved edge over its slope to the held one, over the gauge length.
-    The other two sides are free, so a continuum has less than G too (floe_plate.simple_shear)."""
+    The other two sides are free, so a continuum has less than G too (plate.simple_shear)."""
     length = gauge(output, "y")[0]
     slope = output.history("top_displacement_x")[-1] / length
     return {"row": {"slide_over_Eb": stress(output, sheet, "top", "x") / slope / YOUNG}}

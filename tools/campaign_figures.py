@@ -7,8 +7,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from campaign_cases import FACTORS, GRAVITY, LENGTHS, SHEETS, THICKNESSES, WATER, YOUNG
-from floe_output import Lattice
-from floe_plate import wyman
+from floe.results.output import Lattice
+from floe.sheets.plate import wyman
 
 POISSON = 0.3
 # r = k_s/k_n of one_point beams, and moduli of their infinite lattice (docs/model.md section 3)

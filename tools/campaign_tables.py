@@ -8,8 +8,8 @@ import numpy as np
 
 import campaign_figures as figures
 from campaign_cases import SHEETS, TESTS
-from floe_plate import simple_shear
-from floe_program import reading
+from floe.errors import reading
+from floe.sheets.plate import simple_shear
 
 # E/Eb of one_point beams by independent static solutions: L/l: (mean, standard deviation, meshes)
 # (docs/model.md)

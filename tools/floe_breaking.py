@@ -27,7 +27,7 @@ from pathlib import Path
 
 import numpy as np
 
-from floe_output import rows_of
+from floe.results.output import rows_of
 
 FILTER = 1.0   # of the running mean [s]
 ROWS = 0.02    # between rows of history.csv [s]

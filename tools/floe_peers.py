@@ -24,9 +24,9 @@ from pathlib import Path
 
 import numpy as np
 
-import floe_lattice as fl
-from floe_output import matrices
-from floe_program import BadInput
+from floe import lattice as fl
+from floe.errors import InputError
+from floe.results.output import matrices
 
 YOUNG = 5e6        # of contacts [Pa]
 FRICTION = 0.3
@@ -228,10 +228,10 @@ def floe_run(floe, scene, cores, options, folder, environment):
 def benchmark(floe, root, folder, environment, cores, repeats, columns=(5, 5, 4), end=2.5):
     """Runs both programs in turn; lines of Markdown.
 
-    throws BadInput without Yade
+    throws InputError without Yade
     """
     if not shutil.which("yade"):
-        raise BadInput(HOW_TO)
+        raise InputError(HOW_TO)
     folder = Path(folder)
     write_scripts(folder, columns, end)
     sheet = ["-sheet_length", "35.56", "-sheet_width", "35.56", "-time_end", "3",

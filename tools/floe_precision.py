@@ -23,8 +23,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-import floe_lattice as fl
-from floe_output import Output
+from floe import lattice as fl
+from floe.results.output import Output
 
 
 @dataclass

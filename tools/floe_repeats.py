@@ -10,7 +10,7 @@ import tempfile
 
 import numpy as np
 
-from floe_output import Output
+from floe.results.output import Output
 
 SCENES = ("input/tension.yaml", "input/compression.yaml", "input/bending.yaml",
           "input/edge_load.yaml",

@@ -8,15 +8,15 @@ from pathlib import Path
 
 import yaml
 
-import floe_ensemble
-import floe_loads
-import floe_program
-from floe_ensemble import known, number, refuse, whole
-from floe_output import options_of, summary_of
-from floe_program import BadInput, reading
+from floe import program
+from floe.ensembles import specs
+from floe.ensembles.specs import known, number, refuse, whole
+from floe.errors import InputError, reading
+from floe.loads import statements
+from floe.results.output import options_of, summary_of
 from floe_validation_measures import MEASURES
 
-SPECS = floe_program.TOOLS / "validation"
+SPECS = program.TOOLS / "validation"
 KEYS = ("title", "text", "published", "source", "measure", "settings", "chaotic", "seconds",
         "ends", "lattice_seeds", "runs", "short", "disagreement")
 NEEDED = ("title", "text", "published", "source", "measure", "seconds", "runs")
@@ -41,7 +41,7 @@ class Drawn:
     @functools.cached_property
     def history(self):
         """history.csv as a table."""
-        return floe_loads.history(self.folder)
+        return statements.history(self.folder)
 
     @functools.cached_property
     def options(self):
@@ -60,7 +60,7 @@ class Drawn:
         return self.history[name].to_numpy()
 
 
-class RowFolder(floe_ensemble.Folder):
+class RowFolder(specs.Folder):
     """An ensemble's folder in which runs that end where no equilibrium is left are done."""
 
     def __init__(self, path, spec, ends):
@@ -99,10 +99,12 @@ class Row:
         with reading(path):
             text = self.path.read_text()
         try:
-            given = yaml.load(text, floe_ensemble.UniqueKeys)
+            given = yaml.load(text, specs.UniqueKeys)
             self.read(given if isinstance(given, dict) else {}, short)
+        except InputError:
+            raise
         except (ValueError, yaml.YAMLError) as error:
-            raise BadInput(f"{path}: {' '.join(str(error).split())}") from None
+            raise InputError(f"{path}: {' '.join(str(error).split())}") from None
 
     def read(self, given, short):
         known("", given, KEYS)
@@ -178,7 +180,7 @@ class Row:
                         point["name"] = f"{entry.get('name', 'p')}_s{seed:03d}"
                     points.append(point)
             given["list"] = points
-        return floe_ensemble.spec_of(given, self.name, self.path.parent)
+        return specs.spec_of(given, self.name, self.path.parent)
 
     def made_by(self):
         """The scenes in the commands that make files of its runs."""
@@ -195,11 +197,11 @@ class Row:
                     continue
                 path.parent.mkdir(parents=True, exist_ok=True)
                 part = path.with_name(f".{path.name}.part.h5")
-                made = subprocess.run([sys.executable, floe_program.TOOLS / "make_lattice",
+                made = subprocess.run([sys.executable, program.TOOLS / "make_lattice",
                                        *given.split(), part], capture_output=True, text=True)
                 if made.returncode != 0:
-                    raise BadInput(f"{self.path}: lattice: '{given}': "
-                                   f"{(made.stderr.strip() or 'no message').splitlines()[-1]}")
+                    raise InputError(f"{self.path}: lattice: '{given}': "
+                                     f"{(made.stderr.strip() or 'no message').splitlines()[-1]}")
                 part.replace(path)
 
     def folder(self, directory):

@@ -2,10 +2,10 @@
 finished runs and its settings. SI units."""
 import numpy as np
 
-import floe_fields
-import floe_loads
-import floe_signals
-from floe_output import Output
+from floe.loads import fields
+from floe.loads import statements
+from floe.loads import signals
+from floe.results.output import Output
 from floe_validation_lines import (G, RHO_WATER, Found, Line, by_point, mean_and_band,
                                    mean_force, slope_of)
 
@@ -27,9 +27,9 @@ def punch(runs, settings):
         forces.append(abs(force))
         moving.append(int(moves.sum()))
         ratios.append(abs(force) / net)
-        table = floe_loads.read_run(run.folder)
-        record = np.abs(floe_signals.Filter("mean", length=1.0).apply(table.forces["plate"],
-                                                                      table.dt)[2])
+        table = statements.read_run(run.folder)
+        record = np.abs(signals.Filter("mean", length=1.0).apply(table.forces["plate"],
+                                                                 table.dt)[2])
         curves.append((np.arange(len(record)) * table.dt + 0.5, record))
     lines = [Line("residual force over the buoyancy of the blocks that move", ratios, 1.0,
                   settings["allowed"]),
@@ -139,9 +139,9 @@ def rafting(runs, settings):
             for run in drawn:
                 h, width = run.option("sheet_thickness"), run.option("sheet_width")
                 output = Output(run.folder)
-                bodies = floe_fields.Bodies(output, end)
+                bodies = fields.Bodies(output, end)
                 low, high = bodies.low.min(axis=0)[:2], bodies.high.max(axis=0)[:2]
-                columns = floe_fields.columns(bodies, h / 2, (low, high))
+                columns = fields.columns(bodies, h / 2, (low, high))
                 thickness, number = strips(*columns, h, width, h / 2)
                 thickest.append(float(thickness.max()))
                 layers.append(float(number.max()))
@@ -193,9 +193,9 @@ def porosity(runs, settings):
         shares = []
         for run in drawn:
             output = Output(run.folder)
-            bodies = floe_fields.Bodies(output, float(output.times[-1]))
+            bodies = fields.Bodies(output, float(output.times[-1]))
             box = np.array([-inside, -inside]), np.array([inside, inside])
-            _, top, bottom, _ = floe_fields.columns(bodies, min(sides) / 2, box)
+            _, top, bottom, _ = fields.columns(bodies, min(sides) / 2, box)
             low, high = np.median(bottom) + mean / 2, np.median(top) - mean / 2
             shares.append(porosity_within(bodies, np.append(box[0], low), np.append(box[1], high),
                                           min(sides) / 5))
@@ -248,15 +248,15 @@ def keel_punch(runs, settings):
             output = Output(run.folder)
             radius = run.option("obstacle_plate_radius")
             centre = np.array(run.option("obstacle_plate_base")[:2])
-            bodies = floe_fields.Bodies(output, 0.0)
+            bodies = fields.Bodies(output, 0.0)
             under = np.linalg.norm(output.position[:, :2] - centre, axis=1) < radius
             net = G * (run.option("water_density") / 920 - 1) * output.mass[under].sum()
-            places, top, bottom, _ = floe_fields.columns(bodies, radius / 16,
-                                                         (centre - radius, centre + radius))
+            places, top, bottom, _ = fields.columns(bodies, radius / 16,
+                                                    (centre - radius, centre + radius))
             near = np.linalg.norm(places - centre, axis=1) < radius
             high = float((top - bottom)[near].mean())
-            table = floe_loads.read_run(run.folder)
-            record = np.abs(floe_signals.Filter("mean", length=settings["filter"]).apply(
+            table = statements.read_run(run.folder)
+            record = np.abs(signals.Filter("mean", length=settings["filter"]).apply(
                 table.forces["plate"], table.dt)[2])
             forces.append(float(record.max()))
             strengths.append((forces[-1] - net) / (2 * np.pi * radius * high) / 1e3)

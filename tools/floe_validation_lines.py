@@ -5,14 +5,12 @@ import math
 
 import numpy as np
 
-import floe_fields
-import floe_loads
-import floe_program
-import floe_signals
-from floe_output import Output
+from floe.loads import fields
+from floe.loads import statements
+from floe.loads import signals
+from floe.results.output import Output
 
-with floe_program.packages():
-    from scipy import stats
+from scipy import stats
 
 G = 9.81
 RHO_WATER = 1010.0
@@ -93,10 +91,10 @@ def mean_and_band(values):
 
 def low_passed(run, obstacle, settings):
     """The horizontal force on an obstacle [N] after the start, low-pass filtered, and its times."""
-    drawn = floe_loads.read_run(run.folder)
+    drawn = statements.read_run(run.folder)
     frequency, start = settings.get("filter", 1.0), settings.get("start", 0.0)
-    passed = floe_signals.Filter("low-pass", frequency=frequency).apply(drawn.forces[obstacle],
-                                                                        drawn.dt)
+    passed = signals.Filter("low-pass", frequency=frequency).apply(drawn.forces[obstacle],
+                                                                   drawn.dt)
     skip = round(start / drawn.dt)
     record = np.hypot(passed[0], passed[1])[skip:]
     return record, (skip + np.arange(len(record)) + 0.5) * drawn.dt
@@ -117,7 +115,7 @@ def rubble_height(run, obstacle, time, half):
     front of it or on it [m above water] at the frame nearest to a time."""
     output = Output(run.folder)
     time = output.times[np.argmin(np.abs(output.times - time))]
-    bodies = floe_fields.Bodies(output, time)
+    bodies = fields.Bodies(output, time)
     front = run.option("sheet_length") / 2
     middle = (bodies.low + bodies.high) / 2
     near = middle[:, 0] > front - 3 * half

@@ -5,17 +5,15 @@ import math
 
 import numpy as np
 
-import floe_extremes
-import floe_pressure
-import floe_program
-import floe_signals
-from floe_program import BadInput
+from floe.errors import InputError
+from floe.loads import extremes
+from floe.loads import signals
+from floe.results import pressure
 from floe_validation_formulas import iso_crushing, iso_slope
 from floe_validation_lines import (LEVEL, Found, Line, by_point, low_passed, mean_and_band,
                                    mean_force, rubble_height, slope_of)
 
-with floe_program.packages():
-    from scipy import stats
+from scipy import stats
 
 DRAWS, SEED = 2000, 1  # of bootstraps
 
@@ -119,12 +117,12 @@ def pressure_area(runs, settings):
     curves = []
     for drawn in by_point(runs).values():
         for run in drawn:
-            at, largest = floe_pressure.area_curve(
-                floe_pressure.read(run.folder)[settings["obstacle"]])
+            at, largest = pressure.area_curve(
+                pressure.read(run.folder)[settings["obstacle"]])
             curves.append(np.exp(np.interp(np.log(areas), np.log(at), np.log(largest))))
     curves = np.array(curves)
     lines = [Line(f"largest pressure on {area:g} m2 over ISO's",
-                  list(curves[:, k] / floe_pressure.iso(area)),
+                  list(curves[:, k] / pressure.iso(area)),
                   *((1.0, settings["judged"][area]) if area in settings["judged"] else ()))
              for k, area in enumerate(areas)]
     lines.append(Line("exponent of the area", [slope_of(areas[1:], curve[1:]) for curve in curves],
@@ -132,7 +130,7 @@ def pressure_area(runs, settings):
     found = [mean_and_band(column / 1e6) for column in curves.T]
     return Found(lines, "area [m2]", "largest mean pressure [MPa]",
                  [("floe", areas, [m for m, _ in found], [b for _, b in found], "points"),
-                  ("ISO 19906", areas, list(floe_pressure.iso(areas) / 1e6), None, "line")],
+                  ("ISO 19906", areas, list(pressure.iso(areas) / 1e6), None, "line")],
                  log="xy")
 
 
@@ -142,7 +140,7 @@ def scaling(runs, settings):
     points, lines, series = by_point(runs), [], []
     base = {run.seed: run for run in points.get(settings["base"], [])}
     if not base:
-        raise BadInput(f"no run of the point {settings['base']} is finished")
+        raise InputError(f"no run of the point {settings['base']} is finished")
     column = f"{settings['obstacle']}_mean_force_x"
 
     def impulse(run, scale):
@@ -206,7 +204,7 @@ def scatter(runs, settings):
     for point in settings["points"]:
         drawn = points.get(point, [])
         if len(drawn) < 5:
-            raise BadInput(f"fewer than 5 runs of {point} are finished")
+            raise InputError(f"fewer than 5 runs of {point} are finished")
         records = [low_passed(run, settings["obstacle"], settings)[0] for run in drawn]
         found[point] = {"mean": np.array([record.mean() for record in records]),
                         "peak": np.array([record.max() for record in records])}
@@ -298,7 +296,7 @@ def endless(runs, settings):
         raised = rubble_height(run, name, times[peak], given["width"] / 2)
         number = max(1, round(settings["mean"] / step))
         running = np.convolve(record, np.ones(number) / number, "valid")
-        trend = floe_signals.trend([record], step)
+        trend = signals.trend([record], step)
         half = len(record) // 2
         found.append({"mean": record.mean(), "deviation": record.std(), "peak": record[peak],
                       "running": running.max(), "height": raised,
@@ -321,11 +319,11 @@ def endless(runs, settings):
              Line("mean of the second half over that of the first", of("halves"))]
     peaks = np.array(of("peak"))
     if len(peaks) > 1:
-        mu, beta = floe_extremes.fit(peaks, "moments")
+        mu, beta = extremes.fit(peaks, "moments")
         for p in (0.5, 0.01):
-            low, high = floe_extremes.band(mu, beta, len(peaks), p, "moments")
+            low, high = extremes.band(mu, beta, len(peaks), p, "moments")
             line = Line(f"Gumbel's law of the largest values: exceeded with probability {p:g}",
-                        [float(floe_extremes.quantile(mu, beta, p))], unit="N",
+                        [float(extremes.quantile(mu, beta, p))], unit="N",
                         half=float(high - low) / 2)
             line.seeds = len(peaks)
             lines.append(line)

@@ -2,15 +2,13 @@
 settings. SI units."""
 import numpy as np
 
-import floe_program
-from floe_program import BadInput
+from floe.errors import InputError
 from floe_validation_lines import (Found, Line, by_point, low_passed, mean_and_band, mean_force,
                                    slope_of)
 from floe_validation_loads import ratio_of_means
 
-with floe_program.packages():
-    from scipy.optimize import brentq
-    from scipy.spatial.transform import Rotation
+from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -30,7 +28,7 @@ def force_of_lines(run, name, motion):
     turn = Rotation.from_rotvec(motion[3:])
     for line in run.options["line_names"].replace(",", " ").split():
         if f"line_{line}_stiffness" not in run.options:
-            raise BadInput(f"{run.name}: line {line} has no stiffness; a table is not read here")
+            raise InputError(f"{run.name}: line {line} has no stiffness; a table is not read here")
         fairlead, anchor = (np.array(run.option(f"line_{line}_{key}"))
                             for key in ("fairlead", "anchor"))
         way = anchor - (centre + motion[:3] + turn.apply(fairlead - centre))
@@ -53,7 +51,7 @@ def drag_law(calm, name):
     bear the drag."""
     speeds = np.array([run.option("water_current")[0] for run in calm])
     if len(set(speeds)) < 2:
-        raise BadInput("the drag needs finished runs without ice in two currents")
+        raise InputError("the drag needs finished runs without ice in two currents")
     drags = [-force_of_lines(run, name, mean_motion(run, name, run.column("time")[-1] / 2))[0]
              for run in calm]
     parts = np.linalg.lstsq(np.column_stack([speeds, speeds * abs(speeds)]), drags, rcond=None)[0]
@@ -113,7 +111,7 @@ def moored(runs, settings):
         lines.append(Line(f"h = {h:g} m: mean offset",
                           [mean_motion(run, name, start)[0] for run in both[0]], unit="m"))
     if not lines:
-        raise BadInput("no thickness has a moored and a fixed run that are finished")
+        raise InputError("no thickness has a moored and a fixed run that are finished")
     for what, found in loads.items():
         number = min(map(len, found.values()))
         if len(found) > 1:

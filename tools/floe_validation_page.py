@@ -8,16 +8,15 @@ import textwrap
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-import floe_program
-from floe_program import BadInput
-from floe_runs import clock, write_whole
+from floe import program
+from floe.ensembles.runs import clock, write_whole
+from floe.errors import InputError, reading
 from floe_validation import SEEDS, verdict_of
 from floe_validation_lines import Found, Line
 
-with floe_program.packages():
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
 
 HEAD = """# Validation
 
@@ -126,14 +125,14 @@ def scenes_of(row):
 
 def parameters(row):
     """The scenes that a row runs, as text."""
-    names = [path.relative_to(floe_program.HOME) for path in scenes_of(row)]
+    names = [path.relative_to(program.HOME) for path in scenes_of(row)]
     return ", ".join(f"[{name}](../{name})" for name in names)
 
 
 def section(row, result):
     """A row's part of the page."""
     found, done, number_of_runs = result.found, result.done, result.runs
-    spec = row.path.relative_to(floe_program.HOME)
+    spec = row.path.relative_to(program.HOME)
     lines = [f"## {row.title}", "", wrapped(row.text), "",
              wrapped(f"Scenes: {parameters(row)}; all parameters: [{spec}](../{spec})."), "",
              wrapped(f"Published: {row.published}. Source: {row.source}"), ""]
@@ -180,7 +179,7 @@ def kept(row, path):
     """The Result of a row that was run in full before, as keep() wrote it; None without one."""
     if not path.exists():
         return None
-    with floe_program.reading(path):
+    with reading(path):
         text = json.loads(path.read_text())
         if text.pop("digest") != digest(row):
             return None
@@ -209,7 +208,7 @@ def result_of(row, directory, path):
     if done:
         try:
             found = row.found(done)
-        except BadInput as error:
+        except InputError as error:
             print(f"{row.name}: {error}")
     versions = sorted({run.summary.get("version", "of an unknown version") for run in done})
     result = Result(len(done), number_of_runs, found, versions,

@@ -7,8 +7,8 @@ import re
 import h5py
 import numpy as np
 
-from floe_output import Output
-from floe_program import BadInput
+from floe.errors import InputError
+from floe.results.output import Output
 from floe_validation_formulas import edge_uplift, first_failure, thin_floe
 from floe_validation_lines import (G, RHO_WATER, Found, Line, by_point, mean_and_band,
                                    mean_force)
@@ -28,7 +28,7 @@ def southwell(run, load, width):
     last = np.arange(max(end - 4, 0), end)
     last = last[compliance[last] > 3 * start]
     if len(last) < 2:
-        raise BadInput(f"{run.folder}: its deflection does not grow enough")
+        raise InputError(f"{run.folder}: its deflection does not grow enough")
     line = np.polyfit(time[last] / (compliance[last] - start), time[last], 1)
     axial = abs(run.option("load_push_force")[0]) / run.option("load_push_ramp")
     return float(line[1]) * axial / width
@@ -105,7 +105,7 @@ def slope_failure(runs, settings):
                                    run.option("fracture_tensile_strength"), settings["young"])
             time, broken = run.column("time"), run.column("beams_broken")
             if not broken.any():
-                raise BadInput(f"{run.folder}: nothing has broken")
+                raise InputError(f"{run.folder}: nothing has broken")
             last = time[np.argmax(broken > 0) - 1]  # before the break
             load = mean_force(run, "slope", 0.99 * last, last)[0]
             ratios.append(load / width / theory)
@@ -138,7 +138,7 @@ def uplift(runs, settings):
                 found = re.search(r"dynamic failure at load factor ([\d.eE+-]+)",
                                   run.summary.get("message", ""))
                 if not found:
-                    raise BadInput(f"{run.folder}: nothing has broken")
+                    raise InputError(f"{run.folder}: nothing has broken")
                 time = float(found[1]) * run.option("time_end")
             load = run.option("load_edge_force")[2] * time / run.option("load_edge_ramp")
             ratios.append(load / run.option("sheet_width")

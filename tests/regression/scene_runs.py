@@ -9,8 +9,8 @@ import numpy as np
 import launch
 from launch import REPOSITORY, FolderTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import frames_of  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results.output import frames_of  # noqa: E402
 
 
 def rows_of(folder):

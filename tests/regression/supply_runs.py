@@ -10,8 +10,8 @@ import numpy as np
 from launch import ENVIRONMENT, FLOE, REPOSITORY, temporary_folder
 from test_supply import SCENE
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import Output, rows_of  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results.output import Output, rows_of  # noqa: E402
 
 # A row with every frame.
 SAMPLES = ("-output_history", "0.1", "-output_fields", "0.5")

@@ -11,8 +11,8 @@ import numpy as np
 import launch
 from bad_input import FILE, GOOD, BadInput, scene_file
 
-sys.path.insert(0, str(launch.REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(launch.REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 
 def spoil(name, value):

@@ -9,8 +9,8 @@ import numpy as np
 
 from scene_runs import SceneTest, last_frame
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
+from floe import lattice as fl  # noqa: E402
 
 SECTION = fl.Section(1.0, 0.5, young=1e9)
 # A row of five blocks along x, held at one end and loaded at the other.

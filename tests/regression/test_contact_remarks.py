@@ -7,8 +7,8 @@ import unittest
 from launch import REPOSITORY
 from one_run import OneRun
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 SHEET = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, contact]

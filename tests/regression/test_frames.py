@@ -21,8 +21,8 @@ import numpy as np
 from launch import (ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, own_words,
                     run)
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import Output, frames_of, rows_of  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results.output import Output, frames_of, rows_of  # noqa: E402
 
 SCENE = """integrator: explicit
 forces: [beam, gravity, buoyancy]

@@ -20,8 +20,8 @@ import numpy as np
 from launch import (ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, limited_memory, own_words, run,
                     temporary_folder)
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 LATTICE = "integrator: explicit\nforces: [beam]\nlattice_file: l.h5\ntime: {end: 1e-3}\n"
 SHEET = ("integrator: explicit\nforces: [beam]\n"

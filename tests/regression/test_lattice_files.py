@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""tools/floe_lattice.py writes lattices that are consistent, and that floe reads."""
+"""floe.lattice writes lattices that are consistent, and that floe reads."""
 import os
 import subprocess
 import sys
@@ -12,8 +12,8 @@ import numpy as np
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 KINDS = {
     "bend45": ["bend45", "--elements", "8"],

@@ -11,11 +11,11 @@ from scipy import stats
 
 from launch import FULL, REPOSITORY
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_extremes as extremes  # noqa: E402
-import floe_fields as fields  # noqa: E402
-import floe_signals as signals  # noqa: E402
-from floe_lattice import Shapes  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.lattice import Shapes  # noqa: E402
+from floe.loads import extremes  # noqa: E402
+from floe.loads import fields  # noqa: E402
+from floe.loads import signals  # noqa: E402
 
 
 class Checks(unittest.TestCase):
@@ -306,7 +306,7 @@ class Records(Checks):
 
 
 class Blocks:
-    """Output of a lattice of blocks, as floe_fields reads it."""
+    """Output of a lattice of blocks, as floe.loads.fields reads it."""
 
     def __init__(self, sizes, places, turn=np.eye(3)):
         shapes = Shapes.boxes(sizes)
@@ -413,7 +413,7 @@ class Ice(Checks):
 def fields_frustum(facets):
     """A cone of 45 degrees with radius 3 m at z = 0, from z = -2 to 2; facets around it whose area
     is that of the circle's cone within 1e-4."""
-    from floe_obstacles import frustum
+    from floe.results.obstacles import frustum
     points, faces = frustum(np.array([0, 0, -2.0]), 5, 1, 4, facets)
     return points, faces
 

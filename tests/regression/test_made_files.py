@@ -10,9 +10,9 @@ import h5py
 from launch import FLOE, REPOSITORY
 from test_ensemble import EnsembleTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_ensemble  # noqa: E402
-from floe_program import BadInput  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.ensembles import specs  # noqa: E402
+from floe.errors import InputError  # noqa: E402
 
 SCENE = """integrator: explicit
 forces: [gravity, buoyancy]
@@ -146,8 +146,8 @@ class BadSpecs(EnsembleTest):
                 ("list: [{make: {lattice_file: make_it}}]", "list: make: lattice_file: 'make_it'")):
             with self.subTest(text):
                 path.write_text("scene: scene.yaml\n" + text)
-                with self.assertRaises(BadInput) as raised:
-                    floe_ensemble.read(path)
+                with self.assertRaises(InputError) as raised:
+                    specs.read(path)
                 self.assertIn(part, str(raised.exception))
 
 

@@ -19,11 +19,11 @@ from shapely.geometry import LineString, Point, Polygon, box, mapping, shape
 
 from launch import REPOSITORY, temporary_folder
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_packing  # noqa: E402
-import floe_program  # noqa: E402
-import floe_sizes  # noqa: E402
-import floe_tessellation  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import program  # noqa: E402
+from floe.make import packing  # noqa: E402
+from floe.make import sizes as laws  # noqa: E402
+from floe.make import tessellation  # noqa: E402
 
 TOOL = REPOSITORY / "tools/make_floes"
 loader = importlib.machinery.SourceFileLoader("make_floes", str(TOOL))
@@ -64,7 +64,7 @@ class MakeFloes(unittest.TestCase):
         with mock.patch.object(sys, "argv", [str(TOOL), *map(str, words)]), \
                 contextlib.chdir(self.folder), contextlib.redirect_stdout(out), \
                 contextlib.redirect_stderr(err), self.assertRaises(SystemExit) as end:
-            floe_program.run(tool.main)
+            program.run(tool.main)
         return subprocess.CompletedProcess(words, end.exception.code or 0, out.getvalue(),
                                            err.getvalue())
 
@@ -130,7 +130,7 @@ class MakeFloes(unittest.TestCase):
             rows, _, said = self.made("--region", 0, 0, 500, 500, "--concentration", concentration,
                                       "--sizes", "power:10:100:2.2", "--shape", form)
             sizes = np.array([row["diameter"] for row in rows])
-            exponent, error = floe_sizes.power_exponent(sizes, 10, 100)
+            exponent, error = laws.power_exponent(sizes, 10, 100)
             self.assertLess(error, 0.2)
             self.assertLess(abs(exponent - 2.2), 3 * error)
             told = float(said.split("exponent of the number above d: ")[1].split()[0])
@@ -236,10 +236,10 @@ class Parts(unittest.TestCase):
         """By hand: without an end a = 1 / mean ln(d / least); the mean of many fits is what was
         drawn, and their deviation the standard error."""
         sizes = np.exp(np.linspace(0.1, 1.9, 10))
-        self.assertAlmostEqual(floe_sizes.power_exponent(sizes, 1, 1e12)[0], 1, 6)
+        self.assertAlmostEqual(laws.power_exponent(sizes, 1, 1e12)[0], 1, 6)
         random = np.random.default_rng(3)
-        law = floe_sizes.Power(2, 30, 1.7)
-        fits = np.array([floe_sizes.power_exponent(law.draw(random, 500), 2, 30)
+        law = laws.Power(2, 30, 1.7)
+        fits = np.array([laws.power_exponent(law.draw(random, 500), 2, 30)
                          for _ in range(400)])
         error = fits[:, 1].mean()
         self.assertLess(abs(fits[:, 0].mean() - 1.7), 3 * error / 20 + 0.01)
@@ -253,7 +253,7 @@ class Parts(unittest.TestCase):
         x, rectangle = random.random((60, 2)) * [3, 2], (0, 0, 3, 2)
         target = 1 + random.random(60)
         target *= 6 / target.sum()
-        diagram, w = floe_tessellation.with_areas(x, np.zeros(60), target, rectangle, 1e-9)
+        diagram, w = tessellation.with_areas(x, np.zeros(60), target, rectangle, 1e-9)
         np.testing.assert_allclose(diagram.area, target, rtol=1e-8)
         cells = [Polygon(corners) for corners in diagram.cells()]
         self.assertAlmostEqual(sum(cell.area for cell in cells), 6, 9)
@@ -263,7 +263,7 @@ class Parts(unittest.TestCase):
         for k in (0, 17):
             change = np.zeros(60)
             change[k] = 1e-6
-            plus, minus = (floe_tessellation.Diagram(x, w + s * change, rectangle).area
+            plus, minus = (tessellation.Diagram(x, w + s * change, rectangle).area
                            for s in (1, -1))
             np.testing.assert_allclose((plus - minus) / 2e-6,
                                        diagram.derivative()[:, k].toarray().ravel(), atol=1e-6)
@@ -272,7 +272,7 @@ class Parts(unittest.TestCase):
         """As by trying all."""
         random = np.random.default_rng(7)
         x, reach = random.random((300, 2)), 0.002 * np.exp(3 * random.random(300))
-        i, j = floe_packing.near_pairs(x, reach)
+        i, j = packing.near_pairs(x, reach)
         found = {(min(a, b), max(a, b)) for a, b in zip(i, j)}
         self.assertEqual(len(found), len(i))
         distance = np.hypot(*(x[:, None] - x[None]).transpose(2, 0, 1))

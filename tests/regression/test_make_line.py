@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from launch import REPOSITORY
 from scene_runs import SceneTest, rows_of
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_catenary import Catenary, Segment, table  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.make.catenary import Catenary, Segment, table  # noqa: E402
 
 CHAIN = Segment(300.0, 1500.0, 7e8)
 MIXED = (Segment(60.0, 200.0, 3e7), Segment(120.0, 1500.0, 7e8), Segment(130.0, 800.0, 2e8))
@@ -186,7 +186,7 @@ class MakeLine(SceneTest):
     def test_offset_of_a_moored_structure(self):
         """The offset under a load is that of the table's forces to 1e-6, and of the line itself to
         what straight pieces are off."""
-        import floe_lattice as fl
+        from floe import lattice as fl
         fl.blocks(np.array([[1.0, 1, 1]]), np.array([[0.0, 0, 0]])).write(
             self.folder / "block.h5")
         said = self.make("line.csv", *WORDS, "--at", "290", "--plot", "line.png")

@@ -13,8 +13,8 @@ import numpy as np
 import launch
 from launch import FLOE, REPOSITORY, FolderTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_hull  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.make import hull as hulls  # noqa: E402
 
 L_SHAPE = """v 0 0 0
 v 3 0 0
@@ -134,7 +134,7 @@ class MakeHull(Tools):
                                    rtol=0, atol=1e-4)
 
     def test_follows_its_formula(self):
-        hull = floe_hull.Hull(80, 16, 5, 8, stem=30, flare=0, midbody=0.5)
+        hull = hulls.Hull(80, 16, 5, 8, stem=30, flare=0, midbody=0.5)
         triangles = hull.triangles(20000)
         # below the water: sections times waterlines; int (1 - u^4 - t^p)^(1/2) over the quarter
         # plane, by sums
@@ -146,7 +146,7 @@ class MakeHull(Tools):
         rake = 5 / math.tan(math.radians(30))
         exact += 40 * np.sqrt(1 - u**4).mean() - 2 * rake * (u * np.sqrt(1 - u**4)).mean()
         exact *= 16 * 5
-        self.assertLess(abs(floe_hull.displacement(triangles) / exact - 1), 0.005)
+        self.assertLess(abs(hulls.displacement(triangles) / exact - 1), 0.005)
         points = triangles.reshape(-1, 3)
         stem = points[(points[:, 1] == 0) & (points[:, 0] > 30) & (points[:, 2] >= 0)]
         np.testing.assert_allclose(stem[:, 0], 40 + stem[:, 2] / math.tan(math.radians(30)),
@@ -166,7 +166,7 @@ class MakeHull(Tools):
             faces = len(file["shapes/corner_of"]) - 1
         self.assertLess(facts["distance"], 0.05)
         self.assertLess(faces, len(read_stl(ship)) / 1.5)
-        self.assertAlmostEqual(facts["volume"], floe_hull.volume(read_stl(ship)), 6)
+        self.assertAlmostEqual(facts["volume"], hulls.volume(read_stl(ship)), 6)
         self.assertAlmostEqual(facts["parts_volume"] / facts["volume"], 1, delta=5e-3)
 
     def test_refused(self):

@@ -11,9 +11,9 @@ import numpy as np
 import launch
 from launch import FLOE, REPOSITORY, FolderTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
-import floe_ridge  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.make import ridge as ridges  # noqa: E402
 
 SMALL = ("--block", "0.5", "0.4", "0.25", "--length", "1.6", "--contact", "4e7")
 SHEET = """forces: [beam, gravity, buoyancy]
@@ -61,7 +61,7 @@ class MakeRidge(FolderTest):
         sets = [set(ridge.sets[name]) for name in ("keel", "sail")]
         self.assertEqual(set.union(*sets), set(range(len(ridge.mass))))
         self.assertFalse(sets[0] & sets[1])
-        corners, body = floe_ridge.placed(ridge)
+        corners, body = ridges.placed(ridge)
         self.assertAlmostEqual(-corners[:, 2].min() / 1.2, 1, delta=0.35)
         self.assertGreater(corners[:, 2].max(), 0.1)
         # At the water's level it is as wide as its flanks say.

@@ -20,8 +20,8 @@ import numpy as np
 from test_supply import SCENE
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import Output  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results.output import Output  # noqa: E402
 
 FLOE = os.environ.get("FLOE", str(REPOSITORY / "build/release/floe"))
 

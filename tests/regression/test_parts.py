@@ -13,10 +13,10 @@ from test_restart import contents
 from test_structures import ICE as STRUCTURE_ICE
 from test_structures import SOFT
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
-from floe_obstacles import obstacles_of_run  # noqa: E402
-from floe_output import Output  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.results.obstacles import obstacles_of_run  # noqa: E402
+from floe.results.output import Output  # noqa: E402
 
 # A loose block that is dropped on a step, with a spin; it slides over the step's parts.
 DROP = """integrator: explicit

@@ -8,8 +8,8 @@ import launch
 import numpy as np
 from launch import REPOSITORY
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import Output  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results.output import Output  # noqa: E402
 
 SCENE = (REPOSITORY / "input/verify/lee_frame.yaml").read_text()
 

@@ -13,6 +13,7 @@ import numpy as np
 from launch import FLOE, REPOSITORY, FolderTest, run
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "python"))
 import floe_peers as peers  # noqa: E402
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from launch import REPOSITORY
 from scene_runs import SceneTest, last_frame
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 # Blocks that fall upon each other on a floor that has no ends.
 HEAP = """integrator: explicit

@@ -8,8 +8,8 @@ import unittest
 
 import launch
 
-sys.path.insert(0, str(launch.REPOSITORY / "tools"))
-from floe_output import frames_of  # noqa: E402
+sys.path.insert(0, str(launch.REPOSITORY / "python"))
+from floe.results.output import frames_of  # noqa: E402
 
 EXPLICIT = """integrator: explicit
 forces: [beam, gravity, buoyancy]

@@ -11,8 +11,8 @@ import numpy as np
 
 from launch import REPOSITORY, FolderTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_pressure  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results import pressure as pressures  # noqa: E402
 
 SIDE = 0.5
 HEADER = "time,obstacle,patch,force_x,force_y,force_z\n"
@@ -55,7 +55,7 @@ class PressureTest(FolderTest):
         path.write_text(text)
 
     def read(self, name="wall"):
-        return floe_pressure.read(self.folder)[name]
+        return pressures.read(self.folder)[name]
 
     def plot(self, *words, code=0):
         done = subprocess.run([sys.executable, str(REPOSITORY / "tools/plot_pressure"),
@@ -72,7 +72,7 @@ class Areas(PressureTest):
         patches = wall()
         pressure = peaked(patches, 0.6, 0.2, 4e6, 2.0)
         self.write("wall", [0, 1, 2], pressure * SIDE**2 * np.array([[0.5], [1], [0.2]]))
-        area, curve = floe_pressure.area_curve(self.read())
+        area, curve = pressures.area_curve(self.read())
         ordered = -np.sort(-pressure)
         np.testing.assert_allclose(area, SIDE**2 * np.arange(1, len(pressure) + 1), rtol=1e-12)
         np.testing.assert_allclose(curve, np.cumsum(ordered) / np.arange(1, len(pressure) + 1),
@@ -84,7 +84,7 @@ class Areas(PressureTest):
         patches = wall()
         first, second = (peaked(patches, y, 0.25, p, 1.1) for y, p in ((-3.25, 4e6), (3.25, 3e6)))
         self.write("wall", [0], ((first + second) * SIDE**2)[None])
-        area, curve = floe_pressure.area_curve(self.read())
+        area, curve = pressures.area_curve(self.read())
         ordered = -np.sort(-first)
         n = np.count_nonzero(first)
         self.assertEqual(n, 13)
@@ -100,7 +100,7 @@ class Areas(PressureTest):
         sharp[37] = 5e6
         wide = np.full(len(sharp), 1e6)
         self.write("wall", [0, 1, 2], np.array([sharp, 0 * sharp, wide]) * SIDE**2)
-        _, curve = floe_pressure.area_curve(self.read())
+        _, curve = pressures.area_curve(self.read())
         expected = np.maximum(5e6 / np.arange(1, len(sharp) + 1), 1e6)
         np.testing.assert_allclose(curve, expected, rtol=1e-12)
 
@@ -122,7 +122,7 @@ class Areas(PressureTest):
 
     def test_iso(self):
         for area, pressure in ((1, 7.4e6), (0.1, 7.4e6 * 10**0.7), (10, 1.4765e6), (40, 1.48e6)):
-            self.assertAlmostEqual(float(floe_pressure.iso(area)) / pressure, 1, delta=1e-4)
+            self.assertAlmostEqual(float(pressures.iso(area)) / pressure, 1, delta=1e-4)
 
 
 class Maps(PressureTest):
@@ -139,7 +139,7 @@ class Maps(PressureTest):
 
     def test_wall_is_a_plane(self):
         self.write("wall", [0], np.ones((1, 120)))
-        x, half, label, z, tall, shown = floe_pressure.unrolled(self.read())
+        x, half, label, z, tall, shown = pressures.unrolled(self.read())
         np.testing.assert_allclose(x, -wall()["centre"][:, 1], atol=1e-12)
         self.assertIn("[m]", label)
         self.assertTrue(shown.all() and (half == SIDE / 2).all() and (tall == SIDE / 2).all())
@@ -160,15 +160,15 @@ class Maps(PressureTest):
         force = np.append(1.0 * (np.abs(angle - np.pi) < 1), 0)
         self.write("cone", [0], force[None], patches)
         one = self.read("cone")
-        np.testing.assert_allclose(floe_pressure.axis_of(one), [10, -5], atol=1e-12)
-        x, half, label, z, tall, shown = floe_pressure.unrolled(one)
+        np.testing.assert_allclose(pressures.axis_of(one), [10, -5], atol=1e-12)
+        x, half, label, z, tall, shown = pressures.unrolled(one)
         np.testing.assert_allclose(x[:-1], np.degrees(angle), atol=1e-9)  # ice from -x
         np.testing.assert_allclose(half[:-1], np.degrees(0.5 / radius), rtol=1e-12)
         np.testing.assert_allclose(tall[:-1], 0.5 / np.sqrt(2), rtol=1e-12)
         self.assertTrue(shown[:-1].all() and not shown[-1])
         self.assertIn("[°]", label)
         self.write("other_side", [0], np.append(1.0 * (np.cos(angle) > 0.5), 0)[None], patches)
-        x = floe_pressure.unrolled(self.read("other_side"))[0]
+        x = pressures.unrolled(self.read("other_side"))[0]
         self.assertLess(np.abs(x[force.size - 2]), 180)
         self.assertLess(x.min(), -170)
 

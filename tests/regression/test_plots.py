@@ -12,27 +12,27 @@ import numpy as np
 from launch import ENDLESS, FLOE, REPOSITORY
 from running import RunningTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_plate  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.sheets import plate as plates  # noqa: E402
 
 
 class Curve(unittest.TestCase):
     def test_wyman(self):
-        wyman = floe_plate.wyman
+        wyman = plates.wyman
         ratio = np.array([0, 0.5, 1, 1.5, 2, 3, 5])
         np.testing.assert_allclose(wyman(ratio),
                                    [1, .85508, .63025, .42195, .25770, .06509, -.01424], atol=6e-6)
         self.assertAlmostEqual(float(wyman(1e-9)), 1, 12)
 
     def test_kei_is_smooth_where_its_branches_meet(self):
-        kei = floe_plate.kei
+        kei = plates.kei
         x = np.array([0.9e-8, 1.1e-8, 1e-4])
         np.testing.assert_allclose(kei(x), -np.pi / 4, atol=1e-6)
 
 
 class Plate(unittest.TestCase):
     def test_characteristic_length_and_deflection(self):
-        plate = floe_plate.plate
+        plate = plates.plate
         for h, length, w0 in ((0.5, 8.2450, 1.8558e-3), (1, 13.8663, .65614e-3),
                               (1.5, 18.7945, .35716e-3)):
             options = {"ice_young": "4e9", "ice_poisson": "0.3", "sheet_thickness": str(h),
@@ -50,14 +50,14 @@ class Continua(unittest.TestCase):
         within 1 %."""
         for poisson in (0.15, 0.3):
             fitted = np.sqrt((2 + 1.2 * poisson) / (12 * (1 - poisson**2)))
-            self.assertAlmostEqual(floe_plate.edge_deflection(poisson) / fitted, 1, delta=0.01)
-        self.assertAlmostEqual(floe_plate.edge_deflection(0.3),
-                               floe_plate.edge_deflection(0.3, 800), delta=1e-5)
+            self.assertAlmostEqual(plates.edge_deflection(poisson) / fitted, 1, delta=0.01)
+        self.assertAlmostEqual(plates.edge_deflection(0.3),
+                               plates.edge_deflection(0.3, 800), delta=1e-5)
 
     def test_square_in_simple_shear(self):
         """128 x 128 elements give 0.64125 and 0.65820."""
         for poisson, fine in ((0.2046, 0.64125), (0.3, 0.65820)):
-            self.assertAlmostEqual(floe_plate.simple_shear(poisson), fine, delta=0.002)
+            self.assertAlmostEqual(plates.simple_shear(poisson), fine, delta=0.002)
 
 
 class Pictures(unittest.TestCase):

@@ -14,6 +14,7 @@ import numpy as np
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
 sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "python"))
 import floe_breaking as breaking  # noqa: E402
 import floe_precision as precision  # noqa: E402
 

@@ -10,9 +10,9 @@ from launch import REPOSITORY
 from scene_runs import SceneTest, rows_of
 from test_parts import ICE, SOFT
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
-from floe_output import Lattice  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.results.output import Lattice  # noqa: E402
 
 REST = """integrator: explicit
 forces: [gravity, contact]

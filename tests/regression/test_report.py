@@ -15,14 +15,14 @@ import numpy as np
 from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest
 from report_scenes import make_report, run_cone
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_report_map as force_map  # noqa: E402
-import floe_report_scene as scenes  # noqa: E402
-from floe_lattice import Shapes  # noqa: E402
-from floe_output import Output, matrices, rotations  # noqa: E402
-from floe_report_arrays import pack, unpack  # noqa: E402
-from floe_report_page import data_in  # noqa: E402
-from floe_report_series import thinned  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.lattice import Shapes  # noqa: E402
+from floe.report import map as force_map  # noqa: E402
+from floe.report import scene as scenes  # noqa: E402
+from floe.report.arrays import pack, unpack  # noqa: E402
+from floe.report.page import data_in  # noqa: E402
+from floe.report.series import thinned  # noqa: E402
+from floe.results.output import Output, matrices, rotations  # noqa: E402
 
 # Names of kinds of elements, which no browser loads.
 NAMESPACES = {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xhtml"}

@@ -15,10 +15,10 @@ from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest
 from report_scenes import make_report, run_cone
 from test_supply import SCENE
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import rows_of  # noqa: E402
-from floe_report_arrays import unpack  # noqa: E402
-from floe_report_page import data_in  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.report.arrays import unpack  # noqa: E402
+from floe.report.page import data_in  # noqa: E402
+from floe.results.output import rows_of  # noqa: E402
 
 VIEW = "window.floe.view"
 BOX = ("(e => { const r = e.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; })"

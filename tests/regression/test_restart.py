@@ -22,9 +22,9 @@ import numpy as np
 
 from launch import ENDLESS, ENVIRONMENT, FLOE, FULL, REPOSITORY, FolderTest, on_ranks, own_words
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
-from floe_output import frames_of  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.results.output import frames_of  # noqa: E402
 
 # Damping loss, load work, boundary work and the water's forces all have a history or energies of
 # their own. Rows of history.csv and frames are due at different steps.

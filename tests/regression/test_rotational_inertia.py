@@ -9,6 +9,7 @@ import unittest
 from launch import REPOSITORY, FolderTest, run
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "python"))
 import floe_precision as precision  # noqa: E402
 
 FACTOR = "-model_rotational_inertia_factor"

@@ -16,8 +16,8 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 FLOE = Path(os.environ.get("FLOE", REPOSITORY / "build/release/floe")).resolve()
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_output import Output  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.results.output import Output  # noqa: E402
 from launch import ENVIRONMENT  # noqa: E402
 from scenes import beams, contact, fracture, moving, static, structures  # noqa: E402
 

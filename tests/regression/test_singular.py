@@ -6,8 +6,8 @@ import unittest
 from launch import REPOSITORY
 from running import RunningTest
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 # Boxes that float on a corner and are turned by almost a whole turn: Newton's method throws some
 # out of the water, where nothing holds them.

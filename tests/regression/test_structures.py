@@ -16,11 +16,11 @@ from launch import REPOSITORY
 from scene_runs import SceneTest, rows_of
 from test_restart import contents
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
-from floe_fields import Bodies, contact_area, placed  # noqa: E402
-from floe_obstacles import obstacles_of_run  # noqa: E402
-from floe_output import Output  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.loads.fields import Bodies, contact_area, placed  # noqa: E402
+from floe.results.obstacles import obstacles_of_run  # noqa: E402
+from floe.results.output import Output  # noqa: E402
 
 # A leg beside ice that it never meets.
 ALONE = """integrator: explicit

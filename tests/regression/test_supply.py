@@ -16,9 +16,9 @@ from launch import FULL, REPOSITORY
 from scene_runs import rows_of
 from test_restart import RestartTest, contents
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-from floe_fields import Bodies  # noqa: E402
-from floe_output import Output, frames_of  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.loads.fields import Bodies  # noqa: E402
+from floe.results.output import Output, frames_of  # noqa: E402
 
 SCENE = """integrator: explicit
 forces: [beam, fracture, gravity, buoyancy, drag, contact]

@@ -15,12 +15,12 @@ import numpy as np
 from launch import ENDLESS, ENVIRONMENT, FLOE, REPOSITORY
 from supply_runs import Account, SupplyTools, begin, run, tool
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_breaks  # noqa: E402
-import floe_lattice as fl  # noqa: E402
-from floe_output import Lattice, Output, Present, matrices  # noqa: E402
-from floe_report_page import data_in  # noqa: E402
-from floe_supply_lattice import lattice_of  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.report.page import data_in  # noqa: E402
+from floe.results import breakage  # noqa: E402
+from floe.results.output import Lattice, Output, Present, matrices  # noqa: E402
+from floe.results.supply_lattice import lattice_of  # noqa: E402
 
 
 class Frames(SupplyTools):
@@ -60,7 +60,7 @@ class Frames(SupplyTools):
             ice, wanted = self.output.at(when), self.account.at(when)
             self.assertEqual(len(ice.names), wanted["bodies"])
             self.assertAlmostEqual(ice.mass.sum() / wanted["mass"], 1, 12)
-            found = floe_breaks.at_frame(self.output, when)
+            found = breakage.at_frame(self.output, when)
             self.assertEqual(len(found["beam"]), wanted["beams_broken"])
             self.assertEqual(len(found["fragments/mass"]), wanted["fragments"])
             self.assertEqual(found["fragments/bodies"].sum(), len(ice.names))
@@ -102,8 +102,8 @@ class Frames(SupplyTools):
 
     def test_times_of_breaks(self):
         """To the step of what breaks.h5 has, else of the first frame that has the break."""
-        times = floe_breaks.Times(self.output)
-        end = floe_breaks.at_end(self.output)
+        times = breakage.Times(self.output)
+        end = breakage.at_end(self.output)
         with h5py.File(self.made / "breaks.h5") as file:
             np.testing.assert_array_equal(np.sort(end["beam"]), np.sort(file["beam"][:]))
             np.testing.assert_array_equal(end["time"], file["time"][:])
@@ -167,7 +167,7 @@ class OtherRuns(SupplyTools):
             ice, own = output.at(when), self.output.at(when)
             np.testing.assert_array_equal(ice.names, own.names)
             np.testing.assert_array_equal(ice.mass, own.mass)
-            found, wanted = (floe_breaks.at_frame(o, when) for o in (output, self.output))
+            found, wanted = (breakage.at_frame(o, when) for o in (output, self.output))
             np.testing.assert_array_equal(np.sort(found["beam"]), np.sort(wanted["beam"]))
 
     def test_killed(self):
@@ -182,7 +182,7 @@ class OtherRuns(SupplyTools):
         self.assertGreater(len(output.times), 3)
         last = account.at(output.times[-1])
         self.assertAlmostEqual(output.at(output.times[-1]).mass.sum() / last["mass"], 1, 12)
-        self.assertEqual(len(floe_breaks.at_end(output)["fragments/mass"]), last["fragments"])
+        self.assertEqual(len(breakage.at_end(output)["fragments/mass"]), last["fragments"])
         tool("report", folder)
         report = data_in((folder / "report.html").read_text())
         self.assertEqual(report["fragments"]["number"], last["fragments"])
@@ -201,7 +201,7 @@ class OtherRuns(SupplyTools):
             np.testing.assert_array_equal(output.at(when).names, self.output.at(when).names)
             np.testing.assert_array_equal(output.field("centres", when),
                                           self.output.field("centres", when))
-        a, b = floe_breaks.at_end(output), floe_breaks.at_end(self.output)
+        a, b = breakage.at_end(output), breakage.at_end(self.output)
         for name, values in a.items():
             np.testing.assert_array_equal(values, b[name], name)
 
@@ -237,11 +237,11 @@ class OtherRuns(SupplyTools):
         try:
             with h5py.File(path, "a") as file:
                 file["bodies"][0] = [1, 0]
-            times = floe_breaks.Times(self.output)
+            times = breakage.Times(self.output)
             self.assertLessEqual(set(times.time), set(self.output.times))
         finally:
             path.write_bytes(kept)
-        self.assertFalse(set(floe_breaks.Times(self.output).time) <= set(self.output.times))
+        self.assertFalse(set(breakage.Times(self.output).time) <= set(self.output.times))
 
 
 if __name__ == "__main__":

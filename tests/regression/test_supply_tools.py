@@ -13,13 +13,13 @@ import numpy as np
 from launch import REPOSITORY
 from supply_runs import SupplyTools, tool
 
-sys.path.insert(0, str(REPOSITORY / "tools"))
-import floe_breaks  # noqa: E402
-import floe_fields  # noqa: E402
-import floe_loads  # noqa: E402
-from floe_output import matrices, rotations  # noqa: E402
-from floe_report_arrays import unpack  # noqa: E402
-from floe_report_page import data_in  # noqa: E402
+sys.path.insert(0, str(REPOSITORY / "python"))
+from floe.loads import fields  # noqa: E402
+from floe.loads import statements  # noqa: E402
+from floe.report.arrays import unpack  # noqa: E402
+from floe.report.page import data_in  # noqa: E402
+from floe.results import breakage  # noqa: E402
+from floe.results.output import matrices, rotations  # noqa: E402
 
 
 def script(name):
@@ -62,7 +62,7 @@ class Tools(SupplyTools):
             np.testing.assert_allclose(axial, force / beams["area"])
             _, axes = sheet.plt.subplots()
             fragments.plot_plan(axes, self.output.at(when),
-                                floe_breaks.at_frame(self.output, when))
+                                breakage.at_frame(self.output, when))
             self.assertEqual(len(axes.collections[0].get_paths()), count)
             sheet.plt.close("all")
         for words in (["plot_sheet", self.made, "--time", 2, "--deformed", 1],
@@ -80,11 +80,11 @@ class Tools(SupplyTools):
         self.assertEqual(found["ice"]["fragments"]["number"], end["fragments"] - 1)
         self.assertGreater(len(found["ice"]["pressure_area"]["area"]), 2)
         # columns over all ice hold its volume
-        bodies = floe_fields.Bodies(self.output, 5)
+        bodies = fields.Bodies(self.output, 5)
         self.assertEqual(len(bodies), end["bodies"])
         spacing = 0.1
         low, high = bodies.low.min(axis=0), bodies.high.max(axis=0)
-        _, top, bottom, solid = floe_fields.columns(bodies, spacing, (low[:2], high[:2]))
+        _, top, bottom, solid = fields.columns(bodies, spacing, (low[:2], high[:2]))
         shapes = self.output.at(5).shapes
         volume = sum(polygon_volume(bodies.points, [
             shapes["corners"][shapes["corner_of"][f]:shapes["corner_of"][f + 1]]
@@ -93,7 +93,7 @@ class Tools(SupplyTools):
         # overlaps of contacts count once
         self.assertAlmostEqual(solid.sum() * spacing**2 / volume, 1, delta=0.03)
         self.assertTrue(np.all(top - bottom > solid - 1e-3))
-        self.assertEqual(len(floe_loads.read_run(self.made).forces), 1)
+        self.assertEqual(len(statements.read_run(self.made).forces), 1)
 
     def test_netcdf(self):
         import xarray
@@ -218,7 +218,7 @@ class Tools(SupplyTools):
                                        atol=3 * step)
             # pieces of what is there, as the page counts them
             whole = ((ended < 0) | (ended > 1000 * when)) & there[a] & there[b]
-            piece = floe_breaks.pieces(scene["bodies"], np.column_stack([a, b])[whole])
+            piece = breakage.pieces(scene["bodies"], np.column_stack([a, b])[whole])
             self.assertEqual(len(np.unique(piece[there])), wanted["fragments"])
 
     def cracks_are_those_of_the_frames(self, scene):

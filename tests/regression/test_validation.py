@@ -14,12 +14,13 @@ import numpy as np
 from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "python"))
 import floe_validation as validation  # noqa: E402
 import floe_validation_formulas as formulas  # noqa: E402
 import floe_validation_ice as ice  # noqa: E402
 import floe_validation_page as pages  # noqa: E402
 import floe_validation_sheets as sheets  # noqa: E402
-from floe_program import BadInput  # noqa: E402
+from floe.errors import InputError  # noqa: E402
 from floe_validation_lines import Found, Line  # noqa: E402
 
 TOOL = str(REPOSITORY / "tools/validate")
@@ -109,13 +110,13 @@ class Specs(FolderTest):
             with self.subTest(new):
                 self.assertIn(old, good)
                 path.write_text(good.replace(old, new, 1))
-                with self.assertRaisesRegex(BadInput, re.escape(part)):
+                with self.assertRaisesRegex(InputError, re.escape(part)):
                     validation.Row(path)
         path.write_text(good.replace("points: [h05_a45_v002,", "points: [none,"))
-        with self.assertRaisesRegex(BadInput, "short: points: .* must be names"):
+        with self.assertRaisesRegex(InputError, "short: points: .* must be names"):
             validation.Row(path, short=True)
         path.write_text("seconds: [")
-        with self.assertRaises(BadInput):
+        with self.assertRaises(InputError):
             validation.Row(path)
 
 
@@ -142,7 +143,9 @@ class Runs(FolderTest):
         (self.folder / "fake").chmod(0o755)
         # A copy of the tools, whose only row is that of the test.
         shutil.copytree(REPOSITORY / "tools", self.folder / "tools",
-                        ignore=shutil.ignore_patterns("__pycache__", "report_page"))
+                        ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(REPOSITORY / "python", self.folder / "python",
+                        ignore=shutil.ignore_patterns("__pycache__", "web"))
         (self.folder / "docs/pictures").mkdir(parents=True)
         for path in (self.folder / "tools/validation").glob("*.yaml"):
             path.unlink()
@@ -274,8 +277,9 @@ class Short(FolderTest):
         numbers = [float(text) for text in re.findall(r": (0\.\d+)$", done.stdout, re.M)]
         self.assertEqual(len(numbers), 2)
         tools = self.folder / "tools"
-        shutil.copytree(REPOSITORY / "tools", tools,
-                        ignore=shutil.ignore_patterns("__pycache__", "report_page"))
+        shutil.copytree(REPOSITORY / "tools", tools, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(REPOSITORY / "python", self.folder / "python",
+                        ignore=shutil.ignore_patterns("__pycache__", "web"))
         (self.folder / "input").symlink_to(REPOSITORY / "input")
         spec = tools / "validation/first_failure.yaml"
         spec.write_text(re.sub("within: .*", "within: [1.2, 1.3]", spec.read_text()))
@@ -312,7 +316,7 @@ class Measures(FolderTest):
         self.assertAlmostEqual(sheets.southwell(run, "nudge", 8) / 0.9e6, 1, 4)
         short = {key: values[:40] for key, values in table.items()}
         run = self.made("short_s001", short, {})
-        with self.assertRaisesRegex(BadInput, "does not grow enough"):
+        with self.assertRaisesRegex(InputError, "does not grow enough"):
             sheets.southwell(run, "nudge", 8)
 
     def test_ridging(self):

@@ -12,6 +12,7 @@ from launch import FLOE, REPOSITORY, FolderTest
 from launch import run as floe
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "python"))
 import floe_validation as validation  # noqa: E402
 import floe_validation_formulas as formulas  # noqa: E402
 import floe_validation_ice as ice  # noqa: E402
@@ -31,7 +32,7 @@ output: {history: 0.01, fields: 1}
 
 
 class Cubes:
-    """Upright boxes as floe_fields.Bodies has polyhedra."""
+    """Upright boxes as fields.Bodies has polyhedra."""
 
     def __init__(self, low, high):
         self.low, self.high = np.array(low, float), np.array(high, float)

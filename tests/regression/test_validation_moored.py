@@ -10,9 +10,10 @@ import numpy as np
 from launch import REPOSITORY, FolderTest
 
 sys.path.insert(0, str(REPOSITORY / "tools"))
+sys.path.insert(0, str(REPOSITORY / "python"))
 import floe_validation as validation  # noqa: E402
 import floe_validation_moored as moored  # noqa: E402
-from floe_program import BadInput  # noqa: E402
+from floe.errors import InputError  # noqa: E402
 
 # Two lines of 1 kN/m along x, 100 m long, that hold at the centroid; water 10 m wide at z = 0.
 OPTIONS = {"obstacle_hull_radius": "5", "obstacle_hull_top_radius": "5",
@@ -83,7 +84,7 @@ class Statics(FolderTest):
             slope = (energy(motion[:3] + step) - energy(motion[:3] - step)) / 2e-4
             self.assertAlmostEqual(moored.force_of_lines(run, "hull", motion)[axis] / -slope, 1, 7)
         run.options = {k: v for k, v in OPTIONS.items() if k != "line_east_stiffness"}
-        with self.assertRaisesRegex(BadInput, "line east has no stiffness"):
+        with self.assertRaisesRegex(InputError, "line east has no stiffness"):
             moored.force_of_lines(run, "hull", motion)
 
     def test_offset_of_statics(self):
@@ -111,7 +112,7 @@ class Statics(FolderTest):
         runs = self.calm()
         drag = moored.drag_law(runs, "hull")
         np.testing.assert_allclose(drag(np.array([1, 0.5, -0.5, 2])), [1000, 300, -300, 3600])
-        with self.assertRaisesRegex(BadInput, "in two currents"):
+        with self.assertRaisesRegex(InputError, "in two currents"):
             moored.drag_law(runs[:1], "hull")
 
     def test_row(self):
@@ -135,9 +136,9 @@ class Statics(FolderTest):
         self.assertAlmostEqual(lines["h = 0.5 m: peak, moored over fixed"].mean, 0.8)
         np.testing.assert_allclose(lines["h = 0.5 m: mean offset over that of statics"].values, 1)
         self.assertFalse(any("exponent" in what for what in lines))
-        with self.assertRaisesRegex(BadInput, "without ice in two currents"):
+        with self.assertRaisesRegex(InputError, "without ice in two currents"):
             moored.moored(runs[1:], settings)
-        with self.assertRaisesRegex(BadInput, "no thickness has"):
+        with self.assertRaisesRegex(InputError, "no thickness has"):
             moored.moored(runs[:2], settings)
 
 

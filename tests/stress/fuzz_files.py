@@ -8,8 +8,8 @@ import numpy as np
 
 import launch
 
-sys.path.insert(0, str(launch.REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
+sys.path.insert(0, str(launch.REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
 
 NUMBERS = (np.nan, np.inf, -np.inf, -1.0, 0.0, -0.0, 1.0, 2.0, 1e300, -1e300, 1e-300, 1e-320, 1e31,
            1e15, 1e-15, 0.5, 2.0**53, 1e9)

@@ -17,9 +17,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
 import launch  # noqa: E402
 
-sys.path.insert(0, str(launch.REPOSITORY / "tools"))
-import floe_lattice as fl  # noqa: E402
-from floe_output import Output  # noqa: E402
+sys.path.insert(0, str(launch.REPOSITORY / "python"))
+from floe import lattice as fl  # noqa: E402
+from floe.results.output import Output  # noqa: E402
 
 FULL = launch.FULL
 

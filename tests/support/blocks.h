@@ -1,5 +1,5 @@
 /// \file
-/// Loose blocks, built in code as tools/floe_lattice.py builds them.
+/// Loose blocks, built in code as floe.lattice builds them.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 /// \file
-/// Chains of bodies joined by beams, built in code as tools/floe_lattice.py builds them.
+/// Chains of bodies joined by beams, built in code as floe.lattice builds them.
 #pragma once
 
 #include <cmath>

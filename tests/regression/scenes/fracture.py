@@ -3,7 +3,7 @@ import re
 
 import numpy as np
 
-import floe_strength
+from floe.sheets import strength as strengths
 from scenes.shared import breaks, last_row
 
 
@@ -38,7 +38,7 @@ def check_strength_tension(test, run):
              "-beam_kinematics", "linear")
     nominal = 10 * 0.5 * 6e5
     plain = run(*small)
-    strength = floe_strength.of_tension(floe_strength.history(plain.folder), nominal)
+    strength = strengths.of_tension(strengths.history(plain.folder), nominal)
     test.assertAlmostEqual(strength["largest"], 0.68, delta=0.08)
     test.assertNotIn("strength_calibration", plain.summary)
     free = (*small, "-boundary_left_fix", "x", "-boundary_right_fix", "x",
@@ -50,7 +50,7 @@ def check_strength_tension(test, run):
         # decides whether a balance is found or the run stops there.
         output = run(*free, ranks=ranks, status=(0, 1))
         found[ranks] = output.summary["strength_calibration"]
-        rows = floe_strength.history(output.folder)
+        rows = strengths.history(output.folder)
         if rows[-1]["beams_broken"] == 0:
             stopped = re.search(r"dynamic failure at load factor ([\d.]+):",
                                 output.summary["message"])
@@ -58,7 +58,7 @@ def check_strength_tension(test, run):
             time = float(stopped[1]) * 0.8  # of `-time_end`
             strength = abs(rows[-1]["right_force_x"]) * time / rows[-1]["time"] / nominal
         else:
-            strength = floe_strength.of_tension(rows, nominal)["first"]
+            strength = strengths.of_tension(rows, nominal)["first"]
         along_x = found[ranks]["factor"] * found[ranks]["along_x"]
         # a load step may pass the strength by 0.5 %
         test.assertAlmostEqual(strength / along_x, 1, delta=0.006)
@@ -70,8 +70,8 @@ def check_strength_bending(test, run):
     output = run("-sheet_length", "10", "-sheet_width", "10", "-load_left_moment", "0,3e5,0",
                  "-load_right_moment", "0,-3e5,0",
                  "-time_dt", "0.1", "-beam_kinematics", "linear", status=1)
-    strength = floe_strength.of_bending(floe_strength.history(output.folder),
-                                        output.summary["message"], 1.2)
+    strength = strengths.of_bending(strengths.history(output.folder),
+                                    output.summary["message"], 1.2)
     test.assertAlmostEqual(strength["largest"], 0.87, delta=0.12)
 
 

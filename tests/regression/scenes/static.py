@@ -2,7 +2,7 @@
 import numpy as np
 
 import campaign_cases
-import floe_plate
+from floe.sheets import plate
 from scenes.shared import last_row
 
 YOUNG = 4e9  # of the triangles [Pa]
@@ -90,12 +90,12 @@ def check_edge_load(test, run):
     test.assertEqual(output.summary["bodies"], 3080)
     test.assertAlmostEqual(output.summary["deflection_over_wyman"], 3.79, delta=0.08)
     test.assertAlmostEqual(output.summary["deflection_over_wyman"]
-                           / (8 * floe_plate.edge_deflection(0.3)), 1, delta=0.05)
+                           / (8 * plate.edge_deflection(0.3)), 1, delta=0.05)
     plain = run("-beam_calibrate", "none").summary["deflection_over_wyman"]
     test.assertAlmostEqual(plain, 3.47, delta=0.08)
     # D*, nu_b* of the infinite lattice (model.md, "Effective moduli of the lattice, calibrated
     # sheets")
-    softer = 8 * floe_plate.edge_deflection(0.00415) / np.sqrt(0.9062)
+    softer = 8 * plate.edge_deflection(0.00415) / np.sqrt(0.9062)
     test.assertAlmostEqual(plain / softer, 1, delta=0.03)
 
 

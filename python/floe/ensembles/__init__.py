@@ -1,0 +1,1 @@
+"""Many runs of floe: specs, folders, processes."""

@@ -1,0 +1,1 @@
+"""Statistics of the forces on obstacles. SI units."""

@@ -1,0 +1,1 @@
+"""What makes lattices, outlines, hulls and tables for scenes. SI units."""

@@ -1,0 +1,1 @@
+"""Readers of output folders: one file of a run each. SI units."""

@@ -1,0 +1,1 @@
+"""Theory and statistics of whole sheets to set beside runs. SI units."""
