@@ -8,54 +8,52 @@ namespace floe {
 
 PairConstants pair_constants(const Solids& solids, const ContactOptions& options, const Pair& pair,
                              bool wet) {
-  const double size = solids.size(pair.a);
-  const auto at_place = [&](double dry, const std::optional<double>& below) {
-    return wet && below ? *below : dry;
+  const auto friction_of = [&](const auto& of) {
+    return wet && of.friction_wet ? *of.friction_wet : of.friction;
   };
-  if (is_obstacle(pair.a)) {  // of two obstacles
-    const Obstacle &one = solids.obstacle(pair.a), &other = solids.obstacle(pair.b);
-    const double other_size = solids.size(pair.b);
-    const double smaller = other_size > 0 ? std::min(size, other_size) : size;
-    return {.stiffness = options.young / (0.5 * (size + other_size)),
-            .area = smaller * smaller,
-            .friction = std::max(at_place(one.friction, one.friction_wet),
-                                 at_place(other.friction, other.friction_wet)),
-            .half_space = solids.is_half_space(pair.b) ? 1.0 : 0.0};
-  }
-  if (is_obstacle(pair.b)) {
-    const Obstacle& obstacle = solids.obstacle(pair.b);
+  const double half_space = solids.is_half_space(pair.b) ? 1.0 : 0.0;
+  const bool of_ice = solids.is_ice(pair.a), on_ice = solids.is_ice(pair.b);
+  if (of_ice != on_ice) {  // ice on an obstacle
+    const double size = solids.size(of_ice ? pair.a : pair.b);
     return {.stiffness = options.young / (0.5 * size),
             .area = size * size,
-            .friction = at_place(obstacle.friction, obstacle.friction_wet),
-            .half_space = solids.is_half_space(pair.b) ? 1.0 : 0.0};
+            .friction = friction_of(solids.obstacle(of_ice ? pair.b : pair.a)),
+            .half_space = half_space};
   }
-  const double other_size = solids.size(pair.b);
-  const double smaller = std::min(size, other_size);
+  const double size = solids.size(pair.a), other_size = solids.size(pair.b);
+  const double smaller = other_size > 0 ? std::min(size, other_size) : size;
   const double young = pair.broken && options.young_broken ? *options.young_broken : options.young;
   return {.stiffness = young / (0.5 * (size + other_size)),
           .area = smaller * smaller,
-          .friction = at_place(options.friction, options.friction_wet),
-          .half_space = 0};
+          .friction = of_ice ? friction_of(options)
+                             : std::max(friction_of(solids.obstacle(pair.a)),
+                                        friction_of(solids.obstacle(pair.b))),
+          .half_space = half_space};
 }
 
 ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
                            const ContactLaws& law) {
   // L of the partner with the stiffest contacts: the smallest body, or 0 for an obstacle.
-  double smallest = solids.obstacles().empty() ? std::numeric_limits<double>::max() : 0.0;
+  const auto& obstacles = solids.obstacles();
+  const bool all_ice =
+      std::all_of(obstacles.begin(), obstacles.end(), [](const Obstacle& o) { return o.is_ice; });
+  double smallest = all_ice ? std::numeric_limits<double>::max() : 0.0;
   double least_size = std::numeric_limits<double>::max();
   for (std::int32_t b = 0; b < solids.bodies(); ++b) {
-    if (solids.carries(b)) continue;
+    if (solids.is_structure(b)) continue;
     smallest = std::min(smallest, 0.5 * solids.size(b));
     least_size = std::min(least_size, solids.size(b));
   }
   double mobility = 0;  // of the lightest structure
-  for (const std::int32_t b : solids.carriers()) mobility = std::max(mobility, 1 / solids.mass(b));
+  for (const std::int32_t b : solids.carriers())
+    if (solids.is_structure(b)) mobility = std::max(mobility, 1 / solids.mass(b));
   const double stiffest = std::max(options.young, options.young_broken.value_or(0));
   double most = 0, touch = 0;
   std::int32_t touching = -1;
   for (std::int32_t b = 0; b < solids.bodies(); ++b) {
     // A structure is touched by bodies of any size, all over its surface, and by obstacles.
-    const double size = solids.carries(b) ? std::min(least_size, solids.size(b)) : solids.size(b);
+    const double size =
+        solids.is_structure(b) ? std::min(least_size, solids.size(b)) : solids.size(b);
     const Solids::Faces& faces = solids.faces(b);
     const double k = stiffest / (0.5 * size + smallest);
     const double steeper =
@@ -63,9 +61,9 @@ ContactRates contact_rates(const Solids& solids, const ContactOptions& options,
     most = std::max(most, 2 * k * steeper * faces.area / solids.mass(b));
     // k_v/m_r is 2 E_c/size/m on an obstacle and between bodies of one size alike; of two sizes the
     // smaller body's own bound holds.
-    if (solids.carries(b) && !solids.obstacles_touch()) continue;
+    if (solids.is_structure(b) && !solids.obstacles_touch()) continue;
     double of_face = 2 * stiffest / size * steeper * faces.widest / solids.mass(b);
-    if (mobility > 0 && !solids.carries(b)) of_face *= 1 + mobility * solids.mass(b);
+    if (mobility > 0 && !solids.is_structure(b)) of_face *= 1 + mobility * solids.mass(b);
     if (of_face > touch) {
       touch = of_face;
       touching = b;

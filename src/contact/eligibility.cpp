@@ -41,7 +41,7 @@ void Eligibility::update(const Solids& solids) {
   on_surface_.resize(n);
   pieces_ = 0;
   for (std::int32_t b = 0; b < bodies; ++b) {
-    if (item(piece_, b) == b && !solids.carries(b)) ++pieces_;
+    if (item(piece_, b) == b && !solids.is_structure(b)) ++pieces_;
     item(on_surface_, b) = item(beams, b) < solids.faces(b).number - 2 ? 1 : 0;
   }
   for (const auto& [a, b] : released_) item(on_surface_, a) = item(on_surface_, b) = 1;

@@ -91,8 +91,10 @@ void PairList::list_obstacles(const Search& search) {
                                         : item(search.bodies, carrier);
     // The rank of a structure needs all contacts with it, as that of a body does.
     const bool carrier_is_here = carrier >= 0 && search.is_here(carrier);
+    const bool is_ice = solids.is_ice(index);
     for (std::int32_t b = 0; b < solids.bodies(); ++b) {
       if ((!search.is_here(b) && !carrier_is_here) || solids.carries(b)) continue;
+      if (is_ice && !eligibility_.may_touch(std::min(b, carrier), std::max(b, carrier))) continue;
       const Placed& body = item(search.bodies, b);
       const Vec3<double> x = obstacle.axes.to_local(periods_.nearest(body.x - obstacle.x));
       const auto planes = solids.planes(index);
@@ -122,8 +124,10 @@ void PairList::list_touching_obstacles(const Search& search) {
     const Placed a = place(obstacles[one]);
     const auto [first_a, end_a] = solids.parts_of(one);
     for (std::size_t other = 0; other < obstacles.size(); ++other) {
+      const auto [first, second] = std::minmax({obstacles[one].body, obstacles[other].body});
       if (!may_touch(obstacles[one], obstacles[other])) continue;
       if (obstacles[other].is_carried() && other < one) continue;
+      if (first >= 0 && !eligibility_.may_touch(first, second)) continue;
       if (!is_here(obstacles[one]) && !is_here(obstacles[other])) continue;
       const Placed b = place(obstacles[other]);
       const auto [first_b, end_b] = solids.parts_of(other);
@@ -160,10 +164,11 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
             .counted = search.is_here(search.solids.body_of(bodies[0])),
             .newly_eligible = stress_free_,
             .one_of_several = is_obstacle(bodies[0]) || search.solids.is_one_of_several(bodies[1])};
-  if (!is_obstacle(pair.b)) {
-    pair.newly_eligible =
-        stress_free_ || (changed_ && eligibility_.became_eligible(pair.a, pair.b));
-    pair.broken = eligibility_.beam_broke(bodies);
+  const auto [first, second] =
+      std::minmax({search.solids.body_of(pair.a), search.solids.body_of(pair.b)});
+  if (first >= 0) {
+    pair.newly_eligible = stress_free_ || (changed_ && eligibility_.became_eligible(first, second));
+    pair.broken = eligibility_.beam_broke({first, second});
   }
   const Vec3<double> apart = a.x - b.x;
   const double distance = length(apart);

@@ -50,6 +50,7 @@ void Places::place(const Solids& solids, std::span<const std::int32_t> involved,
   }
   for (std::size_t k = 0; k < parts_.size(); ++k) {
     const std::int32_t index = part_index(k);
+    if (solids.obstacle(index).is_carried()) continue;  // it is where its body is
     Placed& was = parts_[k];
     Placed to = place_of(solids.obstacle(index), time, motion);
     if (counts_travels_)

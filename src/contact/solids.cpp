@@ -78,6 +78,8 @@ Solids::Solids(const Shapes& shapes, std::span<const double> masses,
     item(bodies_, b).inverse.moments = {1 / moments.x, 1 / moments.y, 1 / moments.z};
     item(carries_, b) = 1;
   }
+  for (const Obstacle& o : obstacles_)
+    if (o.is_carried() && !o.is_ice) item(carries_, o.body) = structure;
   for (const Body& body : bodies_) thinnest_ = std::min(thinnest_, body.width);
   for (const Part& part : parts_) thinnest_ = std::min(thinnest_, part.width);
 }
@@ -160,15 +162,17 @@ bool Solids::has_friction(const ContactOptions& options) const {
 }
 
 double Solids::mean_radius() const {
-  if (bodies_.size() == carriers_.size()) {
+  const auto structures =
+      static_cast<std::size_t>(std::count(carries_.begin(), carries_.end(), structure));
+  if (bodies_.size() == structures) {
     double least = std::numeric_limits<double>::infinity();
     for (const Body& body : bodies_) least = std::min(least, body.size);
     return least;
   }
   double mean = 0;
-  const auto number = static_cast<double>(bodies_.size() - carriers_.size());
+  const auto number = static_cast<double>(bodies_.size() - structures);
   for (std::int32_t b = 0; b < bodies(); ++b)
-    if (!carries(b)) mean += item(bodies_, b).radius / number;
+    if (!is_structure(b)) mean += item(bodies_, b).radius / number;
   return mean;
 }
 

@@ -93,6 +93,12 @@ class Solids {
   }
   /// Whether a body carries obstacles: it touches as these.
   bool carries(std::int32_t body) const { return !carries_.empty() && item(carries_, body) != 0; }
+  /// Whether an index is that of ice: a body, or a part of one.
+  bool is_ice(std::int32_t index) const { return !is_obstacle(index) || obstacle(index).is_ice; }
+  /// Whether a body is a structure: it carries obstacles that are not ice.
+  bool is_structure(std::int32_t body) const {
+    return !carries_.empty() && item(carries_, body) == structure;
+  }
   /// Returns a body itself, the body that carries a part, or -1 for a part that no body carries.
   std::int32_t body_of(std::int32_t index) const {
     return is_obstacle(index) ? obstacle(index).body : index;
@@ -130,7 +136,8 @@ class Solids {
   }
   /// Whether obstacles may touch each other.
   bool obstacles_touch() const { return obstacles_touch_; }
-  /// Returns the mean radius of all bodies that carry no obstacle [m]; if all do, the least size.
+  /// Returns the mean radius of all bodies but structures [m]; if there is no other, the least
+  /// size.
   double mean_radius() const;
   /// Returns the least width of all bodies and obstacles [m].
   double thinnest() const { return thinnest_; }
@@ -179,8 +186,9 @@ class Solids {
   std::vector<Part> parts_;                 ///< of all obstacles
   Shapes carried_shapes_;                   ///< of the parts that bodies carry
   std::vector<std::size_t> first_part_{0};  ///< per obstacle, then the number of parts
-  std::vector<std::uint8_t> carries_;       ///< per body; empty: none does
-  std::vector<std::int32_t> carriers_;      ///< sorted
+  static constexpr std::uint8_t structure = 2;
+  std::vector<std::uint8_t> carries_;   ///< per body: 1 for ice, or structure; empty: none does
+  std::vector<std::int32_t> carriers_;  ///< sorted
   bool obstacles_touch_ = false;
   double thinnest_ = std::numeric_limits<double>::infinity();
 };

@@ -12,7 +12,7 @@ namespace floe {
 namespace {
 
 std::string name_of(const Solids& solids, std::int32_t index) {
-  if (!is_obstacle(index)) return "body " + std::to_string(index);
+  if (solids.is_ice(index)) return "body " + std::to_string(solids.body_of(index));
   return "obstacle '" + solids.obstacle(index).name + "'";
 }
 
@@ -46,8 +46,8 @@ void refuse_enclosed(const Contacts& contacts, MPI_Comm comm) {
   BodyPair first{all[0], all[1]};  // the first pair, independent of the ranks
   for (std::size_t k = 2; k < all.size(); k += 2) first = std::min(first, {all[k], all[k + 1]});
   const std::string body = name_of(contacts.solids(), first[0]);
-  if (!is_obstacle(first[1]))
-    throw InputError("forces: contact: " + body + " and body " + std::to_string(first[1]) +
+  if (contacts.solids().is_ice(first[1]))
+    throw InputError("forces: contact: " + body + " and " + name_of(contacts.solids(), first[1]) +
                      ": one lies wholly inside the other, they would feel nothing");
   throw InputError("obstacle: " + contacts.solids().obstacle(first[1]).name + ": " + body +
                    " lies wholly inside it: obstacles are solid, it would feel nothing");
@@ -73,8 +73,9 @@ std::string check_overlaps(const Contacts& contacts, MPI_Comm comm) {
     throw InputError("forces: contact: " + pair + " (at most " + text(deep) +
                      "): they would burst apart; move one of them, or let "
                      "'contact: initial_overlap: stress_free' take what overlaps as rest" +
-                     (worst.a < 0 ? ", or let a structure touch nothing but ice ('touches: ice')"
-                                  : ""));
+                     (worst.a < 0 && !contacts.solids().is_ice(static_cast<std::int32_t>(worst.a))
+                          ? ", or let a structure touch nothing but ice ('touches: ice')"
+                          : ""));
   const std::size_t pairs = all.size() / 4;
   return "contact: " + pair + (pressing ? "; overlaps press apart" : "; overlaps count as rest") +
          " (pairs with more than " + text(slight) + ": " + std::to_string(pairs) + ")";

@@ -18,6 +18,7 @@
 #include "contact_laws/restitution.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "geometry/connected_parts.h"
 
 namespace floe {
 namespace {
@@ -65,6 +66,12 @@ std::vector<BodyPair> as_pairs(const std::vector<double>& numbers) {
   return pairs;
 }
 
+/// Returns the number of obstacles that are not ice; they come first.
+std::size_t named(const std::vector<Obstacle>& obstacles) {
+  return static_cast<std::size_t>(std::count_if(obstacles.begin(), obstacles.end(),
+                                                [](const Obstacle& o) { return !o.is_ice; }));
+}
+
 class DistributedContact final : public Contact,
                                  public DoesWork<Spatial>,
                                  public LimitsStep<Spatial>,
@@ -83,7 +90,7 @@ class DistributedContact final : public Contact,
         halo_(part),
         balance_(part.comm),
         expiry_(contacts_.solids(), part_),
-        obstacle_forces_(contacts_.solids().obstacles().size()),
+        obstacle_forces_(named(contacts_.solids().obstacles())),
         patch_forces_(contacts_.solids().obstacles()),
         here_(owned_bodies(part)),
         prescribed_(std::move(prescribed)),
@@ -416,20 +423,36 @@ void DistributedContact::restore(const std::vector<double>& rows,
   expiry_ = PairListExpiry(contacts_.solids(), part_);
 }
 
-void check_shapes(const Lattice& lattice, const std::vector<Obstacle>& obstacles) {
-  const auto carries = [&](std::int32_t body) {
-    return std::any_of(obstacles.begin(), obstacles.end(),
-                       [&](const Obstacle& o) { return o.body == body; });
-  };
+/// Appends what the bodies of the lattice that have several convex parts touch with.
+/// \throws InputError if a body is not convex otherwise, or its parts overlap
+void add_bodies_of_parts(const Lattice& lattice, const ContactOptions& options,
+                         std::vector<Obstacle>& obstacles) {
   if (lattice.shapes.empty())
     throw InputError("forces: contact needs bodies with a shape; the lattice file has no /shapes");
-  for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
-    if (carries(b)) continue;
-    const double size = std::cbrt(volume_properties(lattice.shapes, b).volume);
+  std::vector<std::uint8_t> carries(lattice.bodies.position.size(), 0);
+  for (const Obstacle& o : obstacles)
+    if (o.is_carried()) item(carries, o.body) = 1;
+  const auto is_convex = [](const Shapes& shapes, std::int32_t body) {
     constexpr double rounding = 1e-6;
-    if (concavity(lattice.shapes, b) > rounding * size)
-      throw InputError("forces: contact needs convex bodies; body " + std::to_string(b) +
-                       " of the lattice is not convex, or a face of it is not plane");
+    return concavity(shapes, body) <= rounding * std::cbrt(volume_properties(shapes, body).volume);
+  };
+  for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) {
+    if (item(carries, b) != 0 || is_convex(lattice.shapes, b)) continue;
+    const Shapes parts = connected_parts(lattice.shapes, b);
+    const std::string body = "body " + std::to_string(b) + " of the lattice";
+    for (std::int32_t k = 0; k < parts.bodies(); ++k)
+      if (parts.bodies() == 1 || !is_convex(parts, k))
+        throw InputError(
+            "forces: contact needs convex bodies, or bodies of convex parts that "
+            "share no vertices; " +
+            body + " is not convex, or a face of it is not plane");
+    Obstacle ice = polyhedra(parts, {});
+    ice.body = b;
+    ice.is_ice = true;
+    ice.friction = options.friction;
+    ice.friction_wet = options.friction_wet;
+    if (overlap_of_parts(ice)) throw InputError("forces: contact: parts of " + body + " overlap");
+    obstacles.push_back(std::move(ice));
   }
 }
 
@@ -439,7 +462,7 @@ std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles,
                                       PrescribedMotion prescribed) {
-  check_shapes(lattice, obstacles);
+  add_bodies_of_parts(lattice, options, obstacles);
   auto contact = std::make_unique<DistributedContact>(part, lattice, options, std::move(obstacles),
                                                       std::move(prescribed));
   contact->check_start();

@@ -39,7 +39,8 @@ struct PrescribedMotion {
 /// \param part     must outlive the force
 /// \param lattice  whole; not used after construction
 /// \param prescribed  what it names must outlive the force
-/// \throws InputError if the lattice has no shapes, a shape is not convex, a body lies wholly
+/// Bodies of the lattice may have several convex parts that share no vertices.
+/// \throws InputError if the lattice has no shapes, a part is not convex, parts overlap, a body lies wholly
 /// inside another or inside an obstacle, or overlaps it by more than a tenth of the smaller size
 /// (unless initial_overlap is stress_free)
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "floe/base/item.h"
+#include "geometry/connected_parts.h"
 
 namespace floe {
 namespace {
@@ -158,6 +159,8 @@ double Immersion::plan_area(std::int32_t body) const {
   const Triad<double> axes = triad(prism(b).axes);
   double twice = 0;
   std::vector<Point2> face;
+  std::vector<std::vector<Point2>> upward;  // faces; of several parts they may lie above each other
+  const bool has_parts = number_of_parts(shapes, body) > 1;
   for (auto f = static_cast<std::size_t>(shapes.face_of[b]);
        f < static_cast<std::size_t>(shapes.face_of[b + 1]); ++f) {
     face.clear();
@@ -166,9 +169,11 @@ double Immersion::plan_area(std::int32_t body) const {
       const Vec3<double> p = axes.to_world(item(shapes.vertices, shapes.corners[c]));
       face.push_back({p.x, p.y});
     }
-    twice += std::abs(plan_properties(face).area);
+    const double area = plan_properties(face).area;
+    twice += std::abs(area);
+    if (has_parts && area > 0) upward.push_back(face);
   }
-  return twice / 2;
+  return has_parts ? area_of_union(upward) : twice / 2;
 }
 
 Submerged Immersion::by_clipping(const State<Spatial>& state, std::int32_t body) const {

@@ -42,7 +42,8 @@ struct Obstacle {
   /// The body of the model that carries it, of which the frame is this one's then; -1: it follows
   /// `motion`.
   std::int32_t body = -1;
-  bool touches_obstacles = true;  ///< whether it touches others
+  bool touches_obstacles = true;  ///< whether it touches others that are not ice
+  bool is_ice = false;            ///< it is a body of the lattice that has several parts
 
   bool is_carried() const { return body >= 0; }
   bool is_half_space() const { return shape.empty(); }
@@ -53,7 +54,8 @@ struct Obstacle {
 
 /// Whether two obstacles touch each other: bodies carry both, or one, and not the same body.
 inline bool may_touch(const Obstacle& one, const Obstacle& other) {
-  return one.body != other.body && one.touches_obstacles && other.touches_obstacles;
+  return one.body != other.body &&
+         (one.is_ice || other.is_ice || (one.touches_obstacles && other.touches_obstacles));
 }
 
 /// A half-space.
