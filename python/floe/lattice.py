@@ -426,6 +426,69 @@ def join_plates(lattice, first, plates, pitch, side, density):
     lattice.strength = np.full(len(rows), 1e3)
 
 
+def joined(lattice, groups):
+    """The bodies of each group as one rigid body of several convex parts, behind those of no group.
+
+    lattice: with shapes, without beams. groups: lists of bodies, which meet or lie apart and do not
+    overlap. Sets follow. Raises ValueError where a body is in two groups, or there are beams or no
+    shapes.
+    """
+    from scipy.spatial.transform import Rotation
+    count, shapes = len(lattice.position), lattice.shapes
+    flat = np.concatenate([np.asarray(group, int) for group in groups])
+    if len(lattice.bodies) or shapes is None:
+        raise ValueError("joined: the bodies must have shapes and no beams")
+    if len(np.unique(flat)) < len(flat):
+        raise ValueError("joined: a body is in two groups")
+    groups = [[body] for body in np.setdiff1d(np.arange(count), flat)] + [list(g) for g in groups]
+    turns = matrices(lattice.orientation)
+    position, orientation, mass, inertia = [], [], [], []
+    vertices, corners, corner_of, face_of, vertex_of = [], [], [0], [0], [0]
+    for group in groups:
+        masses, places = lattice.mass[group], lattice.position[group]
+        middle = masses @ places / masses.sum()
+        moments, axes = _principal_axes(masses, places - middle, lattice.inertia[group],
+                                        turns[group])
+        position.append(middle)
+        mass.append(masses.sum())
+        inertia.append(moments)
+        orientation.append(np.roll(Rotation.from_matrix(axes).as_quat(), 1))  # w first
+        for body in group:
+            first, end = shapes.vertex_of[body:body + 2]
+            shift = len(vertices) - first
+            world = shapes.vertices[first:end] @ turns[body].T + lattice.position[body]
+            vertices.extend((world - middle) @ axes)
+            for face in range(*shapes.face_of[body:body + 2]):
+                corners.extend(shapes.corners[slice(*shapes.corner_of[face:face + 2])] + shift)
+                corner_of.append(len(corners))
+        face_of.append(len(corner_of) - 1)
+        vertex_of.append(len(vertices))
+    number = np.empty(count, int)
+    for k, group in enumerate(groups):
+        number[group] = k
+    return Lattice(position=np.array(position), orientation=np.array(orientation),
+                   mass=np.array(mass), inertia=np.array(inertia),
+                   sets={name: sorted({int(number[body]) for body in bodies})
+                         for name, bodies in lattice.sets.items()},
+                   shapes=Shapes(np.array(vertices), np.array(corners), np.array(corner_of),
+                                 np.array(face_of), np.array(vertex_of)))
+
+
+def _principal_axes(masses, arms, inertia, turns):
+    """Principal moments [kg m^2] of bodies put together, and their axes as columns. A tensor that
+    is diagonal in the world keeps the world's axes."""
+    if len(masses) == 1:
+        return inertia[0], turns[0]
+    tensor = (np.einsum("bij,bj,bkj->ik", turns, inertia, turns)
+              + np.einsum("b,bj,bj->", masses, arms, arms) * np.eye(3)
+              - np.einsum("b,bi,bj->ij", masses, arms, arms))
+    if np.max(np.abs(tensor - np.diag(np.diag(tensor)))) <= 1e-12 * np.trace(tensor):
+        return np.diag(tensor), np.eye(3)
+    moments, axes = np.linalg.eigh(tensor)
+    axes[:, 2] *= np.sign(np.linalg.det(axes))
+    return moments, axes
+
+
 def block(size, height=0.0, density=920.0):
     """One upright box with its centroid at (0, 0, height); size 3 [m], height [m]."""
     return blocks([size], [[0, 0, height]], density)

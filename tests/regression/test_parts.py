@@ -174,6 +174,125 @@ output: {history: 0.02, fields: 12}
         self.assertAlmostEqual(-rows["bowl_force_z"][late].mean() / weight, 1, delta=0.02)
 
 
+# Loose blocks that tumble on a step.
+TUMBLE = """integrator: explicit
+forces: [gravity, contact]
+lattice_file: LATTICE
+contact: {young: 1e7, friction: 0.2, restitution: 0.4}
+obstacle:
+  names: [step]
+  step: {shape: box, centre: [0, 0, -1], size: [6, 3, 2], friction: 0.1}
+initial: {names: [kick], kick: {set: all, velocity: [0.5, 0.2, 0], angular_velocity: [0.3, 1, 1]}}
+time: {end: 1, dt: 2e-4}
+output: {history: 0.02}
+checkpoint: {every: 1000}
+"""
+
+
+class Bodies(SceneTest):
+    """Bodies of a lattice that have several convex parts."""
+
+    def setUp(self):
+        super().setUp()
+        whole = fl.blocks(np.array([[2, 1, 0.5], [1, 1, 1]]), np.array([[0, 0, 0.4], [0.3, 0, 1.3]]))
+        halves = fl.blocks(
+            np.array([[1, 1, 0.5], [1, 1, 0.5], [1, 1, 0.5], [1, 0.5, 0.5], [1, 0.5, 0.5]]),
+            np.array([[-0.5, 0, 0.4], [0.5, 0, 0.4], [0.3, 0, 1.05], [0.3, 0.25, 1.55],
+                      [0.3, -0.25, 1.55]]))
+        whole.write(self.folder / "whole.h5")
+        fl.joined(halves, [[0, 1], [2, 3, 4]]).write(self.folder / "parts.h5")
+
+    def test_of_parts_as_in_one_piece(self):
+        """Blocks of parts fall on each other and on a step as those in one piece do; on two ranks
+        and after a stop bit for bit."""
+        rows = {}
+        for name in ("whole", "parts"):
+            self.run_scene(TUMBLE.replace("LATTICE", f"{name}.h5"), name=name)
+            rows[name] = rows_of(self.folder / f"out/{name}")
+        early = rows["whole"]["time"] < 0.4  # later rounding has grown over impacts on corners
+        for column in ("step_force_z", "step_moment_y", "energy_kinetic", "energy_contact",
+                       "energy_friction"):
+            size = np.max(np.abs(rows["whole"][column]))
+            self.assertGreater(size, 1e-3)
+            np.testing.assert_allclose(rows["parts"][column][early], rows["whole"][column][early],
+                                       atol=1e-7 * size, err_msg=column)
+        scene = TUMBLE.replace("LATTICE", "parts.h5")
+        self.run_scene(scene, name="two", ranks=2)
+        self.run_scene(scene, "-ts_max_steps", "1777", name="part")
+        self.run_scene(scene, "-checkpoint_restart", "out/part/checkpoint.h5", name="part")
+        one = contents(self.folder / "out/parts/checkpoint.h5")
+        self.assertGreater(len(one["force_1_contact/pairs"]), 0)
+        for name in ("two", "part"):
+            other = contents(self.folder / f"out/{name}/checkpoint.h5")
+            for key in ("bodies/records", "force_1_contact/pairs"):
+                np.testing.assert_array_equal(one[key], other[key], f"{name} {key}")
+
+    def test_beams_keep_them_apart(self):
+        """A body of parts that a beam joins to another does not touch it; once it has broken, it
+        does."""
+        lattice = fl.read(self.folder / "parts.h5")
+        lattice.position[:, 2] = [0.25, 0.95]  # the upper block reaches 5 cm into the lower one
+        lattice.bodies, lattice.axis_y = np.array([[0, 1]]), np.array([[0.0, 1, 0]])
+        length = np.linalg.norm(np.diff(lattice.position, axis=0), axis=1)
+        lattice.beam = {"length": length,
+                        **fl.Section(1, 1, young=1e7, poisson=0.3).scalars(length)}
+        lattice.write(self.folder / "joined.h5")
+        scene = TUMBLE.replace("LATTICE", "joined.h5").replace("[gravity, ", "[beam, ").replace(
+            "velocity: [0.5, 0.2, 0], angular_velocity: [0.3, 1, 1]", "velocity: [0, 0, 1]").replace(
+            "end: 1,", "end: 0.1,")
+        self.run_scene(scene, name="joined")
+        rows = rows_of(self.folder / "out/joined")
+        self.assertEqual(np.max(rows["contacts"]), 0)
+        self.run_scene(scene.replace("[beam, ", "[").replace("young: 1e7", "young: 1e7, "
+                       "initial_overlap: stress_free"), name="loose")
+        self.assertEqual(rows_of(self.folder / "out/loose")["contacts"][-1], 1)
+
+    def test_a_floe_of_parts_floats_as_the_structure(self):
+        """An angle of two parts that floats: as a structure of the same parts does, its drag by
+        the plan area of both."""
+        parts = fl.blocks(np.array([[3.0, 1, 0.5], [1, 2, 0.5], [0.4, 0.4, 0.4]]),
+                          np.array([[0, 0, 0], [-1, 1.5, 0], [1.2, 0, 0.45]]))
+        fl.joined(parts, [[0, 1, 2]]).write(self.folder / "angle.h5")
+        self.run_scene("""integrator: explicit
+forces: [gravity, buoyancy, drag, contact]
+lattice_file: angle.h5
+contact: {young: 1e6}
+water: {drag_linear: 300, current: [0.5, 0.2, 0]}
+obstacle:
+  names: [twin, leg, knob]
+  twin: {shape: box, centre: [0, 20, 0], size: [3, 1, 0.5], mass: MASS, floats: true}
+  leg: {shape: box, centre: [-1, 21.5, 0], size: [1, 2, 0.5], part_of: twin}
+  knob: {shape: box, centre: [1.2, 20, 0.45], size: [0.4, 0.4, 0.4], part_of: twin}
+time: {end: 3, dt: 1e-3}
+output: {history: 0.02, fields: 3}
+""".replace("MASS", repr(float(parts.mass.sum()))), name="angle")
+        output = Output(self.folder / "out/angle")
+        ice, twin = output.field("bodies_displacement", 3)
+        self.assertGreater(np.linalg.norm(ice[:2]), 0.1)
+        np.testing.assert_allclose(twin, ice, atol=1e-9)
+        # drag by the plan area of both parts: 3 m^2 and 2 m^2, and not of what lies above the first
+        speed = np.array([0.5, 0.2]) * (1 - np.exp(-300 * 5 / parts.mass.sum() * 3))
+        wet = 1  # of the plan area, as long as it floats level
+        way = np.array([0.5, 0.2]) * 3 - speed * parts.mass.sum() / (300 * 5 * wet)
+        np.testing.assert_allclose(ice[:2], way, rtol=0.15)
+
+    def test_refusals(self):
+        lattice = fl.read(self.folder / "parts.h5")
+        lattice.shapes.vertices[:8] += [0.1, 0, 0]  # the centroid stays
+        lattice.shapes.vertices[8:16] -= [0.1, 0, 0]
+        plus = fl.blocks([[1, 1, 0.5]], [[0, 0, 2]])
+        plan = [[1, 1], [1, 3], [-1, 3], [-1, 1], [-3, 1], [-3, -1], [-1, -1], [-1, -3], [1, -3],
+                [1, -1], [3, -1], [3, 1]]
+        plus.shapes = fl.Shapes.prisms([np.array(plan) / 6], [0.5])
+        for bad, line in ((lattice, "parts of body 0 of the lattice overlap"),
+                          (plus, "body 0 of the lattice is not convex, or a face of it is not "
+                                 "plane")):
+            bad.write(self.folder / "bad.h5")
+            done = self.run_scene(TUMBLE.replace("LATTICE", "bad.h5"), code=2)
+            self.assertIn(line, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+
+
 class Structure(SceneTest):
     def test_ranks_and_restarts(self):
         """Breaking ice against a leg of parts, fixed and on springs: the same bits on two ranks and
