@@ -243,7 +243,7 @@ void Checkpoints::head(Archive& archive) {
                    "is of obstacles of other shapes: a file of theirs "
                    "has changed");
   if (tables != options_.tables)
-    throw OtherRun(named(options_.restart) + "is of another " +
+    throw OtherRun(named(options_.restart) + "has other rows than the file of " +
                    first_difference(options_.tables, tables));
 }
 

@@ -11,6 +11,8 @@
 namespace floe {
 namespace {
 
+constexpr double longest = 1e9, strongest = 1e12, stiffest = 1e15;  // [m, N, N/m], as of the keys
+
 std::string key(const char* last) { return "line: NAME: " + std::string(last); }
 
 TensionCurve read_curve(Options& options, const std::string& name, Scene& scene) {
@@ -23,15 +25,23 @@ TensionCurve read_curve(Options& options, const std::string& name, Scene& scene)
       throw InputError(label + ": '" + file + "': row " + std::to_string(rows.size() + 1) + ": " +
                        why);
     };
-    if (row[1] < 0) refuse("tension " + text_of(row[1]) + " must be >= 0 [N]");
+    if (!(std::abs(row[0]) <= longest))
+      refuse("length " + text_of(row[0]) + " must be at most " + text_of(longest) + " [m]");
+    if (!(row[1] >= 0 && row[1] <= strongest))
+      refuse("tension " + text_of(row[1]) + " must be >= 0, <= " + text_of(strongest) + " [N]");
     if (!rows.empty() && !(row[0] > rows.back().length))
       refuse("length " + text_of(row[0]) + " must be more than that of the row before, " +
              text_of(rows.back().length) + " [m]");
     if (!rows.empty() && row[1] < rows.back().tension)
       refuse("tension " + text_of(row[1]) + " must be no less than that of the row before, " +
              text_of(rows.back().tension) + " [N]");
+    if (!rows.empty() &&
+        !(row[1] - rows.back().tension <= stiffest * (row[0] - rows.back().length)))
+      refuse("the tension rises by more than " + text_of(stiffest) + " N/m from the row before");
     rows.push_back({row[0], row[1]});
   }
+  if (!(rows.back().tension > 0))
+    throw InputError(label + ": '" + file + "' would have no effect: there is no tension");
   scene.tables.push_back({label, file, std::move(table)});
   return TensionCurve(std::move(rows));
 }
@@ -85,8 +95,13 @@ void read_line(Options& options, const std::string& name, Scene& scene) {
       line.line.curve.lengthen(length - at);
     }
   } else {
-    line.line.curve = straight(length, options.number(key("pretension"), name),
-                               options.number(key("stiffness"), name));
+    const double tension = options.number(key("pretension"), name),
+                 stiffness = options.number(key("stiffness"), name);
+    if (tension > longest * stiffness)
+      throw InputError("line: " + name + ": pretension: " + text_of(tension) +
+                       " [N] stretches a line of stiffness " + text_of(stiffness) + " [N/m] by " +
+                       text_of(tension / stiffness) + " m, must be at most " + text_of(longest));
+    line.line.curve = straight(length, tension, stiffness);
   }
   line.line.damping = options.number(key("damping"), name);
   read_anchor(options, name, scene, line.line);

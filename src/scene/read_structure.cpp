@@ -61,6 +61,17 @@ void check_matrix(const std::string& name, const SupportMatrix& m) {
                      ": support_matrix: is not positive: some motion would be pushed on");
 }
 
+/// Refuses moments of inertia that no body has: int y^2 + z^2 is at most int x^2 + z^2 + x^2 + y^2.
+void check_moments(const std::string& name, const Vec3<double>& moments) {
+  constexpr double rounding = 1e-9;
+  const double sum = moments.x + moments.y + moments.z;
+  const double most = std::max({moments.x, moments.y, moments.z});
+  if (most > (0.5 + rounding) * sum)
+    throw InputError("obstacle: " + name + ": inertia: " + text_of(most) +
+                     " is more than the sum of the other two, " + text_of(sum - most) +
+                     " [kg m^2], which no body has");
+}
+
 void read_support(Options& options, const std::string& name, Structure& structure) {
   const auto given = [&](const char* last) { return options.given(key(last), name); };
   if (given("support_matrix")) {
@@ -110,6 +121,7 @@ Structure read_structure(Options& options, Obstacle& obstacle) {
   structure.mass = options.number(key("mass"), name);
   if (options.given(key("inertia"), name)) structure.inertia = options.vector(key("inertia"), name);
   if (structure.inertia) {
+    check_moments(name, *structure.inertia);
     if (options.given(key("centre_of_mass"), name))
       structure.centre = options.vector(key("centre_of_mass"), name);
   } else {

@@ -41,6 +41,23 @@ std::string steps_text(const Scene& scene, const RunPlan& plan) {
   return line;
 }
 
+/// Tells of tables in time whose rows are closer than a step: an explicit step takes their values
+/// at one time. Else empty.
+std::string tables_text(const Scene& scene, const RunPlan& plan) {
+  std::string lines;
+  if (scene.integrator != Integrator::explicit_ || plan.adaptive) return lines;
+  for (const SceneTable& table : scene.tables) {
+    if (table.key.starts_with("line: ") && table.key.ends_with(": table")) continue;  // of tension
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 1; k < table.rows.size(); ++k)
+      least = std::min(least, table.rows[k][0] - table.rows[k - 1][0]);
+    if (least < plan.dt)
+      lines += "plan: " + table.key + ": rows are as near as " + text("%.3g s", least) +
+               ", less than a step; what they do within a step is not seen as a whole\n";
+  }
+  return lines;
+}
+
 }  // namespace
 
 PlannedOutput planned_output(const Scene& scene, const RunPlan& plan, const OutputSize& size) {
@@ -87,7 +104,7 @@ std::string plan_text(const Scene& scene, const RunPlan& plan, const OutputSize&
              (plan.steps > 0 ? duration((plan.steps - plan.done) * plan.seconds_a_step)
                              : duration(plan.seconds_a_step) + " a step") +
              " (by " + plan.measured + ")";
-  return lines + "\n";
+  return lines + "\n" + tables_text(scene, plan);
 }
 
 }  // namespace floe

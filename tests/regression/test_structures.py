@@ -605,13 +605,20 @@ class Lines(StructureTest):
                     np.testing.assert_array_equal(two["box_x"], one["box_x"])
 
     def test_refusals(self):
-        with open(self.folder / "line.csv", "w") as file:
-            file.write("length, tension\n1, 5\n2, 4\n")
+        for name, rows in (("line", "1, 5\n2, 4"), ("slack", "0, 0\n1, 0"), ("huge", "0, 0\n1, 1e13"),
+                           ("long", "0, 0\n1e300, 1"), ("steep", "0, 0\n1e-9, 1e12")):
+            (self.folder / f"{name}.csv").write_text(f"length, tension\n{rows}\n")
         for words, part in (
                 ("stiffness: 1", "line: east: pretension"),
                 ("pretension: 1", "line: east: stiffness"),
                 ("table: line.csv", "'line.csv': row 2: tension 4 must be no less than"),
                 ("table: none.csv", "line: east: table: 'none.csv'"),
+                ("table: slack.csv", "'slack.csv' would have no effect: there is no tension"),
+                ("table: huge.csv", "row 2: tension 1e+13 must be >= 0, <= 1e+12 [N]"),
+                ("table: long.csv", "row 2: length 1e+300 must be at most 1e+09 [m]"),
+                ("table: steep.csv", "the tension rises by more than 1e+15 N/m"),
+                ("stiffness: 1e-9, pretension: 1e12", "line: east: pretension: 1e+12 [N] stretches "
+                 "a line of stiffness 1e-09 [N/m] by 1e+21 m, must be at most 1e+09"),
                 ("table: line.csv, stiffness: 2", "line: east: stiffness: 'table' says it")):
             done = self.run_scene(MOORED.replace("EAST", words), code=2)
             self.assertIn(part, done.stderr)
@@ -671,6 +678,8 @@ class Refused(StructureTest):
                 ("support_damping_ratio: 0.1", "support_damping_ratio: would have no effect"),
                 ("support_point: [0, 0, 0]", "support_point: would have no effect"),
                 ("centre_of_mass: [0, 0, 0]", "centre_of_mass: needs 'inertia'"),
+                ("inertia: [1, 1, 3]", "leg: inertia: 3 is more than the sum of the other two, 2 "
+                                       "[kg m^2], which no body has"),
                 ("touches: ice", "touches: would have no effect: there is no other obstacle"),
                 ("floats: true", "floats: needs gravity and buoyancy among 'forces'"),
                 ("support_matrix: [" + ", ".join(["1"] * 6 + ["2"] * 30) + "]",

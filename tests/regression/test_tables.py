@@ -176,6 +176,17 @@ output: {history: 5, fields: 5}
         self.assertAlmostEqual(moved / (1000 / mass * 4.99), 1, delta=0.1)
 
 
+    def test_rows_within_a_step_are_told(self):
+        """An impulse within a step: an explicit run says that it does not see it as a whole."""
+        self.table("p.csv", "time,fx", [[0, 0], [0.0502, 0], [0.0504, 1e6], [0.0506, 0]])
+        scene = ADRIFT.replace("drag, ", "").replace(", WATER", "").replace(
+            "end: 20", "end: 0.1") + "load: {names: [p], p: {set: leg, table: p.csv}}\n"
+        told = "load: p: table: rows are as near as 0.0002 s, less than a step"
+        self.assertIn(told, self.run_scene(scene, name="a").stdout)
+        self.table("p.csv", "time,fx", [[0, 0], [0.05, 0], [0.06, 1e6], [0.07, 0]])
+        self.assertNotIn("rows are as near", self.run_scene(scene, name="b").stdout)
+
+
 class Boundaries(TableTest):
     SCENE = ICE.replace("current_table: current.csv, current_interpolation: smooth,",
                         "current: [1, 0, 0],").replace(
