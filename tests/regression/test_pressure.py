@@ -118,7 +118,11 @@ class BreakingIce(PressureTest):
                 np.testing.assert_allclose(one[f"force_{axis}"], two[f"force_{axis}"], rtol=1e-9,
                                            atol=1e-6)
             self.run_scene(scene, "-ts_max_steps", "3111", name="part")
-            self.run_scene(scene, "-checkpoint_restart", "out/part/checkpoint.h5", name="part")
+            go = ("-checkpoint_restart", "out/part/checkpoint.h5")
+            done = self.run_scene(scene, *go, "-output_pressure_patch", "0.1", name="part", code=2)
+            self.assertIn("output: pressure_patch: 0.1 cannot be changed where a run goes on",
+                          done.stderr)
+            self.run_scene(scene, *go, name="part")
             self.assertEqual((self.folder / "out/one/pressure.csv").read_bytes(),
                              (self.folder / "out/part/pressure.csv").read_bytes())
 
