@@ -95,6 +95,7 @@ class Case:
         self.may_fail_early = False
         self.scene, self.tree, self.damaged = "", None, None
         self.must, self.volume = None, None  # exit code; volume of its solid [m^3]
+        self.said = ""  # by floe
         chance = random.Random(f"{kind} {seed}")
         getattr(self, "make_" + kind)(chance)
         if self.ranks == 1 and chance.random() < 0.03:
@@ -281,7 +282,7 @@ class Case:
     def check_volume(self):
         """The volume of a solid and of its parts, in the remark on it."""
         found = re.search(r"triangles around (\S+) m\^3 are .* of (\S+) m\^3, at most (\S+) m",
-                          self.error)
+                          self.said)
         if not found:
             return ("no remark on the solid",)
         whole, parts, apart = map(float, found.groups())

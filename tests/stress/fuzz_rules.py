@@ -65,9 +65,9 @@ class Outcome:
             out, error = process.communicate()
             self.broken.append(f"hangs: no end after {HANGS} s")
         self.code = process.returncode
-        case.error = error.decode(errors="replace")
         self.out, self.error = out.decode(errors="replace"), launch.own_words(
             error.decode(errors="replace"))
+        case.said = self.out + self.error
         if not self.broken:
             self.check(before)
 
