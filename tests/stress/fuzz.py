@@ -14,7 +14,9 @@ FLOE: the program, build/release/floe by default.
 import argparse
 import concurrent.futures
 import os
+import math
 import random
+import re
 import shutil
 import sys
 import tempfile
@@ -26,6 +28,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "regression"))
 import fuzz_files  # noqa: E402
 import fuzz_outlines  # noqa: E402
+import fuzz_solids  # noqa: E402
+import fuzz_structures  # noqa: E402
 import fuzz_words  # noqa: E402
 from fuzz_keys import read_keys  # noqa: E402
 from fuzz_rules import is_help, run_case  # noqa: E402
@@ -33,7 +37,8 @@ from fuzz_scenes import LATTICES, Scenes, bound, scene_of, write_scene  # noqa: 
 
 # One case of each, again and again.
 KINDS = ("scene", "keys", "lattice", "words", "scene", "keys", "checkpoint", "petsc", "text",
-         "mesh", "outline")
+         "mesh", "outline", "structure", "solid", "structure", "table")
+FILES = ("o.h5", "hull.stl", "elbow.obj", "tug.csv")  # of obstacles and lines
 TMPFS = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 
 LATTICE_SCENES = {
@@ -89,10 +94,13 @@ class Case:
         self.files, self.words, self.environment, self.ranks = {}, [], {}, 1
         self.may_fail_early = False
         self.scene, self.tree, self.damaged = "", None, None
+        self.must, self.volume = None, None  # exit code; volume of its solid [m^3]
+        self.said = ""  # by floe
         chance = random.Random(f"{kind} {seed}")
         getattr(self, "make_" + kind)(chance)
         if self.ranks == 1 and chance.random() < 0.03:
             self.ranks = 2
+            self.must = None  # the scene may have one body
         if kind in ("scene", "keys") and chance.random() < 0.05:
             self.words.append("-check")
         self.may_fail_early = is_help(self.words) or "-check" in self.words
@@ -105,7 +113,12 @@ class Case:
 
     def any_scene(self, chance):
         scenes = self.base.scenes
-        return scenes.made(chance) if chance.random() < 0.5 else scenes.changed(chance)
+        way = chance.random()
+        if way < 0.2:
+            made = fuzz_structures.Made(chance)
+            self.files.update(made.all_files())
+            return made.scene
+        return scenes.made(chance) if way < 0.6 else scenes.changed(chance)
 
     def make_scene(self, chance):
         scene = self.base.scenes.changed(chance)
@@ -123,6 +136,33 @@ class Case:
         scene = self.any_scene(chance)
         words = bound(scene, chance)
         self.put_scene(self.base.scenes.damaged(write_scene(scene), chance), words)
+
+    def make_structure(self, chance):
+        made = fuzz_structures.Made(chance)
+        spoilt = chance.random() < 0.5
+        if spoilt:
+            self.base.scenes.spoil(made.scene, chance)
+        words = bound(made.scene, chance)
+        if not spoilt and not chance.randrange(4):  # half of it by the command line
+            for path in chance.sample(sorted(made.scene), len(made.scene) // 2):
+                value = made.scene.pop(path)
+                words += ["-" + "_".join(path), value.strip("[]").replace(", ", ",")]
+        self.put_scene(write_scene(made.scene), words)
+        self.files.update(made.all_files())
+        self.must = None if spoilt else 0
+
+    def make_table(self, chance):
+        made = fuzz_structures.Made(chance)
+        while not made.tables:
+            made = fuzz_structures.Made(chance)
+        self.must = made.spoil_table()
+        self.put_scene(write_scene(made.scene), bound(made.scene, chance))
+        self.files.update(made.all_files())
+
+    def make_solid(self, chance):
+        scene, name, data, self.must, self.volume = fuzz_solids.case(chance)
+        self.put_scene(scene, ["-ts_max_steps", "2"])
+        self.files[name] = data
 
     def make_words(self, chance):
         scene = self.base.scenes.made(chance)
@@ -195,7 +235,8 @@ class Case:
 
     def all_text(self):
         """What a message may name."""
-        names = " ".join([*self.files, *LATTICES, "checkpoint mesh_file lattice_file m.h5 scene"])
+        names = " ".join([*self.files, *LATTICES, *FILES,
+                          "checkpoint mesh_file lattice_file m.h5 scene"])
         datasets = self.base.names if self.damaged else ""
         rest = " ".join(self.files[name].decode(errors="replace") for name in self.files
                         if name == ".petscrc")
@@ -207,7 +248,7 @@ class Case:
         return text + " " + text.replace("_", " _ ")
 
     def lay(self, folder):
-        for name in (*LATTICES, "o.h5"):
+        for name in (*LATTICES, *FILES):
             if name not in self.files and (name in self.scene
                                            or any(name in word for word in self.words)):
                 shutil.copy(self.base.folder / name, folder)
@@ -226,7 +267,9 @@ class Case:
 
     def check_results(self, folder):
         """Which rule of this kind a run breaks that ended well: a restart from a damaged checkpoint
-        is the undamaged run's."""
+        is the undamaged run's, convex parts have their solid's volume."""
+        if self.volume is not None:
+            return self.check_volume()
         if self.kind != "checkpoint" or not self.damaged:
             return None
         if "-check" in self.words:
@@ -235,6 +278,19 @@ class Case:
         same = (straight.read_bytes() == resumed.read_bytes() if self.ranks == 1
                 else are_close(straight, resumed))
         return None if same else ("a damaged checkpoint gives other results",)
+
+    def check_volume(self):
+        """The volume of a solid and of its parts, in the remark on it."""
+        found = re.search(r"triangles around (\S+) m\^3 are .* of (\S+) m\^3, at most (\S+) m",
+                          self.said)
+        if not found:
+            return ("no remark on the solid",)
+        whole, parts, apart = map(float, found.groups())
+        if not math.isclose(whole, self.volume, rel_tol=1e-3):
+            return ("the solid's volume", whole, "must be", self.volume)
+        if not math.isclose(parts, whole, rel_tol=1e-3 if apart < 1e-3 else 0.5):
+            return ("the volume of its parts", parts, "must be", whole)
+        return None
 
 
 class Base:

@@ -10,11 +10,19 @@ import launch
 
 sys.path.insert(0, str(launch.REPOSITORY / "python"))
 from floe import lattice as fl  # noqa: E402
+from floe.make import hull  # noqa: E402
 
 NUMBERS = (np.nan, np.inf, -np.inf, -1.0, 0.0, -0.0, 1.0, 2.0, 1e300, -1e300, 1e-300, 1e-320, 1e31,
            1e15, 1e-15, 0.5, 2.0**53, 1e9)
 INTEGERS = (-1, 0, 1, 2, 3, 7, 2**31 - 1, -2**31, 100, 10**6)
 TYPES = ("f4", "f2", ">f8", "i1", "u1", "i8", "u8", ">i4", "c16", "S4", "b1")
+
+# An L of two parts.
+ELBOW = """v 0 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0
+v 0 0 1\nv 3 0 1\nv 3 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1
+f 6 5 4 3 2 1\nf 7 8 9 10 11 12
+f 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 12
+"""
 
 # Floating ice that breaks on a mover, with checkpoints.
 CHECKPOINTED = """integrator: explicit
@@ -43,6 +51,10 @@ def lay_lattices(folder):
     fl.strip(4.0, 5, fl.Section(0.8, 0.5), 1010.0).write(folder / "strip.h5")
     fl.stack(3, [1, 1, 0.5], 0.01).write(folder / "stack.h5")
     fl.blocks([[1, 1, 1]], [[0, 0, 0]]).write(folder / "o.h5")
+    hull = hull.Hull(6, 2, 0.6, 1, 35)
+    (folder / "hull.stl").write_bytes(hull.stl(hull.triangles(200), "hull"))
+    (folder / "elbow.obj").write_text(ELBOW)
+    (folder / "tug.csv").write_text("time, vx, vy\n0, 0, 0\n0.01, 0.7, 0\n0.02, 0.5, 0.5\n")
 
 
 def lay_mesh_and_checkpoint(folder):

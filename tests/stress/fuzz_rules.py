@@ -51,7 +51,8 @@ class Outcome:
         before = self.contents()
         # matplotlib keeps its list of fonts in the home
         environment = {**launch.ENVIRONMENT, "HOME": str(folder),
-                       "MPLCONFIGDIR": str(case.base.folder), **case.environment}
+                       "MPLCONFIGDIR": str(case.base.folder),
+                       "XDG_CACHE_HOME": str(case.base.folder), **case.environment}
         command = launch.on_ranks(case.ranks, [launch.FLOE, *case.words])
         process = subprocess.Popen(command, cwd=folder, env=environment, start_new_session=True,
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -66,6 +67,7 @@ class Outcome:
         self.code = process.returncode
         self.out, self.error = out.decode(errors="replace"), launch.own_words(
             error.decode(errors="replace"))
+        case.said = self.out + self.error
         if not self.broken:
             self.check(before)
 
@@ -87,6 +89,9 @@ class Outcome:
             self.breaks("ends by a signal", self.code)
         elif self.code not in (DONE, FAILED, BAD_INPUT, STOPPED):
             self.breaks("exit code", self.code)
+        if self.case.must is not None and self.code != self.case.must and (
+                self.case.must == BAD_INPUT or self.code == BAD_INPUT):
+            self.breaks(f"must end with exit code {self.case.must}", self.code, self.error[:400])
         if self.code == BAD_INPUT:
             self.check_refused(before)
         elif self.code in (DONE, FAILED, STOPPED):
@@ -160,6 +165,8 @@ class Outcome:
                     self.breaks("history.csv has torn rows")
             except ValueError as error:
                 self.breaks("history.csv", error)
+        if (folder / "pressure.csv").exists():
+            self.check_pressure(folder / "pressure.csv", finite)
         for path in [*folder.glob("*.h5"), *folder.glob("fields/*.h5")]:
             if path.is_symlink() and not path.exists():
                 self.breaks("leads nowhere", path.name)
@@ -176,6 +183,20 @@ class Outcome:
                 continue
             if bad and finite:
                 self.breaks("not finite", path.name, bad[:4])
+
+    def check_pressure(self, path, finite):
+        """Rows of time, obstacle, patch and three forces."""
+        rows = list(csv.reader(path.read_text().splitlines()))
+        if {len(row) for row in rows} != {6} or rows[0][:3] != ["time", "obstacle", "patch"]:
+            self.breaks("pressure.csv", "has torn rows or another heading", rows[0])
+            return
+        try:
+            numbers = [float(text) for row in rows[1:] for text in (row[0], *row[3:])]
+        except ValueError as error:
+            self.breaks("pressure.csv", error)
+            return
+        if finite and not all(map(math.isfinite, numbers)):
+            self.breaks("pressure.csv is not finite")
 
     def report(self):
         """What to look at, with the command that runs the case again."""

@@ -17,6 +17,7 @@ LATTICES = {"frame.h5": ("root", "tip", "all"), "rubble.h5": ("all",), "block.h5
             "strip.h5": ("left", "right", "all"), "stack.h5": ("lowest", "highest", "all")}
 BEAMLESS = ("rubble.h5", "block.h5", "stack.h5")
 # The lattices of input/, and the small ones that take their places.
+FILE_STAND_INS = {"input/data/ship.stl": "hull.stl", "input/data/tug.csv": "tug.csv"}
 STAND_INS = {"strip": "frame.h5", "rubble_pile": "rubble.h5", "punch_through": "rubble.h5",
              "triangles": "triangles.h5",
              "ice_slope": "strip.h5", "stopping": "block.h5", "drag_decay": "block.h5",
@@ -167,7 +168,13 @@ class Scenes:
         if key.path == ("lattice_file",):
             return chance.choice(list(LATTICES))
         if key.path[-1] == "file":
-            return chance.choice(["o.h5", "nowhere.h5"])
+            return chance.choice(["o.h5", "hull.stl", "elbow.obj", "nowhere.h5"])
+        if key.path[-1].endswith("table"):
+            tables = sorted(value for path, value in scene.items() if path[-1].endswith("table"))
+            return chance.choice([*tables, "t0.csv"])
+        if key.path[-1] in ("part_of", "structure"):
+            names = sorted({path[1] for path in scene if path[0] == "obstacle" and len(path) == 3})
+            return chance.choice([*names, "odd"])
         if key.path == ("output", "dir"):
             return chance.choice(["out/fuzz", "out", "o p", "out/../out/x", "out/fuzz/"])
         return key.allowed(chance)
@@ -192,6 +199,8 @@ class Scenes:
             self.add(scene, section, chance, name)
             if section == "obstacle":
                 self.mend_obstacle(scene, name, chance)
+            for word in ("table", "interpolation", "periodic"):  # fuzz_structures has them
+                scene.pop((section, name, word), None)
             if section == "load":
                 scene.pop((section, name, chance.choice(["set", "point"])), None)
                 if (section, name, "set") not in scene:
@@ -201,11 +210,28 @@ class Scenes:
 
     @staticmethod
     def mend_obstacle(scene, name, chance):
-        """Leaves the keys of one shape."""
+        """Leaves the keys of one shape, and those of a motion or of a structure on springs."""
         own = {"halfspace": ("point", "normal"), "box": ("centre", "size", "rotation"),
                "cone": ("base", "radius", "top_radius",
                "height", "facets"), "cylinder": ("base", "radius", "height", "facets"),
-               "file": ("file", "point")}
+               "file": ("file", "point", "unit", "tolerance", "most_parts")}
+        given = {path[2] for path in scene if path[:2] == ("obstacle", name)}
+        if not scene.get(("obstacle", name, "file"), "").endswith((".stl", ".obj")):
+            own["file"] = ("file", "point")
+        gone = {"part_of", "table", "interpolation", "periodic", "floats", "support_matrix",
+                "centre_of_mass", "support_damping"}
+        if "support_stiffness" not in given:
+            gone |= {"support_damping_ratio", "support_point"}
+        structure = {word for word in given if word.startswith("support_")} | {
+            "mass", "inertia", "added_mass"}
+        if "mass" in given and scene[("obstacle", name, "shape")] != "halfspace":
+            gone |= {"velocity", "angular_velocity", "amplitude", "frequency", "ramp"}
+        else:
+            gone |= structure
+        for word in gone:
+            scene.pop(("obstacle", name, word), None)
+        if not {"velocity", "angular_velocity", "amplitude"} & (given - gone):
+            scene.pop(("obstacle", name, "ramp"), None)
         shape = scene[("obstacle", name, "shape")]
         every = {word for words in own.values() for word in words}
         for word in every - set(own.get(shape, every)):
@@ -270,6 +296,9 @@ class Scenes:
                 scene[("contact", "young")] = "1e7"
         if "buoyancy" in forces or "drag" in forces:
             self.add(scene, "water", chance, share=0.2)
+            for path in [path for path in scene if path[0] == "water" and path[1].startswith(
+                    ("level_", "current_"))]:
+                scene.pop(path)
             if "drag" not in forces:
                 for word in ("drag_linear", "drag_coefficient", "current", "drag", "drag_form",
                              "drag_skin", "shelter"):
@@ -364,6 +393,8 @@ class Scenes:
         if ("water", "added_mass") in scene:
             scene.pop(("water", "added_mass_axes"), None)
             scene[("water", "added_mass")] = chance.choice(("0.5", "2", "plate"))
+        if any(path[0] == "obstacle" and path[-1] == "mass" for path in scene):
+            scene.pop(("water", "drag"), None)
         if scene.get(("water", "drag")) == "faces":
             scene.pop(("water", "drag_coefficient"), None)
             scene.setdefault(("water", "shelter"), "0.1")
@@ -374,6 +405,23 @@ class Scenes:
                     or scene.get(("water", "drag")) == "faces")
         if scene.get(("integrator",)) != "explicit" or not in_space:
             scene.pop(("water", "pace"), None)
+        if scene.get(("integrator",)) == "implicit":
+            for path in [path for path in scene if path[0] == "waves"]:
+                del scene[path]
+            scene.pop(("water", "added_mass_axes"), None)
+        law = {word: ("contact", "plastic_" + word) for word in (
+            "limit", "exponent", "area", "least", "most", "fast", "speed")}
+        if law["limit"] not in scene:
+            for path in (*law.values(), ("contact", "wear")):
+                scene.pop(path, None)
+        if float(scene.get(law["exponent"], 0)) == 0:
+            for word in ("exponent", "area", "least", "most"):
+                scene.pop(law[word], None)
+        if float(scene.get(law["fast"], 1)) == 1:
+            for word in ("fast", "speed"):
+                scene.pop(law[word], None)
+        elif law["fast"] in scene:
+            scene.setdefault(law["speed"], "0.1")
         jonswap = scene.get(("waves", "spectrum")) == "jonswap"
         for word in ("phase",) if jonswap else ("gamma", "components", "seed"):
             scene.pop(("waves", word), None)
@@ -414,6 +462,7 @@ class Scenes:
         if ("lattice_file",) in scene:
             name = re.split(r"[/.]", scene[("lattice_file",)])[-2]
             scene[("lattice_file",)] = STAND_INS.get(name, "frame.h5")
+        scene = {path: FILE_STAND_INS.get(value, value) for path, value in scene.items()}
         if chance.random() < 0.85:
             self.spoil(scene, chance)
         return scene

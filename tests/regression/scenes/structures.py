@@ -72,6 +72,15 @@ def check_bridge_pier(test, run):
     stiffness = np.diag([1.54e9, 1.54e9, 1.59e9, 5e10, 5e10, 6.9e10])
     stiffness[0, 4] = stiffness[4, 0] = 1.54e9
     stiffness[1, 3] = stiffness[3, 1] = -1.54e9
+    shear, poisson, radius, deep = 40e6, 1 / 3, 5, 3  # of the soil, and of the footing
+    ratio = deep / radius
+    sway = 8 * shear * radius / (2 - poisson) * (1 + ratio)
+    for k, formula in ((0, sway), (2, 4 * shear * radius / (1 - poisson) * (1 + 0.54 * ratio)),
+                       (4, 8 * shear * radius**3 / (3 * (1 - poisson))
+                        * (1 + 2.3 * ratio + 0.58 * ratio**3)),
+                       (5, 16 * shear * radius**3 / 3 * (1 + 2.67 * ratio))):
+        test.assertAlmostEqual(stiffness[k, k] / formula, 1, delta=0.006)
+    test.assertAlmostEqual(stiffness[0, 4] / (sway * deep / 3), 1, delta=0.006)
     time, load = output.history("time"), output.history("pier_force_x")
     late = time > 2
     motion, bears = ([output.history(f"pier_{name}")[late].mean() for name in names] for names in (
