@@ -28,7 +28,7 @@ install(PROGRAMS ${tools} DESTINATION ${share}/tools COMPONENT program)
 install(FILES ${modules} DESTINATION ${share}/tools COMPONENT program)
 # The package that the tools are made of; it needs nothing that is compiled.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/floe DESTINATION ${share}/python
-        COMPONENT program PATTERN __pycache__ EXCLUDE)
+        COMPONENT program PATTERN __pycache__ EXCLUDE PATTERN .mypy_cache EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input DESTINATION ${share} COMPONENT program)
 
 # The page is what the program says, like docs/options.md.

@@ -12,7 +12,7 @@ from floe import program
 from floe.ensembles import specs
 from floe.ensembles.specs import known, number, refuse, whole
 from floe.errors import InputError, reading
-from floe.loads import statements
+from floe.results import tables
 from floe.results.output import options_of, summary_of
 from floe_validation_measures import MEASURES
 
@@ -41,7 +41,7 @@ class Drawn:
     @functools.cached_property
     def history(self):
         """history.csv as a table."""
-        return statements.history(self.folder)
+        return tables.history(self.folder)
 
     @functools.cached_property
     def options(self):

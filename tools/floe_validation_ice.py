@@ -3,8 +3,7 @@ finished runs and its settings. SI units."""
 import numpy as np
 
 from floe.loads import fields
-from floe.loads import statements
-from floe.loads import signals
+from floe.loads import signals, statements
 from floe.results.output import Output
 from floe_validation_lines import (G, RHO_WATER, Found, Line, by_point, mean_and_band,
                                    mean_force, slope_of)

@@ -4,13 +4,12 @@ import dataclasses
 import math
 
 import numpy as np
+from scipy import stats
 
 from floe.loads import fields
-from floe.loads import statements
-from floe.loads import signals
+from floe.loads import signals, statements
 from floe.results.output import Output
 
-from scipy import stats
 
 G = 9.81
 RHO_WATER = 1010.0

@@ -4,16 +4,15 @@ import collections
 import math
 
 import numpy as np
+from scipy import stats
 
 from floe.errors import InputError
-from floe.loads import extremes
-from floe.loads import signals
+from floe.loads import extremes, signals
 from floe.results import pressure
 from floe_validation_formulas import iso_crushing, iso_slope
 from floe_validation_lines import (LEVEL, Found, Line, by_point, low_passed, mean_and_band,
                                    mean_force, rubble_height, slope_of)
 
-from scipy import stats
 
 DRAWS, SEED = 2000, 1  # of bootstraps
 

@@ -1,14 +1,14 @@
 """Measures of docs/validation.md on moored structures: functions of a row's finished runs and its
 settings. SI units."""
 import numpy as np
+from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 
 from floe.errors import InputError
 from floe_validation_lines import (Found, Line, by_point, low_passed, mean_and_band, mean_force,
                                    slope_of)
 from floe_validation_loads import ratio_of_means
 
-from scipy.optimize import brentq
-from scipy.spatial.transform import Rotation
 
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
 

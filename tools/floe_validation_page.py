@@ -8,13 +8,15 @@ import textwrap
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import matplotlib
+
 from floe import program
 from floe.ensembles.runs import clock, write_whole
 from floe.errors import InputError, reading
 from floe_validation import SEEDS, verdict_of
 from floe_validation_lines import Found, Line
 
-import matplotlib
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 

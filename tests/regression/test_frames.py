@@ -246,7 +246,7 @@ class Readers(FramesTest):
         late = subprocess.run([REPOSITORY / "tools/plot_sheet", folder, "--time", "99999"],
                               capture_output=True, text=True)
         self.assertEqual(late.returncode, 2)
-        self.assertIn("--time 99999: the frames of", late.stderr)
+        self.assertIn("time 99999: the frames of", late.stderr)
 
 
 class Interrupted(FramesTest):

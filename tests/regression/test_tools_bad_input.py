@@ -80,7 +80,7 @@ class ToolsBadInput(unittest.TestCase):
 
     def test_arguments(self):
         for time in ("99", "-1", "nan"):
-            self.refused("plot_sheet", "out/s", "--time", time, part="--time")
+            self.refused("plot_sheet", "out/s", "--time", time, part="time ")
         self.refused("plot_sheet", "out/s", "--file", "x.zzz", part="must end in one of")
         self.refused("plot_sheet", "out/s", "--file", "none/x.png", part="no folder")
         self.refused("plot_sheet", "out/s", "--colour", "red", part="red")

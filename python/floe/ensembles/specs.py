@@ -351,6 +351,17 @@ def members(spec):
     return runs
 
 
+def read_result(path):
+    """What a file results/NAME.json says: {"status", "message", "wall_s", "processor_s",
+    "results"}, or None if it is not there."""
+    if not path.exists():
+        return None
+    with reading(path):
+        found = json.loads(path.read_text())
+        found["status"], found["results"]
+        return found
+
+
 class Folder:
     """An ensemble's folder: ensemble.json (what its runs are), made (files that were made for
     them), runs/NAME (their output), results/NAME.json (how they ended), runs.csv (the table of
@@ -370,13 +381,7 @@ class Folder:
 
     def result(self, run):
         """{"status", "message", "wall_s", "processor_s", "results"} or None."""
-        path = self.result_file(run)
-        if not path.exists():
-            return None
-        with reading(path):
-            found = json.loads(path.read_text())
-            found["status"], found["results"]
-            return found
+        return read_result(self.result_file(run))
 
     def finished(self, run):
         found = self.result(run)
@@ -470,21 +475,29 @@ class Folder:
     def collect(self):
         """Writes runs.csv: a row for each run in the order of the spec."""
         with locked(self.path / ".table", fcntl.LOCK_EX, math.inf):
-            found = [self.result(run) or {"status": "waiting", "message": "", "wall_s": "",
-                                          "processor_s": "", "results": {}} for run in self.runs]
-            parameters = list(dict.fromkeys(k for run in self.runs for k in run.parameters))
-            head = ["run", *parameters, "seed", "status", "message", "wall_s", "processor_s"]
-            columns = list(dict.fromkeys(k for result in found for k in result["results"]
-                                         if k not in head))
             file = io.StringIO()
             table = csv.writer(file, lineterminator="\n")
-            table.writerow(head + columns)
-            for run, result in zip(self.runs, found):
-                seed = run.seed if run.seed is not None else result["results"].get("seed", "")
-                table.writerow([run.name, *(run.parameters.get(k, "") for k in parameters), seed,
-                                *(result[k] for k in head[-4:]),
-                                *(result["results"].get(k, "") for k in columns)])
+            table.writerows(table_of([(run.name, run.parameters, run.seed, self.result(run))
+                                      for run in self.runs]))
             write_whole(self.path / "runs.csv", file.getvalue())
+
+
+def table_of(runs):
+    """The table of the runs of an ensemble: names of its columns, then a row for each run. runs:
+    [(name, parameters, seed, result or None)]."""
+    found = [result or {"status": "waiting", "message": "", "wall_s": "", "processor_s": "",
+                        "results": {}} for *_, result in runs]
+    parameters = list(dict.fromkeys(k for _, own, _, _ in runs for k in own))
+    head = ["run", *parameters, "seed", "status", "message", "wall_s", "processor_s"]
+    columns = list(dict.fromkeys(k for result in found for k in result["results"]
+                                 if k not in head))
+    rows = [head + columns]
+    for (name, own, seed, _), result in zip(runs, found):
+        seed = seed if seed is not None else result["results"].get("seed", "")
+        rows.append([name, *(own.get(k, "") for k in parameters), seed,
+                     *(result[k] for k in head[-4:]),
+                     *(result["results"].get(k, "") for k in columns)])
+    return rows
 
 
 def difference(old, run):

@@ -5,14 +5,13 @@ Shapes are those of the bodies at rest in their places of the frame: what a body
 not taken off, so areas of contact are upper, pressures lower bounds once ice has crushed.
 """
 import numpy as np
+from scipy import stats
 
 from floe.errors import InputError
-from floe.loads import statements
-from floe.results import breakage
+from floe.results import breakage, tables
 from floe.results.obstacles import obstacles_of_run, structures
 from floe.results.output import Output
 
-from scipy import stats
 
 QUANTILES = (0.1, 0.5, 0.9)
 SECTOR = np.cos(np.radians(45))  # columns count that lie within 45 degrees of where the ice comes
@@ -122,7 +121,7 @@ def obstacle_of(output, name, times):
 def pressures(output, name, start):
     """Contact area [m^2] and mean pressure [Pa] on an obstacle at the frames after `start` in which
     it is touched: the norm of the force of that instant over the area."""
-    table = statements.history(output.folder)
+    table = tables.history(output.folder)
     time = table["time"].to_numpy()
     force = np.linalg.norm(table[[f"{name}_force_{axis}" for axis in "xyz"]].to_numpy(), axis=1)
     times = output.times[(output.times >= start) & (output.times > 0)]

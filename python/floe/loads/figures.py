@@ -1,12 +1,8 @@
 """Figures of floe loads, from what statements.state and fields.state say."""
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-
-from floe.loads import extremes  # noqa: E402
-from floe.loads import statements  # noqa: E402
+from floe.loads import extremes, statements
 
 INK, WARM, PALE = "#22577a", "#c1440e", "#a9bcc8"
 

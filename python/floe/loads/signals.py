@@ -8,8 +8,6 @@ import dataclasses
 import math
 
 import numpy as np
-
-
 from scipy import signal, stats
 
 

@@ -6,18 +6,16 @@ Gumbel's law with its bands, trend, peaks, spectrum (floe loads, docs/loads.md).
         statement = state(group, "cone", Settings())
 """
 import dataclasses
-import io
 from pathlib import Path
 
 import numpy as np
+from scipy import stats
 
 from floe.errors import InputError, reading
-from floe.loads import extremes
-from floe.loads import signals
+from floe.loads import extremes, signals
 from floe.results.output import options_of, summary_of
+from floe.results.tables import history, obstacles_of
 
-import pandas
-from scipy import stats
 
 # Keys that make runs draws of one law, or that say nothing about the ice.
 DRAW_KEYS = ("sheet_seed", "fracture_seed", "waves_seed")
@@ -40,6 +38,31 @@ class Settings:
     seed: int = extremes.SEED
 
 
+def settings_of(**given):
+    """Settings from keyword arguments, filter as text (signals.Filter.parse). InputError names the
+    one that is not allowed."""
+    known = {field.name for field in dataclasses.fields(Settings)}
+    if unknown := [name for name in given if name not in known]:
+        raise InputError(f"{unknown[0]}: no setting of a load (known: {', '.join(sorted(known))})")
+    if isinstance(given.get("filter"), str):
+        try:
+            given["filter"] = signals.Filter.parse(given["filter"])
+        except ValueError as error:
+            raise InputError(str(error)) from None
+    found = Settings(**given)
+    if found.component not in COMPONENTS:
+        raise InputError(f"component '{found.component}' is none of {', '.join(COMPONENTS)}")
+    for name, value, allowed in (("start", found.start, found.start >= 0),
+                                 ("block", found.block, found.block > 0),
+                                 ("hours", found.hours, found.hours >= 0),
+                                 ("level", found.level, 0 < found.level < 1)):
+        if not allowed:
+            raise InputError(f"{name} {value:g} is out of its range")
+    if not all(0 < p < 1 for p in found.probabilities):
+        raise InputError(f"probabilities {found.probabilities} are not all between 0 and 1")
+    return found
+
+
 @dataclasses.dataclass
 class Run:
     """A run: its folder, options, summary, interval of its rows [s], and per obstacle the mean
@@ -54,21 +77,6 @@ class Run:
     @property
     def name(self):
         return self.folder.name or str(self.folder)
-
-
-def history(folder):
-    """history.csv as a table of numbers, without a last line that is not whole yet."""
-    path = Path(folder) / "history.csv"
-    with reading(path):
-        text = path.read_text()
-        table = pandas.read_csv(io.StringIO(text[:text.rfind("\n") + 1]), dtype=float)
-    return table
-
-
-def obstacles_of(table):
-    """Names of the obstacles in a history: those with a peak force."""
-    return [name.removesuffix("_peak_force_x") for name in table
-            if name.endswith("_peak_force_x")]
 
 
 def read_run(folder):

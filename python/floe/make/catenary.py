@@ -7,7 +7,6 @@ is that of the unstretched line in water. Units: m, N.
 """
 import dataclasses
 
-
 import numpy as np
 from scipy.optimize import brentq
 

@@ -10,11 +10,13 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from scipy.spatial import cKDTree
+
 from floe import lattice as fl
 from floe import program
-import numpy as np
 from floe.lattice import matrices, product
-from scipy.spatial import cKDTree
+
 
 # Contact is soft while blocks settle, so that steps are long; blocks of 0.3 m overlap by less than
 # a thousandth of their thickness.

@@ -6,13 +6,11 @@ import re
 import numpy as np
 
 from floe.errors import InputError
-from floe.loads import fields
-from floe.loads import statements
-from floe.loads import signals
+from floe.loads import fields, signals, statements
 from floe.report.map import action, pressure_map
 from floe.report.scene import obstacles_of, scene_of
 from floe.report.series import energy_unit, rounded, series, unit_of
-from floe.results import breakage
+from floe.results import breakage, tables
 from floe.results.output import Output
 
 LOSSES = {"damping": "damping of beams", "drag": "drag of the water", "fracture": "fracture",
@@ -103,7 +101,7 @@ def number(value, digits=4):
 # -- loads ----------------------------------------------------------------------------------------
 def history_of(folder):
     """history.csv as {column: values}."""
-    table = statements.history(folder)
+    table = tables.history(folder)
     if not len(table):
         raise InputError(f"{folder}/history.csv has no rows yet")
     return {key: table[key].to_numpy() for key in table}

@@ -80,18 +80,19 @@ def times_of(output):
     return Times(output)
 
 
-def of_file(output):
-    """Keys and times of the breaks in breaks.h5. Nothing where it is not plain of which bodies it
-    is: a run that was killed may have changed its ice since."""
-    none = np.zeros(0, np.int64), np.zeros(0)
+def of_file(output, *more):
+    """Keys and times of the breaks in breaks.h5, and further datasets of it. Nothing (empty arrays)
+    where it is not plain of which bodies it is: a run that was killed may have changed its ice
+    since."""
     path = output.folder / "breaks.h5"
     if not path.exists():
-        return none
+        return np.zeros(0, np.int64), np.zeros(0), *(np.zeros(0) for _ in more)
     with reading(path), h5py.File(path) as file:
-        beam, bodies, time = file["beam"][:], file["bodies"][:], file["time"][:]
+        beam, bodies = file["beam"][:], file["bodies"][:]
+        values = [file[name][:] for name in ("time", *more)]
         count = len(file["fragments/of_body"])
     for mesh in sorted({0, *numbers_of_meshes(output)}, reverse=True):
-        names, pairs = bodies_of_mesh(output, mesh)
+        names, pairs = output.mesh_names(mesh)
         if len(names) == count and np.all(beam < len(pairs)) and np.array_equal(
                 pairs[beam], bodies):
             frame = np.flatnonzero(output.meshes == mesh)
@@ -100,22 +101,13 @@ def of_file(output):
                 last = output.times[frame[-1]]
                 broken = np.flatnonzero(output.field("damage", last) >= 1)
             if np.all(np.isin(broken, beam)):
-                return keys(names[pairs[beam]]), time
-    return none
+                return keys(names[pairs[beam]]), *values
+    return np.zeros(0, np.int64), *(each[:0] for each in values)
 
 
 def numbers_of_meshes(output):
     return [int(path.stem.removeprefix("mesh_"))
             for path in output.folder.glob("fields/mesh_*.h5")]
-
-
-def bodies_of_mesh(output, mesh):
-    """Names of the bodies of a mesh, and the bodies m x 2 of its beams."""
-    if mesh == 0:
-        return output.names, output.beams["bodies"]
-    path = output.mesh_file(mesh)
-    with reading(path), h5py.File(path) as file:
-        return file["mesh/name"][:].astype(np.int64), file["mesh/beams"][:]
 
 
 def at_end(output):

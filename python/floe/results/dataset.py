@@ -11,20 +11,17 @@ import re
 from pathlib import Path
 
 import h5py
+import netCDF4
 import numpy as np
+import xarray
 
 from floe.errors import InputError, reading
 from floe.loads import statements
-from floe.results import breakage
+from floe.results import breakage, tables
 from floe.results.output import Output, has_changes, options_of, summary_of
 
-import netCDF4
-import xarray
 
 CONVENTIONS = "CF-1.8"
-UNITS = ((r"^energy_", "J"), (r"^mass_", "kg"), (r"^momentum_", "kg m s-1"),
-         (r"_force_[xyz]$", "N"), (r"_moment_[xyz]$", "N m"), (r"_displacement_[xyz]$", "m"),
-         (r"_rotation_[xyz]$", "rad"))
 LABELS = {"force": ("N", "force on the obstacle at this instant"),
           "moment": ("N m", "moment on the obstacle about its point at this instant")}
 AXIS = ("axis", np.array(list("xyz"), object), {"long_name": "axis of the world, z up"})
@@ -58,10 +55,6 @@ def plain(name):
     return name if name[:1].isalpha() else f"n_{name}"
 
 
-def unit_of(column):
-    return next((unit for pattern, unit in UNITS if re.search(pattern, column)), "1")
-
-
 def variable(dims, values, units, label, **more):
     return dims, values, {"units": units, "long_name": label, **more}
 
@@ -89,7 +82,7 @@ def of_history(table, names):
     own = re.compile("(" + "|".join(map(re.escape, names)) +
                      ")_(force|moment|peak_force|mean_force)_[xyz]$") if names else None
     return {plain(column): variable(("run", "time"), table[column].to_numpy()[None],
-                                    unit_of(column), column.replace("_", " "))
+                                    tables.unit_of(column), column.replace("_", " "))
             for column in table if column != "time" and not (own and own.match(column))}
 
 
@@ -150,10 +143,10 @@ def dataset_of(folder, name=None, bodies=False):
     """A run as a dataset with a dimension run of length 1, called `name` (default: the folder's
     name). bodies: with those of the frames."""
     folder = Path(folder)
-    table, options, summary = statements.history(folder), options_of(folder), summary_of(folder)
+    table, options, summary = tables.history(folder), options_of(folder), summary_of(folder)
     if not len(table):
         raise InputError(f"{folder}/history.csv has no rows yet")
-    names = statements.obstacles_of(table)
+    names = tables.obstacles_of(table)
     path = folder / "options.yaml"
     with reading(path):
         scene = path.read_text()

@@ -172,6 +172,28 @@ class Output(Lattice):
         self._present = self._pairs = (0, None)
 
     @property
+    def frames(self):
+        """[(time, file, group)] in order of time."""
+        return self._frames
+
+    def datasets(self):
+        """{name: (shape, type)} of what frames have, of the first one; empty without frames."""
+        if not self._frames:
+            return {}
+        _, path, group = self._frames[0]
+        with reading(path), h5py.File(path) as file:
+            return {name: (data.shape, data.dtype) for name, data in file[group].items()}
+
+    def mesh_names(self, mesh):
+        """Names of the bodies of a mesh (0: of lattice.h5), and those m x 2 of its beams' bodies."""
+        if mesh == 0:
+            return self.names, self.beams.get("bodies", np.zeros((0, 2), int)).astype(np.int64)
+        path = self.mesh_file(mesh)
+        with reading(path), h5py.File(path) as file:
+            names = file["mesh/name"][:].astype(np.int64)
+            return names, names[file["mesh/beams"][:]]
+
+    @property
     def changes(self):
         """Whether some frames are of other bodies than lattice.h5."""
         return bool(np.any(self.meshes))
@@ -232,12 +254,9 @@ class Output(Lattice):
         """Names m x 2 of the bodies of the beams of the frame nearest to `time`."""
         mesh = self.meshes[self._number(time)]
         if mesh == 0:
-            return self.beams.get("bodies", np.zeros((0, 2), int)).astype(np.int64)
+            return self.mesh_names(0)[1]
         if self._pairs[0] != mesh:
-            path = self.mesh_file(mesh)
-            with reading(path), h5py.File(path) as file:
-                names = file["mesh/name"][:].astype(np.int64)
-                self._pairs = mesh, names[file["mesh/beams"][:]]
+            self._pairs = mesh, self.mesh_names(mesh)[1]
         return self._pairs[1]
 
     def last_frames(self):
@@ -254,14 +273,14 @@ class Output(Lattice):
         return (np.min([p.min(axis=0) for p in places], axis=0),
                 np.max([p.max(axis=0) for p in places], axis=0))
 
-    def nearest(self, time, parser):
-        """Time of the frame nearest to `time` (None: the last one); ends the tool if the run has
-        none, or none so late."""
+    def nearest(self, time=None):
+        """Time of the frame nearest to `time` (None: the last one). InputError if the run has none,
+        or none so late."""
         if not self._frames:
-            parser.error(f"{self.folder} has no frame yet")
+            raise InputError(f"{self.folder} has no frame yet")
         last = self.times[-1]
         if time is not None and not -1e-9 * last <= time <= last * (1 + 1e-9):
-            parser.error(f"--time {time:g}: the frames of {self.folder} go from 0 to {last:g} s")
+            raise InputError(f"time {time:g}: the frames of {self.folder} go from 0 to {last:g} s")
         return last if time is None else self.times[np.argmin(np.abs(self.times - time))]
 
     def field(self, name, time):

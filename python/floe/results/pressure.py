@@ -5,12 +5,13 @@ import dataclasses
 import heapq
 from pathlib import Path
 
+import numpy as np
+from scipy.spatial import cKDTree
+
 from floe.errors import InputError, reading
+from floe.results import tables
 from floe.results.output import Lattice
 
-import numpy as np
-import pandas as pd
-from scipy.spatial import cKDTree
 
 NEAR = 1.5  # largest distance of neighbours' centres, in mean sides: squares may meet at corners
 
@@ -79,7 +80,7 @@ def read(folder):
         raise InputError(f"{folder}: has no pressure.csv: the scene asks for no pressures")
     shapes = Lattice(Path(folder) / "lattice.h5").obstacles
     with reading(path):
-        table = pd.read_csv(path, dtype={"patch": str, "obstacle": str})
+        table = tables.table_of(path, dtype={"patch": str, "obstacle": str})
         found = {name: of_obstacle(name, rows, shapes[name])
                  for name, rows in table.groupby("obstacle", sort=False)}
     if not found:
