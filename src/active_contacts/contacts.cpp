@@ -371,6 +371,21 @@ Contacts::OnObstacle Contacts::on_obstacle_of(std::size_t contact) const {
           .worn = wear_.of(pair.a)};
 }
 
+ContactOfPair Contacts::contact_of(std::size_t contact) const {
+  const Pair& pair = list_.pair(active_.pair(contact));
+  const ContactTrial trial = active_.trial(contact);
+  const bool with_obstacle = is_obstacle(pair.b);
+  return {
+      .a = pair.a,
+      .b = with_obstacle ? solids_.obstacle(pair.b).body : pair.b,
+      .obstacle = with_obstacle ? static_cast<std::int32_t>(solids_.obstacle_number(pair.b)) : -1,
+      .force = active_.force(contact),
+      .point = places_.of_a(pair).x + active_.centre(contact),
+      .normal = active_.normal(contact),
+      .volume = trial.volume,
+      .area = trial.area};
+}
+
 std::vector<BodyPair> Contacts::enclosed() const {
   std::vector<BodyPair> found;
   for (std::size_t k = 0; k < active_.size(); ++k) {
