@@ -46,12 +46,28 @@ examples.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "floe (= ${PROJECT_VERSION}), petsc-dev, libpetsc-real-dev, libopenmpi-dev, pkg-config, g++")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-floe)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "floe from Python: scenes, runs, coupling
+The module floe makes scenes of floating ice, steps them, couples them with
+other programs and looks at their bodies, beams and contacts while they run.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+get_property(FLOE_PYTHON_VERSIONS GLOBAL PROPERTY FLOE_PYTHON_VERSIONS)  # empty: not built
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "floe (= ${PROJECT_VERSION}), ${FLOE_PYTHON_VERSIONS}, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS
+    "python3-mpi4py, python3-pandas, python3-xarray, python3-dask, python3-matplotlib")
+
 # What Debian asks of each package, and of no other installation.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(changelog ${PROJECT_BINARY_DIR}/changelog.gz)
   file(ARCHIVE_CREATE OUTPUT ${changelog} PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md
        FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9)
-  foreach(package program:floe development:libfloe-dev)
+  set(packages program:floe development:libfloe-dev)
+  if(FLOE_PYTHON_VERSIONS)
+    list(APPEND packages python:python3-floe)
+  endif()
+  foreach(package IN LISTS packages)
     string(REGEX MATCH "(.*):(.*)" _ ${package})
     install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian/copyright ${changelog}
             COMPONENT ${CMAKE_MATCH_1}

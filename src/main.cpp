@@ -11,6 +11,7 @@
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"
+#include "floe/scene/restart.h"
 #include "floe/session/command_line.h"
 #include "floe/session/session.h"
 #include "floe/session/unused_options.h"
@@ -19,7 +20,6 @@
 #include "program/log_heading.h"
 #include "program/program.h"
 #include "program/signals_at_start.h"
-#include "scene/restart.h"
 #include "session/signals.h"
 #include "simulation/scene_run.h"
 #include "simulation/summary.h"
@@ -89,7 +89,6 @@ int run(const Wish& user, std::optional<floe::Simulation>& simulation) {
   // 1. The scene
   Scene scene = read_scene(user.restart.scene, user.options);
   if (is_done(scene, user.restart)) return done;
-  check_reports(scene);
   for (const std::string& remark : user.restart.remarks) scene.remarks.push_back(remark);
 
   // 2. The lattice and the model

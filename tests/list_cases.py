@@ -27,6 +27,7 @@ def cases_of(script):
 
 
 if __name__ == "__main__":
-    for found in sorted([*TESTS.glob("regression/test_*.py"), *TESTS.glob("stress/test_*.py")]):
+    for found in sorted([*TESTS.glob("regression/test_*.py"), *TESTS.glob("stress/test_*.py"),
+                         *TESTS.glob("python/test_*.py")]):
         for case in cases_of(found):
             print(found.relative_to(TESTS).with_suffix(""), case)

@@ -1,11 +1,46 @@
-"""floe, a simulator of floating sea ice: what its runs have written.
+"""floe, a simulator of floating sea ice as rigid bodies joined by beams.
 
-    run = floe.open("out/ice_cone")
-    run.history["cone_force_x"].plot()
+    import floe
+
+    scene = floe.Scene("input/ice_cone.yaml", sheet_seed=3)
+    with floe.Simulation(scene) as sim:
+        for _ in sim.run(every=1.0):
+            print(sim.time, sim["cone"].wrench.force)
+    run = floe.open(scene.output)
+
+docs/python.md describes all of it. Reading results needs neither MPI nor the compiled library.
 """
-from .errors import InputError
+import importlib
+from typing import TYPE_CHECKING
 
-__all__ = ["InputError", "open"]
+from .errors import InputError
+from .failures import CallbackError, RunFailed
+
+if TYPE_CHECKING:
+    from .force import Force
+    from .library import rank, size, version
+    from .scene import Option, Scene, options
+    from .simulation import Motion, Pose, Simulation, State, Wrench
+
+__all__ = ["CallbackError", "Force", "InputError", "Motion", "Option", "Pose", "RunFailed",
+           "Scene", "Simulation", "State", "Wrench", "open", "options", "rank", "size", "version"]
+
+_HOMES = {"Scene": "scene", "options": "scene", "Option": "scene", "Simulation": "simulation",
+          "Pose": "simulation", "Motion": "simulation", "Wrench": "simulation",
+          "State": "simulation",
+          "Force": "force", "rank": "library", "size": "library", "version": "library"}
+
+
+def __getattr__(name):
+    if name in _HOMES:
+        value = getattr(importlib.import_module(f".{_HOMES[name]}", __name__), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'floe' has no attribute '{name}'")
+
+
+def __dir__():
+    return sorted({*globals(), *_HOMES})
 
 
 def open(folder):  # noqa: A001

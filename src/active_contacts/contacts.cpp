@@ -378,6 +378,21 @@ Contacts::OnObstacle Contacts::on_obstacle_of(std::size_t contact, bool on_a) co
           .worn = wear_.of(other)};
 }
 
+ContactOfPair Contacts::contact_of(std::size_t contact) const {
+  const Pair& pair = list_.pair(active_.pair(contact));
+  const ContactTrial trial = active_.trial(contact);
+  return {.a = solids_.body_of(pair.a),
+          .b = solids_.body_of(pair.b),
+          .obstacle = solids_.is_ice(pair.b)
+                          ? -1
+                          : static_cast<std::int32_t>(solids_.obstacle_number(pair.b)),
+          .force = active_.force(contact),
+          .point = places_.of_a(pair).x + active_.centre(contact),
+          .normal = active_.normal(contact),
+          .volume = trial.volume,
+          .area = trial.area};
+}
+
 std::vector<BodyPair> Contacts::enclosed() const {
   std::vector<BodyPair> found;
   for (std::size_t k = 0; k < active_.size(); ++k) {

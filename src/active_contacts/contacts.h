@@ -34,6 +34,7 @@
 #include "contact/solids.h"
 #include "contact/wear.h"
 #include "contact_laws/laws.h"
+#include "floe/geometry/contact_of_pair.h"
 
 namespace floe {
 
@@ -77,6 +78,10 @@ class Contacts {
   const PairList& list() const { return list_; }
   const ContactHistory& history() const { return history_; }
   const ContactOptions& options() const { return options_; }
+
+  /// Gives obstacle k another motion. A new list is due.
+  void drive(std::size_t k, const DrivenMotion& motion) { solids_.drive(k, motion); }
+  void stop_driving(std::size_t k) { solids_.drive(k, {}); }
 
   /// Makes the pair list anew. Pairs that stay in the list keep their history.
   /// \param poses  of all bodies
@@ -155,6 +160,10 @@ class Contacts {
   };
   /// \param on_a  whether the obstacle is that of A, of pairs of two obstacles; else that of B
   OnObstacle on_obstacle_of(std::size_t contact, bool on_a) const;
+  /// Returns a contact of the last evaluation, where forces are kept.
+  ContactOfPair contact_of(std::size_t contact) const;
+  /// Whether this rank counts a contact.
+  bool is_counted(std::size_t contact) const { return list_.pair(active_.pair(contact)).counted; }
   /// Returns the number of overlapping counted pairs in the last evaluation.
   std::int64_t touching() const { return active_.touching(); }
   /// Adds the power of the contacts of the last evaluation on an involved body that moves so.

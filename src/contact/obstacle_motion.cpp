@@ -7,11 +7,13 @@ namespace floe {
 namespace {
 
 bool is_zero(const Vec3<double>& v) { return v == Vec3<double>{}; }
+
 }  // namespace
 
 // Most obstacles rest or move steadily, so sines and cosines are computed only if needed.
 
 Vec3<double> ObstacleMotion::way(double time) const {
+  if (driven) return driven->at(time).way;
   if (!table.empty()) return table.way(time);
   const Vec3<double> steady = ramp.integral(time) * velocity;
   if (is_zero(amplitude)) return steady;
@@ -20,6 +22,7 @@ Vec3<double> ObstacleMotion::way(double time) const {
 }
 
 Vec3<double> ObstacleMotion::rate(double time) const {
+  if (driven) return driven->at(time).rate;
   if (!table.empty()) return table.velocity(time);
   const Vec3<double> steady = ramp.value(time) * velocity;
   if (is_zero(amplitude)) return steady;
@@ -30,21 +33,25 @@ Vec3<double> ObstacleMotion::rate(double time) const {
 }
 
 Quat<double> ObstacleMotion::turn(double time) const {
+  if (driven) return driven->at(time).turn;
   if (!table.empty()) return exp_rotation(table.turn(time));
   if (is_zero(angular_velocity)) return {1, 0, 0, 0};
   return exp_rotation(ramp.integral(time) * angular_velocity);
 }
 
 Vec3<double> ObstacleMotion::spin(double time) const {
+  if (driven) return driven->at(time).spin;
   if (!table.empty()) return spin_of(table.turn(time), table.turning(time));
   return ramp.value(time) * angular_velocity;
 }
 
 bool ObstacleMotion::at_rest() const {
-  return table.empty() && is_zero(velocity) && is_zero(angular_velocity) && is_zero(amplitude);
+  return !is_driven && table.empty() && is_zero(velocity) && is_zero(angular_velocity) &&
+         is_zero(amplitude);
 }
 
 double ObstacleMotion::largest_speed(double radius) const {
+  if (driven) return driven->largest_speed(radius);
   if (!table.empty()) {
     const double turning = table.largest_turning();
     return table.largest_speed() + (turning > 0 ? radius * turning : 0.0);

@@ -42,6 +42,10 @@ class Solids {
   std::array<std::size_t, 2> parts_of(std::size_t k) const {
     return {first_part_[k], first_part_[k + 1]};
   }
+  /// Gives obstacle k another motion by a program, or takes it back.
+  void drive(std::size_t k, const std::optional<DrivenMotion>& motion) {
+    obstacles_[k].motion.driven = motion;
+  }
   /// Returns the number of the obstacle of a part with an index below 0.
   std::size_t obstacle_number(std::int32_t index) const { return part_of(index).obstacle; }
   /// Returns the obstacle of a part with an index below 0.

@@ -185,6 +185,37 @@ class DistributedContact final : public Contact,
                                 part_.comm);
   }
 
+  DrivenMotion::Place place_of_obstacle(std::size_t k, double time) const override {
+    const ObstacleMotion& motion = obstacles()[k].motion;
+    return {.way = motion.way(time),
+            .turn = motion.turn(time),
+            .rate = motion.rate(time),
+            .spin = motion.spin(time)};
+  }
+  std::vector<std::array<Vec3<double>, 2>> obstacle_wrenches() const override {
+    std::vector<std::array<Vec3<double>, 2>> wrenches;
+    for (std::size_t k = 0; k < obstacles().size(); ++k) {
+      const ContactWrench w = contacts_.on_obstacle(k);
+      wrenches.push_back({w.force, w.moment});
+    }
+    if (!wrenches.empty())
+      sum_over_ranks(std::span(&wrenches[0][0].x, 6 * wrenches.size()), part_.comm);
+    return wrenches;
+  }
+  const Vec3<double>& impulse(std::size_t k) const override { return obstacle_forces_.impulse(k); }
+  /// Results do not depend on when a list is made, so the next evaluation makes a new one.
+  void drive(std::size_t k, const DrivenMotion& motion) override {
+    contacts_.drive(k, motion);
+    expiry_ = PairListExpiry(contacts_.solids(), part_);
+  }
+  void keep_contacts() override { contacts_.keep_forces(); }
+  std::vector<ContactOfPair> contacts_here() const override {
+    std::vector<ContactOfPair> all;
+    for (std::size_t k = 0; k < contacts_.contacts(); ++k)
+      if (contacts_.is_counted(k)) all.push_back(contacts_.contact_of(k));
+    return all;
+  }
+
   std::size_t works() const override { return ContactPower::terms; }
   void powers(std::span<double> out) const override { power_.write(out); }
   LaterPowers later_powers() const override { return LaterPowers::at_once; }
@@ -218,6 +249,7 @@ class DistributedContact final : public Contact,
   void persist(Archive& archive) override;
 
  private:
+  const std::vector<Obstacle>& obstacles() const { return contacts_.solids().obstacles(); }
   std::int32_t pieces() const { return contacts_.list().eligibility().pieces(); }
   bool anywhere(bool here) const {
     return size(part_.comm) > 1 ? on_any_rank(here, part_.comm) : here;
@@ -226,6 +258,7 @@ class DistributedContact final : public Contact,
   void build(const State<Spatial>& state);
   bool is_near_obstacle(const State<Spatial>& state) const;
   void wear_bodies();
+  void persist_motion(std::size_t k, Archive& archive);
   void add_dashpots(const State<Spatial>& state, const Wrenches<Spatial>& others);
   void accelerate(const Wrenches<Spatial>& others);
   void restore(const std::vector<double>& rows, std::span<const BodyPair> released,
@@ -409,7 +442,34 @@ void DistributedContact::persist(Archive& archive) {
     released.insert(released.end(), fresh.begin(), fresh.end());
   }
   obstacle_forces_.persist(contacts_.solids().obstacles(), archive);
+  for (std::size_t k = 0; k < obstacles().size(); ++k)
+    if (obstacles()[k].motion.is_driven) persist_motion(k, archive);
   if (archive.loading()) restore(rows, as_pairs(released), static_cast<std::size_t>(known));
+}
+
+/// Saves or loads the motion that a program has given an obstacle.
+void DistributedContact::persist_motion(std::size_t k, Archive& archive) {
+  const Obstacle& obstacle = obstacles()[k];
+  std::vector<double> numbers;  // empty: none
+  if (const auto& driven = obstacle.motion.driven) {
+    numbers = {driven->from, driven->until};
+    for (const auto& [way, turn, rate, spin] : {driven->start, driven->end})
+      numbers.insert(numbers.end(), {way.x, way.y, way.z, turn.w, turn.x, turn.y, turn.z, rate.x,
+                                     rate.y, rate.z, spin.x, spin.y, spin.z});
+  }
+  archive.common("motion_" + obstacle.name, numbers);
+  constexpr std::size_t length = 28;
+  if (!archive.loading()) return;
+  if (numbers.size() != length) return contacts_.stop_driving(k);
+  const auto place = [&](std::size_t at) {
+    const double* v = &numbers[at];
+    return DrivenMotion::Place{.way = {v[0], v[1], v[2]},
+                               .turn = {v[3], v[4], v[5], v[6]},
+                               .rate = {v[7], v[8], v[9]},
+                               .spin = {v[10], v[11], v[12]}};
+  };
+  contacts_.drive(k,
+                  {.from = numbers[0], .until = numbers[1], .start = place(2), .end = place(15)});
 }
 
 /// Goes on from a checkpoint.

@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "floe/base/driven_motion.h"
 #include "floe/contact/obstacle.h"
 #include "floe/contact_laws/contact_options.h"
+#include "floe/geometry/contact_of_pair.h"
 #include "forces/force.h"
 
 namespace floe {
@@ -21,6 +23,20 @@ class Contact : public Force<Spatial> {
   /// A line for the user on overlaps in the state at rest; empty if none exceeds 1e-3 of the
   /// smaller size. The same on all ranks.
   virtual const std::string& overlap_at_start() const = 0;
+
+  /// Returns where the motion of obstacle k, which no body carries, has it at a time [s].
+  virtual DrivenMotion::Place place_of_obstacle(std::size_t k, double time) const = 0;
+  /// Returns force [N] and moment [N m] of the last evaluation on each obstacle: about the origin
+  /// of its frame, or about the centre of the body that carries it. Collective.
+  virtual std::vector<std::array<Vec3<double>, 2>> obstacle_wrenches() const = 0;
+  /// Returns the integral of the force on obstacle k since time 0 [N s], the same on all ranks.
+  virtual const Vec3<double>& impulse(std::size_t k) const = 0;
+  /// Gives obstacle k, which no body carries, another motion. To be called on all ranks.
+  virtual void drive(std::size_t k, const DrivenMotion& motion) = 0;
+  /// Keeps the forces of contacts from the next evaluation on, for contacts_here().
+  virtual void keep_contacts() = 0;
+  /// Returns the contacts of the last evaluation that this rank counts.
+  virtual std::vector<ContactOfPair> contacts_here() const = 0;
 };
 
 /// The components of bodies that boundaries prescribe, and which no force changes.

@@ -21,6 +21,8 @@ class ObstacleForces {
 
   /// Returns the forces of the last evaluation on all obstacles, of all ranks' bodies. Collective.
   std::span<const Vec3<double>> now(const Contacts& contacts, MPI_Comm comm);
+  /// Returns the integral of the force on obstacle k [N s].
+  const Vec3<double>& impulse(std::size_t k) const { return impulse_[k]; }
   /// Takes over a step. With obstacles and several ranks this takes one sum over the ranks.
   /// Collective.
   /// \param dt  length of the step [s]

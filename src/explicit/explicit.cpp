@@ -1,5 +1,6 @@
 #include "explicit/explicit.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "explicit/explicit_run.h"
@@ -37,8 +38,21 @@ class LeapfrogRun final : public ExplicitRun<Space> {
  private:
   void begin() {
     this->choose_step();
+    stagger();
+  }
+  void stagger() {
     step_->stagger(this->dt());
     this->model().part().ghosts.update(this->state().records, Space::record);
+  }
+  bool can_go_back() const override { return true; }
+  void begin_again() override {
+    State<Space>& state = this->state();
+    std::fill(state.records.begin(), state.records.end(), 0.0);
+    for (std::size_t b = 0; b < static_cast<std::size_t>(this->model().part().local); ++b)
+      Space::at_rest(state.record(b));
+    state.set_time(0);
+    step_->start();
+    stagger();
   }
 
   /// Makes a step. The forces at t_n are known; a sample that is due gets them before the bodies

@@ -11,6 +11,7 @@
 #include "base/collectives.h"
 #include "files/run_log.h"
 #include "floe/base/petsc.h"
+#include "floe/files/progress.h"
 
 namespace floe {
 namespace {
@@ -69,9 +70,17 @@ double resident_memory_mb(MPI_Comm comm) {
   return sum_over_ranks(mine, comm);
 }
 
+namespace {
+
+bool shows_progress = true;  // NOLINT: as standard error itself
+
+}  // namespace
+
+void show_progress(bool yes) { shows_progress = yes; }
+
 Progress::Progress(std::string_view what, double total)
     : what_(what), total_(total), start_(MPI_Wtime()), last_print_(start_), last_logged_(start_) {
-  active_ = rank() == 0;
+  active_ = shows_progress && rank() == 0;
   terminal_ = isatty(STDERR_FILENO) != 0;
 }
 

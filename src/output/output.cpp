@@ -430,6 +430,31 @@ void Output<Space>::follow(const Lattice& lattice, std::span<const std::int32_t>
 }
 
 template <class Space>
+OutputState Output<Space>::save() {
+  Impl& me = *impl_;
+  return {me.memory, me.pending ? me.make_frame(*me.pending) : me.pending_frame};
+}
+
+template <class Space>
+void Output<Space>::restore(const OutputState& state) {
+  const Timed timed(Event::output);
+  Impl& me = *impl_;
+  const OutputArchive& to = state.archive;
+  const bool rows = me.memory.rows != to.rows, frames = me.memory.frames != to.frames,
+             pressures = me.memory.pressures != to.pressures;
+  me.memory = to;
+  me.pending.reset();
+  me.pending_frame = state.pending;
+  if (me.cracks) me.cracks->follow_lattice();
+  const std::string& dir = me.options.dir;
+  on_root(me.part.comm, [&] {
+    if (rows) me.history.emplace(dir + "/history.csv", to.rows);
+    if (pressures) me.pressure.emplace(dir + "/pressure.csv", to.pressures);
+    if (frames) me.fields.emplace(dir, me.lattice, to.frames);
+  });
+}
+
+template <class Space>
 std::int64_t Output<Space>::mesh() const {
   return impl_->fields ? impl_->fields->mesh() : 0;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "floe/forces/boundary.h"
 #include "forces/dead_load.h"
 #include "lattice/archive.h"
+#include "output/frame.h"
 #include "run/integrator.h"
 
 namespace floe {
@@ -67,6 +69,12 @@ struct OutputArchive {
   void persist(Archive& archive);
 };
 
+/// The state of a run's output, to which it can go back.
+struct OutputState {
+  OutputArchive archive;
+  std::optional<Frame> pending;  ///< of the last accepted state, if it is not in fields.h5
+};
+
 /// Checks whether a folder has the files with which a restart goes on; changes nothing. Collective.
 /// \param columns  a sample with the columns of this run's rows, with any values
 /// \throws InputError if rows or frames are missing, or columns differ
@@ -115,6 +123,11 @@ class Output {
   void prepare_to_follow();
   /// Syncs rows and frames to the disk, so that they survive a crash of the machine.
   void sync();
+
+  /// State of the output, before finish(). Gathers a frame.
+  OutputState save();
+  /// Goes back to a state: cuts the files back if rows or frames have been written since then.
+  void restore(const OutputState& state);
 
   /// History with which a checkpoint can cut the files back to this moment.
   const OutputArchive& archive() const;

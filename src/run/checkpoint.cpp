@@ -139,7 +139,8 @@ Checkpoints::Wish Checkpoints::look(std::int64_t step) {
   const double now = MPI_Wtime();
   const double steps = static_cast<double>(std::max<std::int64_t>(step - last_look_, 1));
   const double a_step = (now - last_look_time_) / steps;
-  std::array<double, 5> mine{a_step, StopSignals::came() ? 1.0 : 0.0, 0, 0, 0};
+  std::array<double, 6> mine{a_step, StopSignals::came() ? 1.0 : 0.0, 0, 0, 0, 0};
+  mine[5] = options_.wants_pause && options_.wants_pause() ? 1 : 0;
   if (rank(part_.comm) == 0) {
     std::error_code ignored;
     mine[2] = std::filesystem::exists(options_.stop_file, ignored) ? 1 : 0;
@@ -159,7 +160,8 @@ Checkpoints::Wish Checkpoints::look(std::int64_t step) {
   }
   if (all[1] > 0 || all[2] > 0) return Wish::stop;
   if (all[4] > 0) return Wish::stop_for_time;
-  return all[3] > 0 ? Wish::write : Wish::none;
+  if (all[3] > 0) return Wish::write;
+  return all[5] > 0 ? Wish::pause : Wish::none;
 }
 
 std::string previous_checkpoint(const std::string& file) {

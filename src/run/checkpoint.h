@@ -31,6 +31,8 @@ struct CheckpointOptions {
   /// Wall time of the process by rank 0's clock [s]; the run writes a checkpoint and stops before
   /// this time is over.
   double wall_time = std::numeric_limits<double>::infinity();
+  /// Whether this rank wants the run to pause; asked a few times a second. Empty: never.
+  std::function<bool()> wants_pause = nullptr;
   /// Creates the output folder and syncs what has been written there; called before each checkpoint
   /// is written, with the names of the columns that the forces and the integrator report.
   std::function<void(const std::vector<std::string>& columns)> prepare =
@@ -81,7 +83,7 @@ std::string fingerprint(const std::vector<std::vector<double>>& rows);
 /// Writes checkpoints and decides when. All calls are collective.
 class Checkpoints {
  public:
-  enum class Wish { none, write, stop, stop_for_time };
+  enum class Wish { none, write, stop, stop_for_time, pause };
 
   /// \param options, part  must outlive this
   Checkpoints(const CheckpointOptions& options, const Part& part);

@@ -49,6 +49,12 @@ class DynamicRun : public Run {
   double time() const final { return time_; }
   const RunResult& outcome() const final { return result_; }
 
+  void know_forces() final;
+  void forces_have_changed() final;
+  std::vector<std::pair<std::string, double>> columns_now() final;
+  std::unique_ptr<const RunState> save() final;
+  void restore(const RunState& state) final;
+
   State<Space>& state() { return state_; }
   double dt() const { return dt_; }
   std::int64_t done() const { return done_; }
@@ -112,6 +118,11 @@ class DynamicRun : public Run {
   /// Adapts the integrator's objects to a model that has been divided anew; the state follows. An
   /// integrator that leaves this out is given neither DynamicOptions::balance nor supply.
   virtual void follow_model() {}
+  /// Whether a state at a pause is all that later steps need: then runs can go back to it.
+  virtual bool can_go_back() const { return false; }
+  /// Evaluates the forces at the start, with the velocities there, as the run's first step wants
+  /// them. For integrators that can go back.
+  virtual void begin_again() {}
   /// PETSc objects of the integrator that audits compare.
   virtual std::vector<PetscObject> objects() const { return {}; }
   /// Compares the run's objects and times over ranks if auditing is on; collective then.
@@ -188,7 +199,8 @@ class DynamicRun : public Run {
   /// Why a TS has come back.
   enum class Return { pause, end, failure };
 
-  void save();
+  void write_checkpoint();
+  std::vector<std::int32_t> owners() const;
   std::vector<std::string> column_names() const;
   // Steps between checks of the velocity limit.
   static constexpr std::int64_t check_every = 100;
@@ -266,6 +278,7 @@ class DynamicRun : public Run {
   std::string dt_key_ = "time: dt";
   std::int64_t most_steps_ = std::numeric_limits<std::int64_t>::max();  // -ts_max_steps
   std::int64_t show_every_ = 1;
+  std::int64_t known_ = 0;  // step of the state of which the forces are known, at a pause
   std::int64_t piece_ = 0;  // step of the run that is the TS's step 0
   std::string why_, stopped_by_;
   Stand stand_ = Stand::prepared;

@@ -52,6 +52,8 @@ struct DynamicOptions {
   CheckpointOptions checkpoint;
   std::optional<BalanceOptions> balance;  ///< given: the run keeps account of its ranks
   std::optional<SupplyOptions> supply;    ///< given: ice joins and leaves
+  /// Divides the model by owner, with new forces at rest; needed to go back to a saved state.
+  std::function<void(const std::vector<std::int32_t>& owner)> remake;
 };
 
 }  // namespace floe

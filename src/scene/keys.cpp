@@ -1,4 +1,4 @@
-#include "keys.h"
+#include "floe/scene/keys.h"
 
 #include <array>
 

@@ -1,4 +1,4 @@
-#include "scene/restart.h"
+#include "floe/scene/restart.h"
 
 #include <algorithm>
 #include <array>

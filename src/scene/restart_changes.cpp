@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "keys.h"
+#include "floe/scene/keys.h"
 #include "options/option_names.h"
 #include "options/option_values.h"
 

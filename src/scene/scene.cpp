@@ -14,7 +14,7 @@
 #include "contact/surface_patches.h"
 #include "floe/base/petsc.h"
 #include "floe/options/options.h"
-#include "keys.h"
+#include "floe/scene/keys.h"
 #include "reading.h"
 #include "restart_changes.h"
 #include "run_folder/run_folder.h"

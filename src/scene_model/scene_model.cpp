@@ -166,9 +166,9 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
 }
 
 template <class Space>
-void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
+Contact* add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model) {
   if constexpr (std::is_same_v<Space, Spatial>) {
-    if (!scene.forces.contact) return;
+    if (!scene.forces.contact) return nullptr;
     const auto prescribed = model.prescribed();
     const bool any =
         std::any_of(prescribed.begin(), prescribed.end(), [](auto b) { return b != 0; });
@@ -185,8 +185,11 @@ void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model
                                 std::move(motion));
     const std::string& overlap = contact->overlap_at_start();
     if (scene.check_only && !overlap.empty() && rank() == 0) warn(overlap);
+    Contact* const added = contact.get();
     model.add_force(std::move(contact));
+    return added;
   }
+  return nullptr;
 }
 
 bool needs_shapes(const Scene& scene) {
@@ -231,8 +234,8 @@ template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Spa
                          const Lattice*);
 template void add_forces(const Scene&, const std::vector<PlacedLoad>&, Model<Planar>&,
                          const Lattice*);
-template void add_contact(const Scene&, const Lattice&, Model<Spatial>&);
-template void add_contact(const Scene&, const Lattice&, Model<Planar>&);
+template Contact* add_contact(const Scene&, const Lattice&, Model<Spatial>&);
+template Contact* add_contact(const Scene&, const Lattice&, Model<Planar>&);
 template void release_setup(const Scene&, Model<Spatial>&);
 template void release_setup(const Scene&, Model<Planar>&);
 template void hold_free_motions(const Scene&, const Lattice&, Model<Spatial>&);

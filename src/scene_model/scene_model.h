@@ -18,6 +18,7 @@
 
 namespace floe {
 
+class Contact;
 class SuppliedIce;
 
 /// Results of mesh and calibration.
@@ -72,9 +73,10 @@ void add_forces(const Scene& scene, const std::vector<PlacedLoad>& loads, Model<
 
 /// Adds contact, if the scene names it.
 /// \param lattice  whole
+/// \return the force, which the model owns; null without contact
 /// \throws InputError if bodies have no shapes or are not convex
 template <class Space>
-void add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model);
+Contact* add_contact(const Scene& scene, const Lattice& lattice, Model<Space>& model);
 
 /// Whether any force needs the bodies' shapes.
 bool needs_shapes(const Scene& scene);

@@ -110,4 +110,12 @@ UserOptions options_of(const CommandLine& line,
   return options;
 }
 
+UserOptions options_of_text(const CommandLine& line, const std::string& name,
+                            const std::string& text) {
+  UserOptions options{read_environment(line.petscrc), {}, line.options};
+  options.scene = parse_scene(name, text);
+  for (auto& [option, given] : options.scene) given.place.clear();
+  return options;
+}
+
 }  // namespace floe

@@ -10,6 +10,8 @@
 #include <functional>
 #include <memory>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "files/run_log.h"
 #include "floe/base/petsc.h"
@@ -21,8 +23,10 @@
 namespace floe {
 namespace {
 
-std::function<void(const std::string&)>& last_words() {
-  static std::function<void(const std::string&)> words;
+using Words = std::function<void(const std::string&)>;
+/// In the order in which they were set.
+std::vector<std::pair<const LastWords*, Words>>& last_words() {
+  static std::vector<std::pair<const LastWords*, Words>> words;
   return words;
 }
 
@@ -53,16 +57,18 @@ void report_mpi_error(MPI_Comm*, int* code, ...) {  // NOLINT: MPI's form
 
 }  // namespace
 
-void set_last_words(std::function<void(const std::string&)> words) {
-  last_words() = std::move(words);
+LastWords::LastWords(Words words) { last_words().emplace_back(this, std::move(words)); }
+LastWords::~LastWords() {
+  std::erase_if(last_words(), [this](const auto& entry) { return entry.first == this; });
 }
 
 void say_last_words(const std::string& why) noexcept {
-  const auto words = std::exchange(last_words(), {});
-  if (!words) return;
-  try {
-    words(why);
-  } catch (...) {  // NOLINT: a failure here has no remedy
+  const auto all = std::exchange(last_words(), {});
+  for (const auto& [owner, words] : all) {
+    try {
+      words(why);
+    } catch (...) {  // NOLINT: a failure here has no remedy
+    }
   }
 }
 
@@ -125,12 +131,16 @@ void report_uncaught() {
 void report_mpi_errors() {
   constexpr std::size_t enough = 1U << 18;
   reserve() = std::make_unique<char[]>(enough);  // NOLINT
+  for (const MPI_Comm comm : {MPI_COMM_WORLD, MPI_COMM_SELF}) report_mpi_errors(comm);
+}
+
+void report_mpi_errors(MPI_Comm comm) {
   MPI_Errhandler handler = MPI_ERRHANDLER_NULL;
   MPI_Comm_create_errhandler(report_mpi_error, &handler);
-  for (const MPI_Comm comm : {MPI_COMM_WORLD, MPI_COMM_SELF})
-    MPI_Comm_set_errhandler(comm, handler);
+  MPI_Comm_set_errhandler(comm, handler);
   MPI_Errhandler_free(&handler);
-  if (size(MPI_COMM_WORLD) > 1) MPI_Comm_dup(MPI_COMM_WORLD, &failures);
+  if (failures == MPI_COMM_NULL && size(MPI_COMM_WORLD) > 1)
+    MPI_Comm_dup(MPI_COMM_WORLD, &failures);
 }
 
 void forget_mpi() {

@@ -3,6 +3,8 @@
 /// exit code.
 #pragma once
 
+#include <mpi.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -27,11 +29,13 @@ class OptionFailed : public std::runtime_error {
 /// The terminate handler: reports the exception in flight and leaves.
 [[noreturn]] void report_uncaught();
 
-/// Calls the function set by set_last_words(), if any, once.
+/// Calls all last words (LastWords), once.
 void say_last_words(const std::string& why) noexcept;
 
 /// Makes errors of MPI end the process with one line. Call after MPI_Init.
 void report_mpi_errors();
+/// The same for errors in calls on one communicator only.
+void report_mpi_errors(MPI_Comm comm);
 /// Frees the communicator for failures. Call before MPI_Finalize.
 void forget_mpi();
 

@@ -1,4 +1,5 @@
 #include "floe/session/session.h"
+#include "floe/session/solver_options.h"
 
 #include <algorithm>
 #include <array>
@@ -53,10 +54,32 @@ Mpi::Mpi(int& argc, char**& argv) {
   report_mpi_errors();
 }
 
+Mpi::Mpi(Guest) {
+  set_failure_handler(throw_known_failure);
+  int running = 0;
+  MPI_Initialized(&running);
+  is_ours_ = running == 0;
+  if (is_ours_) {
+    prepare_one_process();
+    MPI_Init(nullptr, nullptr);
+    if (size(MPI_COMM_WORLD) > 1) ask_for_short_turns();
+  }
+  MPI_Comm_dup(MPI_COMM_WORLD, &messages_);
+  report_mpi_errors(messages_);
+  PETSC_COMM_WORLD = messages_;
+}
+
 Mpi::~Mpi() {
   if (mpi_is_given_up()) end_at_once(exit_failed);
   forget_mpi();
-  MPI_Finalize();
+  if (messages_ != MPI_COMM_NULL) {
+    int ended = 0;
+    MPI_Finalized(&ended);
+    if (ended != 0) return;
+    MPI_Comm_free(&messages_);
+    PETSC_COMM_WORLD = MPI_COMM_NULL;
+  }
+  if (is_ours_) MPI_Finalize();
 }
 
 namespace {
@@ -79,11 +102,11 @@ class Without {
   std::optional<std::string> value_;
 };
 
-/// Puts PETSc's options into PETSc's table. Call before PetscInitialize, which acts on some of
-/// them.
+/// Puts PETSc's options into a table of PETSc; null: the process's, before PetscInitialize, which
+/// acts on some of them.
 /// \return the options in the table
 /// \throws InputError for more than 400 options or a refused value
-GivenOptions put_petsc_options(const UserOptions& user) {
+GivenOptions put_petsc_options(const UserOptions& user, PetscOptions table) {
   constexpr std::size_t most = 400;  // PETSc 3.18 holds at most 512
   GivenOptions put;
   std::string problem;
@@ -93,7 +116,7 @@ GivenOptions put_petsc_options(const UserOptions& user) {
     put[name] = given;
     if (put.size() > most)
       throw InputError(name + ": more than " + std::to_string(most) + " options of PETSc's");
-    check(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
+    check(PetscOptionsSetValue(table, ("-" + name).c_str(),
                                given.value.empty() ? nullptr : given.value.c_str()));
   }
   for (const auto& [name, given] : put) {
@@ -102,7 +125,6 @@ GivenOptions put_petsc_options(const UserOptions& user) {
   }
   throw_verdict(problem, MPI_COMM_WORLD);
   note_petsc_files(put);
-  check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
   return put;
 }
 
@@ -133,16 +155,19 @@ PetscErrorCode print_for_petsc(std::FILE* file, const char* format, std::va_list
 
 }  // namespace
 
-Session::Session(const char* program, const UserOptions& user) : program_(program) {
-  const GivenOptions options = put_petsc_options(user);
+Session::Session(const char* program, const UserOptions& user, bool handles_crashes)
+    : program_(program) {
+  const GivenOptions options = put_petsc_options(user, nullptr);
+  check(PetscOptionsSetValue(nullptr, "-skip_petscrc", nullptr));
   const bool by_petsc = wants_petsc_handlers(options);
-  const bool by_system = options.contains("no_signal_handler");
+  const bool by_system = options.contains("no_signal_handler") || !handles_crashes;
+  if (!handles_crashes) check(PetscOptionsSetValue(nullptr, "-no_signal_handler", nullptr));
   set_solver_options(options);
   const Without variable("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
   words_[0] = program_.data();
   word_ = words_.data();
   int count = 1;
-  if (by_petsc || by_system) leave_crashes_to_the_system();
+  if (handles_crashes && (by_petsc || by_system)) leave_crashes_to_the_system();
   // Before PetscInitialize, which reads options and whose own handler prints a page. A handler that
   // -on_error_... names is put on top of this one.
   keep_petsc_messages();
@@ -161,6 +186,58 @@ Session::~Session() {
   (void)PetscOptionsHasName(nullptr, nullptr, "-options_left", &given);
   if (given == PETSC_FALSE) (void)PetscOptionsSetValue(nullptr, "-options_left", "no");
   (void)PetscFinalize();
+}
+
+/// Whether PETSc acts on an option at its start or end only.
+bool is_of_the_process(std::string_view name) {
+  constexpr std::array words{"citations",         "get_total_flops",  "mpidump",    "objects_dump",
+                             "no_signal_handler", "stack_view",       "checkstack", "info",
+                             "start_in_debugger", "stop_for_debugger"};
+  constexpr std::array families{"log_", "malloc", "on_error_", "fp_", "options_", "memory_"};
+  const auto begins = [&](const char* family) { return name.starts_with(family); };
+  return std::find(words.begin(), words.end(), name) != words.end() ||
+         std::any_of(families.begin(), families.end(), begins);
+}
+
+SolverOptions::SolverOptions(const UserOptions& user) {
+  UserOptions taken = user;
+  for (GivenOptions* from : {&taken.environment, &taken.checkpoint})
+    std::erase_if(*from, [](const auto& option) { return is_of_the_process(option.first); });
+  for (const auto& [name, given] : taken.merged()) {
+    if (is_petsc_option(name) && is_of_the_process(name))
+      throw InputError(name +
+                       ": PETSc takes it once in a process, at its start: the program floe "
+                       "has it");
+  }
+  PetscOptions table = nullptr;
+  check(PetscOptionsCreate(&table));
+  table_ = table;
+  try {
+    given_ = put_petsc_options(taken, table);
+  } catch (...) {
+    (void)PetscOptionsDestroy(&table);
+    throw;
+  }
+  good_ = given_.empty();
+}
+
+SolverOptions::~SolverOptions() {
+  auto table = static_cast<PetscOptions>(table_);
+  int ended = 0;
+  MPI_Finalized(&ended);
+  if (ended == 0) (void)PetscOptionsDestroy(&table);
+}
+
+SolverOptions::Use::Use(SolverOptions& options) : options_(options) {
+  set_solver_options(options.given_);
+  if (options.good_) solver_options_are_good();
+  check(PetscOptionsPush(static_cast<PetscOptions>(options.table_)));
+}
+
+SolverOptions::Use::~Use() {
+  (void)PetscOptionsPop();
+  options_.good_ = !solver_options_are_doubtful();
+  set_solver_options({});
 }
 
 }  // namespace floe

@@ -57,6 +57,7 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
                         .options = scene.options_yaml,
                         .scene = scene.path,
                         .wall_time = scene.checkpoint.wall_time,
+                        .wants_pause = hooks.wants_pause,
                         .prepare = hooks.prepare,
                         .others = hooks.others};
   if constexpr (std::is_same_v<Space, Spatial>) {
@@ -65,6 +66,7 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
   }
   if (scene.forces.contact) options.balance = hooks.balance;
   options.supply = hooks.supply;
+  options.remake = hooks.remake;
   options.safety = scene.time.safety;
   options.allow_unstable = scene.time.allow_unstable;
   return make_explicit_run(model, options, std::move(observer));

@@ -1,9 +1,17 @@
 // A scene's run, from the lock of its folder to its summary.
 #include "floe/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
+#include <type_traits>
+
+#include "base/collectives.h"
+#include "base/union_find.h"
+#include "contact_force/contact.h"
+#include "explicit/explicit_ts_options.h"
 
 #include "files/files.h"
 #include "files/run_log.h"
@@ -12,14 +20,16 @@
 #include "floe/beams/moduli.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"
+#include "floe/scene/restart.h"
 #include "floe/session/session.h"
 #include "floe/session/unused_options.h"
 #include "floe/session/version.h"
+#include "forces/program_force.h"
 #include "lattice/packed_lattice.h"
 #include "output/output.h"
+#include "run/dynamic_run.h"
 #include "run/run.h"
 #include "run_folder/run_folder.h"
-#include "scene/restart.h"
 #include "scene_model/scene_model.h"
 #include "scene_model/supplied_ice.h"
 #include "session/run_place.h"
@@ -102,11 +112,29 @@ struct Setting {
   }
 };
 
+/// Whether a run of the scene may go back to a saved state.
+bool can_go_back(const Scene& scene) {
+  return scene.integrator == Integrator::explicit_ && !scene.check_only && !scene.supply.on;
+}
+
+bool is_coupled(const Setting& setting, const std::string& obstacle) {
+  const std::vector<std::string>& names = setting.settings.coupled;
+  return std::find(names.begin(), names.end(), obstacle) != names.end();
+}
+
 /// The scene's claim to its output folder.
 FolderWish wish_of(const Scene& scene) {
   return {scene.output.dir, scene.path, scene.inputs, scene.output.overwrite,
           !scene.checkpoint.restart.empty()};
 }
+
+/// Of one simulation.
+class KeptState final : public SavedState {
+ public:
+  const void* of = nullptr;
+  std::unique_ptr<const RunState> run;
+  std::optional<OutputState> output;  ///< none: no file was written
+};
 
 /// The model of a simulation and its run, in space or in the plane.
 class Running {
@@ -118,6 +146,17 @@ class Running {
   virtual double time() const = 0;
   virtual std::vector<BodyState> bodies() const = 0;
   virtual const Part& part() const = 0;
+  virtual const RunResult& outcome() const = 0;
+  virtual BodyTable all_bodies() const = 0;
+  virtual BeamTable beams() const = 0;
+  virtual std::vector<ContactOfPair> contacts() = 0;
+  virtual Columns columns() = 0;
+  virtual std::vector<ObstacleNow> obstacles() = 0;
+  virtual void drive(std::size_t k, const PlaceAndMotion& to, std::optional<double> until) = 0;
+  virtual void apply(std::size_t structure, const Vec3<double>& force,
+                     const Vec3<double>& moment) = 0;
+  virtual std::shared_ptr<const SavedState> save() = 0;
+  virtual void restore(const SavedState& state) = 0;
 };
 
 template <class Space>
@@ -131,13 +170,29 @@ class RunningIn final : public Running {
   double time() const override { return run_->time(); }
   std::vector<BodyState> bodies() const override;
   const Part& part() const override { return model_->part(); }
+  const RunResult& outcome() const override { return run_->outcome(); }
+  BodyTable all_bodies() const override;
+  BeamTable beams() const override;
+  std::vector<ContactOfPair> contacts() override;
+  Columns columns() override;
+  std::vector<ObstacleNow> obstacles() override;
+  void drive(std::size_t k, const PlaceAndMotion& to, std::optional<double> until) override;
+  void apply(std::size_t structure, const Vec3<double>& force, const Vec3<double>& moment) override;
+  std::shared_ptr<const SavedState> save() override;
+  void restore(const SavedState& state) override;
 
  private:
+  const State<Space>* state() const;
+  std::int32_t body_of(std::size_t structure) const {
+    return model_->part().global_bodies - static_cast<std::int32_t>(scene_.structures.size()) +
+           static_cast<std::int32_t>(structure);
+  }
   void open(const std::vector<std::string>& columns);
   void prepare_output(const std::vector<std::string>& columns) {
     if (!output_) open(columns);
   }
   void equip(const Lattice& lattice);
+  void add_forces_of_program();
   void add_far_edge();
   void divide(const std::vector<std::int32_t>& owner);
   BalanceOptions balance();
@@ -177,6 +232,10 @@ class RunningIn final : public Running {
   std::optional<OutputArchive> restart_;  // history of the files to go on with, from a checkpoint
   std::optional<First<Space>> first_;
   const State<Space>* state_ = nullptr;  // of the last accepted state
+  Contact* contact_ = nullptr;           // null without contact
+  bool keeps_contacts_ = false;          // of contacts the forces
+  std::shared_ptr<std::vector<AppliedWrench>> applied_ =
+      std::make_shared<std::vector<AppliedWrench>>();
   std::unique_ptr<Run> run_;
 };
 
@@ -210,6 +269,10 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
                    .others = [this](Archive& archive) { persist(archive); },
                    .balance = std::move(balance),
                    .supply = supply(),
+                   .remake = setting_.settings.goes_back && can_go_back(scene_)
+                                 ? [this](const std::vector<std::int32_t>& owner) { divide(owner); }
+                                 : std::function<void(const std::vector<std::int32_t>&)>{},
+                   .wants_pause = setting_.settings.wants_pause,
                    .loads = &loads_},
                   [this](const Accepted<Space>& accepted) { observe(accepted); });
 }
@@ -218,8 +281,23 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
 template <class Space>
 void RunningIn<Space>::equip(const Lattice& lattice) {
   add_forces(scene_, loads_, *model_, &lattice);
+  if constexpr (std::is_same_v<Space, Spatial>) add_forces_of_program();
   add_far_edge();
-  add_contact(scene_, lattice, *model_);
+  contact_ = add_contact(scene_, lattice, *model_);
+}
+
+/// Adds the forces of the program that made the simulation.
+template <class Space>
+void RunningIn<Space>::add_forces_of_program() {
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    const bool first = applied_->empty();
+    for (std::size_t k = 0; k < scene_.structures.size(); ++k)
+      if (first && is_coupled(setting_, scene_.obstacles[scene_.structures[k].obstacle].name))
+        applied_->push_back({.body = body_of(k)});
+    if (!applied_->empty()) model_->add_force(make_applied_wrenches(model_->part(), applied_));
+    for (const BodyForce& force : setting_.settings.forces)
+      model_->add_force(make_program_force(model_->part(), force));
+  }
 }
 
 /// Adds the ice behind the far edge, with impedances of the sheet's own lattice (model.md, "Ice
@@ -252,11 +330,11 @@ BalanceOptions RunningIn<Space>::balance() {
                          .divide = {}};
   const bool can_move = scene_.forces.contact && size() > 1 &&
                         scene_.integrator == Integrator::explicit_ && !scene_.check_only;
-  if (!can_move) return options;
+  if (!can_move && !(setting_.settings.goes_back && can_go_back(scene_))) return options;
   whole_ = setting_.lattice;
   packed_whole_.pack_shapes(whole_);
   packed_whole_.pack_beams(whole_);
-  options.divide = [this](const std::vector<std::int32_t>& owner) { divide(owner); };
+  if (can_move) options.divide = [this](const std::vector<std::int32_t>& owner) { divide(owner); };
   return options;
 }
 
@@ -471,6 +549,235 @@ std::vector<BodyState> RunningIn<Space>::bodies() const {
   return all;
 }
 
+/// The last accepted state; null before the first one.
+template <class Space>
+const State<Space>* RunningIn<Space>::state() const {
+  if (auto* moving = dynamic_cast<DynamicRun<Space>*>(run_.get())) return &moving->state();
+  return state_;
+}
+
+template <class Space>
+BodyTable RunningIn<Space>::all_bodies() const {
+  BodyTable table;
+  const State<Space>* now = state();
+  const Part& part = model_->part();
+  constexpr std::size_t width = 14;
+  std::vector<double> mine;
+  for (std::size_t b = 0; now != nullptr && b < static_cast<std::size_t>(part.owned); ++b) {
+    const Vec3<double> x = part.bodies.position[b] + displacement(*now, b), v = velocity(*now, b),
+                       w = angular_velocity(*now, b);
+    const Quat<double> q = rotation(*now, b);
+    mine.insert(mine.end(), {x.x, x.y, x.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z,
+                             part.bodies.mass[b]});
+  }
+  const std::vector<double> all = all_gathered(mine, part.comm);
+  const std::vector<std::int32_t> index = all_gathered(
+      std::vector<std::int32_t>(part.global.begin(), part.global.begin() + part.owned), part.comm);
+  const std::size_t n = all.size() / width;
+  table.position.resize(n), table.orientation.resize(n), table.velocity.resize(n);
+  table.spin.resize(n), table.mass.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double* v = &all[k * width];
+    item(table.position, index[k]) = {v[0], v[1], v[2]};
+    item(table.orientation, index[k]) = {v[3], v[4], v[5], v[6]};
+    item(table.velocity, index[k]) = {v[7], v[8], v[9]};
+    item(table.spin, index[k]) = {v[10], v[11], v[12]};
+    item(table.mass, index[k]) = v[13];
+  }
+  if (setting_.mesh.ice) {
+    const auto names = setting_.mesh.ice->names_of_bodies();
+    table.index.assign(names.begin(), names.end());
+  }
+  for (auto k = static_cast<std::int32_t>(table.index.size()); k < static_cast<std::int32_t>(n);
+       ++k)
+    table.index.push_back(k);
+  // Pieces that unbroken beams join
+  std::vector<std::int32_t> joined;
+  for (std::size_t m = 0; m < part.counts_here.size(); ++m) {
+    const bool is_broken = model_->fracture() != nullptr &&
+                           model_->fracture()->damage(static_cast<std::int32_t>(m)) >= 1;
+    if (!part.counts_here[m] || is_broken) continue;
+    for (const std::int32_t local : part.beams.bodies[m])
+      joined.push_back(item(part.global, local));
+  }
+  joined = all_gathered(joined, part.comm);
+  UnionFind pieces(n);
+  for (std::size_t k = 0; k + 1 < joined.size(); k += 2) pieces.unite(joined[k], joined[k + 1]);
+  const std::vector<std::int32_t> root = pieces.representatives();
+  std::vector<double> mass(n, 0);
+  for (std::size_t b = 0; b < n; ++b) item(mass, root[b]) += table.mass[b];
+  std::vector<std::int32_t> order;
+  for (std::size_t b = 0; b < n; ++b)
+    if (root[b] == static_cast<std::int32_t>(b)) order.push_back(root[b]);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto a, auto b) { return item(mass, a) > item(mass, b); });
+  std::vector<std::int32_t> number(n);
+  for (std::size_t k = 0; k < order.size(); ++k)
+    item(number, order[k]) = static_cast<std::int32_t>(k);
+  for (std::size_t b = 0; b < n; ++b) table.fragment.push_back(item(number, root[b]));
+  return table;
+}
+
+template <class Space>
+BeamTable RunningIn<Space>::beams() const {
+  BeamTable table;
+  const State<Space>* now = state();
+  const Part& part = model_->part();
+  if (now == nullptr || model_->beams() == nullptr) return table;
+  const std::vector<BeamSection> sections = model_->beams()->sections(*now);
+  constexpr std::size_t width = 7;
+  std::vector<std::int32_t> beams;  // global beam and its bodies
+  std::vector<double> values;
+  for (std::size_t m = 0; m < part.counts_here.size(); ++m) {
+    if (!part.counts_here[m]) continue;
+    const auto& [a, b] = part.beams.bodies[m];
+    beams.insert(beams.end(), {part.global_beam[m], item(part.global, a), item(part.global, b)});
+    values.insert(values.end(), sections[m].begin(), sections[m].end());
+    values.push_back(model_->fracture() != nullptr
+                         ? model_->fracture()->damage(static_cast<std::int32_t>(m))
+                         : 0);
+  }
+  beams = all_gathered(beams, part.comm);
+  values = all_gathered(values, part.comm);
+  const std::size_t n = beams.size() / 3;
+  table.bodies.resize(n), table.section.resize(n), table.damage.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::int32_t beam = beams[3 * k];
+    item(table.bodies, beam) = {beams[3 * k + 1], beams[3 * k + 2]};
+    std::copy_n(&values[k * width], 6, item(table.section, beam).begin());
+    item(table.damage, beam) = values[k * width + 6];
+  }
+  return table;
+}
+
+template <class Space>
+std::vector<ContactOfPair> RunningIn<Space>::contacts() {
+  Contact* role = contact_;
+  if (role == nullptr) return {};
+  if (!keeps_contacts_) {
+    keeps_contacts_ = true;
+    role->keep_contacts();
+    run_->forces_have_changed();
+  }
+  run_->know_forces();
+  constexpr std::size_t width = 14;
+  std::vector<double> mine;
+  for (const ContactOfPair& c : role->contacts_here())
+    mine.insert(mine.end(),
+                {static_cast<double>(c.a), static_cast<double>(c.b),
+                 static_cast<double>(c.obstacle), c.force.x, c.force.y, c.force.z, c.point.x,
+                 c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.volume, c.area});
+  const std::vector<double> rows = all_gathered(mine, model_->part().comm);
+  std::vector<ContactOfPair> all;
+  for (std::size_t k = 0; k < rows.size(); k += width) {
+    const double* v = &rows[k];
+    all.push_back({.a = static_cast<std::int32_t>(v[0]),
+                   .b = static_cast<std::int32_t>(v[1]),
+                   .obstacle = static_cast<std::int32_t>(v[2]),
+                   .force = {v[3], v[4], v[5]},
+                   .point = {v[6], v[7], v[8]},
+                   .normal = {v[9], v[10], v[11]},
+                   .volume = v[12],
+                   .area = v[13]});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const ContactOfPair& a, const ContactOfPair& b) {
+    return std::tie(a.a, a.b, a.obstacle) < std::tie(b.a, b.b, b.obstacle);
+  });
+  return all;
+}
+
+template <class Space>
+Columns RunningIn<Space>::columns() {
+  Columns now = run_->columns_now();
+  if (!now.empty() || !output_) return now;
+  return columns_of(output_->last());
+}
+
+template <class Space>
+std::vector<ObstacleNow> RunningIn<Space>::obstacles() {
+  Contact* role = contact_;
+  std::vector<ObstacleNow> all;
+  if (role == nullptr) return all;
+  run_->know_forces();
+  const auto wrenches = role->obstacle_wrenches();
+  const Part& part = model_->part();
+  const State<Space>& now = *state();
+  for (std::size_t k = 0; k < scene_.obstacles.size(); ++k) {
+    ObstacleNow& o = all.emplace_back();
+    o.name = scene_.obstacles[k].name;
+    o.coupled = is_coupled(setting_, o.name);
+    o.force = wrenches[k][0], o.moment = wrenches[k][1];
+    o.impulse = role->impulse(k);
+    for (std::size_t s = 0; s < scene_.structures.size(); ++s)
+      if (scene_.structures[s].obstacle == k) o.body = body_of(s);
+    if (o.body < 0) {
+      const DrivenMotion::Place place = role->place_of_obstacle(k, run_->time());
+      o.position = scene_.obstacles[k].point + place.way;
+      o.orientation = place.turn, o.velocity = place.rate, o.spin = place.spin;
+      continue;
+    }
+    std::array<double, 13> numbers{};
+    const std::int32_t local = part.local_index(o.body);
+    if (local >= 0 && local < part.owned) {
+      const auto b = static_cast<std::size_t>(local);
+      const Vec3<double> x = part.bodies.position[b] + displacement(now, b), v = velocity(now, b),
+                         w = angular_velocity(now, b);
+      const Quat<double> q = rotation(now, b);
+      numbers = {x.x, x.y, x.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z};
+    }
+    const auto n = sum_over_ranks(numbers, part.comm);
+    o.position = {n[0], n[1], n[2]};
+    o.orientation = {n[3], n[4], n[5], n[6]};
+    o.velocity = {n[7], n[8], n[9]}, o.spin = {n[10], n[11], n[12]};
+  }
+  return all;
+}
+
+template <class Space>
+void RunningIn<Space>::drive(std::size_t k, const PlaceAndMotion& to, std::optional<double> until) {
+  Contact* role = contact_;
+  const double now = run_->time();
+  DrivenMotion motion{.from = now, .until = now, .start = {}, .end = {}};
+  motion.end = {.way = to.position - scene_.obstacles[k].point,
+                .turn = normalised(to.orientation),
+                .rate = to.velocity,
+                .spin = to.spin};
+  motion.start = motion.end;
+  if (until) {
+    motion.until = *until;
+    motion.start = role->place_of_obstacle(k, now);
+  }
+  role->drive(k, motion);
+  run_->forces_have_changed();
+}
+
+template <class Space>
+void RunningIn<Space>::apply(std::size_t structure, const Vec3<double>& force,
+                             const Vec3<double>& moment) {
+  for (AppliedWrench& wrench : *applied_)
+    if (wrench.body == body_of(structure)) wrench.force = force, wrench.moment = moment;
+  run_->forces_have_changed();
+}
+
+template <class Space>
+std::shared_ptr<const SavedState> RunningIn<Space>::save() {
+  auto saved = std::make_shared<KeptState>();
+  saved->of = this;
+  saved->run = run_->save();
+  if (output_) saved->output = output_->save();
+  return saved;
+}
+
+template <class Space>
+void RunningIn<Space>::restore(const SavedState& state) {
+  const auto* kept = dynamic_cast<const KeptState*>(&state);
+  if (kept == nullptr || kept->of != this)
+    throw InputError("restore: the state is of another simulation");
+  run_->restore(*kept->run);
+  if (keeps_contacts_) contact_->keep_contacts();
+  if (output_) output_->restore(kept->output.value_or(OutputState{}));
+}
+
 }  // namespace
 
 struct Simulation::Impl : Setting {
@@ -478,16 +785,22 @@ struct Simulation::Impl : Setting {
   std::unique_ptr<Running> running;
   std::optional<Results> results;
   bool prepared = false, ended = false;
+  std::optional<LastWords> last_words;
 
   Impl(Scene given, const SimulationSettings& with);
   ~Impl();
+  void take_coupling();
+  std::size_t coupled_obstacle(const std::string& name) const;
+  std::optional<std::size_t> structure_of(std::size_t obstacle) const;
+  bool prepare();
+  Running& prepared_run();
   void lock();
   void make_lattice_and_choose_model();
   bool advance(double until);
   const Results& end();
   void note_failure(const Verdict& why, bool failed) {
     if (folder && rank() == 0 && (folder->has_begun() || failed)) folder->fail(why.what());
-    set_last_words({});
+    last_words.reset();
     ended = true;
   }
   void say_that_it_is_valid();
@@ -496,6 +809,9 @@ struct Simulation::Impl : Setting {
   auto guarded(Work&& work) {
     try {
       return work();
+    } catch (const CallbackFailed&) {
+      if (running == nullptr) ended = true;
+      throw;  // the run may go on
     } catch (const RunFailed& error) {
       note_failure(error, true);
       throw;
@@ -511,6 +827,8 @@ Simulation::Impl::Impl(Scene given, const SimulationSettings& with) {
   settings = with;
   if (settings.began == 0) settings.began = MPI_Wtime();
   guarded([&] {
+    check_reports(scene);
+    take_coupling();
     if (!scene.check_only) lock();
     make_lattice_and_choose_model();
     if (choice.planar) {
@@ -524,12 +842,11 @@ Simulation::Impl::Impl(Scene given, const SimulationSettings& with) {
 Simulation::Impl::~Impl() {
   if (folder && folder->has_begun() && !results && !ended && rank() == 0)
     folder->fail("ended by the program that made it");
-  set_last_words({});
 }
 
 void Simulation::Impl::lock() {
   folder.emplace(wish_of(scene), PETSC_COMM_WORLD);
-  set_last_words([this](const std::string& why) {
+  last_words.emplace([this](const std::string& why) {
     if (folder && (folder->has_begun() || run_place().code == exit_failed)) {
       folder->fail(why);
     } else {
@@ -558,15 +875,67 @@ void Simulation::Impl::make_lattice_and_choose_model() {
   if (mesh.strength) say("strength: " + text_of(*mesh.strength) + "\n");
 }
 
-bool Simulation::Impl::advance(double until) {
+bool Simulation::Impl::prepare() {
   if (ended) return false;
   return guarded([&] {
     if (!prepared) ended = !running->prepare();
     prepared = true;
     if (ended && scene.check_only) say_that_it_is_valid();
-    ended = ended || !running->advance(until);
     return !ended;
   });
+}
+
+bool Simulation::Impl::advance(double until) {
+  if (!prepare()) return false;
+  return guarded([&] {
+    ended = !running->advance(until);
+    return !ended;
+  });
+}
+
+/// The run, once it is prepared and has not been brought to its end by results().
+Running& Simulation::Impl::prepared_run() {
+  if (!prepared) (void)prepare();
+  if (results) throw InputError("the simulation has been brought to its end");
+  return *running;
+}
+
+/// Checks what the program moves and loads, and marks it.
+void Simulation::Impl::take_coupling() {
+  if (settings.coupled.empty() && settings.forces.empty()) return;
+  if (scene.integrator != Integrator::explicit_ || explicit_type() != "leapfrog")
+    throw InputError(
+        "a program moves obstacles and gives forces only with integrator: explicit "
+        "by leapfrog");
+  for (const std::string& name : settings.coupled) {
+    const std::size_t k = coupled_obstacle(name);
+    if (!structure_of(k)) scene.obstacles[k].motion.is_driven = true;
+  }
+  if (settings.forces.empty()) return;
+  if (scene.planar == Planarity::always)
+    throw InputError("model: planar: forces of a program act in space");
+  scene.planar = Planarity::never;
+}
+
+/// Number of a coupled obstacle. \throws InputError if there is none
+std::size_t Simulation::Impl::coupled_obstacle(const std::string& name) const {
+  std::string known;
+  for (std::size_t k = 0; k < scene.obstacles.size(); ++k) {
+    known += (k > 0 ? ", " : "") + scene.obstacles[k].name;
+    if (scene.obstacles[k].name != name) continue;
+    if (is_coupled(*this, name)) return k;
+    throw InputError("coupled: obstacle '" + name +
+                     "' is not coupled: name it when the simulation "
+                     "is made");
+  }
+  throw InputError("coupled: '" + name + "' is no obstacle of the scene (" +
+                   (known.empty() ? "it has none" : known) + ")");
+}
+
+std::optional<std::size_t> Simulation::Impl::structure_of(std::size_t obstacle) const {
+  for (std::size_t s = 0; s < scene.structures.size(); ++s)
+    if (scene.structures[s].obstacle == obstacle) return s;
+  return {};
 }
 
 void Simulation::Impl::say_that_it_is_valid() {
@@ -603,5 +972,61 @@ const Results& Simulation::results() { return impl_->end(); }
 double Simulation::time() const { return impl_->running->time(); }
 const Scene& Simulation::scene() const { return impl_->scene; }
 std::vector<BodyState> Simulation::bodies() const { return impl_->running->bodies(); }
+
+bool Simulation::prepare() { return impl_->prepare(); }
+double Simulation::dt() const { return impl_->running->outcome().dt; }
+bool Simulation::has_ended() const { return impl_->ended; }
+const RunResult& Simulation::outcome() const {
+  return impl_->results ? impl_->results->run : impl_->running->outcome();
+}
+BodyTable Simulation::all_bodies() const { return impl_->running->all_bodies(); }
+BeamTable Simulation::beams() const { return impl_->running->beams(); }
+std::vector<ContactOfPair> Simulation::contacts() { return impl_->prepared_run().contacts(); }
+std::vector<std::pair<std::string, double>> Simulation::columns() {
+  return impl_->prepared_run().columns();
+}
+std::vector<ObstacleNow> Simulation::obstacles() { return impl_->prepared_run().obstacles(); }
+std::vector<std::string> Simulation::obstacle_names() const {
+  std::vector<std::string> names;
+  for (const Obstacle& obstacle : impl_->scene.obstacles) names.push_back(obstacle.name);
+  return names;
+}
+
+void Simulation::prescribe(const std::string& obstacle, const PlaceAndMotion& to,
+                           std::optional<double> until) {
+  const std::size_t k = impl_->coupled_obstacle(obstacle);
+  const Obstacle& o = impl_->scene.obstacles[k];
+  if (impl_->structure_of(k))
+    throw InputError("prescribe: obstacle '" + obstacle + "' has a mass: forces move it (apply)");
+  const Quat<double>& q = to.orientation;
+  const bool turns = length(to.spin) > 0 || q.x != 0 || q.y != 0 || q.z != 0;
+  if (o.is_half_space() && turns)
+    throw InputError("prescribe: obstacle '" + obstacle + "' is a half-space, which does not turn");
+  Running& run = impl_->prepared_run();
+  if (until && !(*until > run.time()))
+    throw InputError("prescribe: until " + std::to_string(*until) + " must be > " +
+                     std::to_string(run.time()) + " [s], the present time");
+  run.drive(k, to, until);
+}
+
+void Simulation::apply(const std::string& obstacle, const Vec3<double>& force,
+                       const Vec3<double>& moment) {
+  const auto structure = impl_->structure_of(impl_->coupled_obstacle(obstacle));
+  if (!structure)
+    throw InputError("apply: obstacle '" + obstacle +
+                     "' has no mass: its motion is prescribed (prescribe)");
+  impl_->prepared_run().apply(*structure, force, moment);
+}
+
+std::shared_ptr<const SavedState> Simulation::save() {
+  if (!impl_->settings.goes_back)
+    throw InputError("save: the simulation was made without goes_back");
+  return impl_->prepared_run().save();
+}
+
+void Simulation::restore(const SavedState& state) {
+  impl_->prepared_run().restore(state);
+  impl_->ended = false;
+}
 
 }  // namespace floe

@@ -104,6 +104,23 @@ class Installed(launch.FolderTest):
                 for place in (REPOSITORY, BUILD, self.folder / "first"):
                     self.assertNotIn(str(place).encode(), text, path)
 
+    def test_python(self):
+        """The package that was installed, and no other, runs a scene."""
+        packages = self.prefix / "lib/python3/dist-packages"
+        if not list(packages.glob("floe/_floe*.so")):
+            self.skipTest("the Python module is not built")
+        script = ("import floe; floe.Simulation(floe.Scene(sys.argv[1])).run().close(); "
+                  "print(floe.__file__)")
+        done = subprocess.run(["/usr/bin/python3", "-c", "import sys; " + script,
+                               self.prefix / "share/floe/input/tension.yaml"], cwd=self.folder,
+                              env={**ENVIRONMENT, "PYTHONPATH": str(packages),
+                                   "PYTHONDONTWRITEBYTECODE": "1"},
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.strip(), str(packages / "floe/__init__.py"))
+        summary = json.loads((self.folder / "out/tension/summary.json").read_text())
+        self.assertEqual(summary["status"], "done")
+
     def test_library(self):
         example = self.prefix / "share/doc/floe/examples/measure_lattice"
         build = self.folder / "build"

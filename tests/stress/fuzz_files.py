@@ -51,8 +51,8 @@ def lay_lattices(folder):
     fl.strip(4.0, 5, fl.Section(0.8, 0.5), 1010.0).write(folder / "strip.h5")
     fl.stack(3, [1, 1, 0.5], 0.01).write(folder / "stack.h5")
     fl.blocks([[1, 1, 1]], [[0, 0, 0]]).write(folder / "o.h5")
-    hull = hull.Hull(6, 2, 0.6, 1, 35)
-    (folder / "hull.stl").write_bytes(hull.stl(hull.triangles(200), "hull"))
+    ship = hull.Hull(6, 2, 0.6, 1, 35)
+    (folder / "hull.stl").write_bytes(hull.stl(ship.triangles(200), "hull"))
     (folder / "elbow.obj").write_text(ELBOW)
     (folder / "tug.csv").write_text("time, vx, vy\n0, 0, 0\n0.01, 0.7, 0\n0.02, 0.5, 0.5\n")
 

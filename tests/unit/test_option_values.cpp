@@ -3,9 +3,9 @@
 
 #include <map>
 #include "floe/options/options.h"
+#include "floe/scene/keys.h"
 #include "options/option_names.h"
 #include "options/option_values.h"
-#include "scene/keys.h"
 #include "support/scene_options.h"
 
 namespace floe {

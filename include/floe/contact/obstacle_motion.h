@@ -4,6 +4,9 @@
 /// Notation: r ramp, R its integral, v velocity, w angular velocity, a amplitude, f frequency.
 #pragma once
 
+#include <optional>
+
+#include "floe/base/driven_motion.h"
 #include "floe/base/motion_table.h"
 #include "floe/base/ramp.h"
 #include "floe/base/rotation.h"
@@ -19,7 +22,9 @@ struct ObstacleMotion {
   Vec3<double> amplitude{};         ///< of the harmonic part, after the ramp [m]
   double frequency = 0;             ///< of the harmonic part [Hz]
   Ramp ramp{};
-  MotionTable table{};  ///< in place of these; empty: none
+  MotionTable table{};                   ///< in place of these; empty: none
+  bool is_driven = false;                ///< whether a program may move it
+  std::optional<DrivenMotion> driven{};  ///< in place of all others, once a program has
 
   Vec3<double> way(double time) const;   ///< displacement of the origin since time 0 [m]
   Vec3<double> rate(double time) const;  ///< velocity of the origin [m/s], from the right

@@ -41,4 +41,10 @@ CommandLine read_command_line(int argc, const char* const* argv);
 UserOptions options_of(const CommandLine& line,
                        const std::function<std::string(const std::string&)>& near_to = {});
 
+/// As options_of(), for a scene that is a text instead of a file. Messages name no lines.
+/// \param name  of the scene, for messages
+/// \throws InputError as options_of()
+UserOptions options_of_text(const CommandLine& line, const std::string& name,
+                            const std::string& text);
+
 }  // namespace floe

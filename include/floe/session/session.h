@@ -2,6 +2,8 @@
 /// The lifetimes of MPI and PETSc, and the end of a process.
 #pragma once
 
+#include <mpi.h>
+
 #include <array>
 #include <functional>
 #include <string>
@@ -10,26 +12,43 @@
 
 namespace floe {
 
-/// Sets the function that a rank calls last, with the printed line, when it ends on an uncaught
-/// error. The function must neither fail nor wait for other ranks. An empty function removes it.
-void set_last_words(std::function<void(const std::string&)> last_words);
+/// A function that a rank calls last, with the printed line, when it ends on an uncaught error,
+/// while this object lives. The function must neither fail nor wait for other ranks.
+class LastWords {
+ public:
+  explicit LastWords(std::function<void(const std::string&)> words);
+  ~LastWords();
+  LastWords(const LastWords&) = delete;
+  LastWords& operator=(const LastWords&) = delete;
+};
 
 /// Holds MPI from construction to destruction, and installs the terminate handler (print, last
 /// words, MPI_Abort).
 class Mpi {
  public:
+  /// A process that another program rules, for example an interpreter.
+  struct Guest {};
+
   Mpi(int& argc, char**& argv);
+  /// Initialises MPI only if nobody has, and finalises it only then; installs no handlers of
+  /// crashes and of uncaught exceptions. Floe's messages get a communicator of their own.
+  explicit Mpi(Guest);
   ~Mpi();
   Mpi(const Mpi&) = delete;
   Mpi& operator=(const Mpi&) = delete;
+
+ private:
+  bool is_ours_ = true;                ///< whether MPI was initialised here
+  MPI_Comm messages_ = MPI_COMM_NULL;  ///< of a guest
 };
 
 /// Holds PETSc from construction to destruction, with the options of PETSc's families among `user`.
 /// PETSc reads no other options: neither petscrc files nor PETSC_OPTIONS (see read_environment).
-/// \param program  name of the program, argv[0]
 class Session {
  public:
-  explicit Session(const char* program, const UserOptions& user = {});
+  /// \param program  name of the program, argv[0]
+  /// \param handles_crashes  whether signals of a crash end the process with one line
+  explicit Session(const char* program, const UserOptions& user = {}, bool handles_crashes = true);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;

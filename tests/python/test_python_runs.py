@@ -1,0 +1,193 @@
+#!/usr/bin/python3
+"""Runs through Python are those of the command, however they are stepped and looked at."""
+import json
+import unittest
+
+from in_python import PythonTest
+from scenes import CONE, LEG, assert_same_run
+
+STEPPED = """
+    samples = []
+    with floe.Simulation(floe.Scene("s.yaml", output_dir="python")) as sim:
+        for _ in sim.run(every=0.05):
+            cone = sim["cone"]
+            samples.append((sim.time, *cone.wrench.force, *cone.impulse, *cone.pose.position,
+                            len(sim.contacts.area), sim.energies["kinetic"],
+                            int(sim.beams.broken.sum()), sim.bodies.fragment.max()))
+        assert sim.ended and sim.outcome["done"]
+    if floe.rank() == 0:
+        print(samples)
+"""
+
+
+class SameAsTheCommand(PythonTest):
+    def compare(self, scene, ranks):
+        self.scene(scene)
+        self.floe("s.yaml", "-output_dir", "command", ranks=ranks)
+        out = self.python(STEPPED, ranks=ranks)
+        assert_same_run(self, self.folder / "command", self.folder / "python")
+        one, two = (json.loads((self.folder / name / "summary.json").read_text())
+                    for name in ("command", "python"))
+        for key in ("steps", "dt", "energy", "bodies", "beams", "time"):
+            self.assertEqual(one[key], two[key], key)
+        rows = [row for row in eval(out)]
+        self.assertEqual([round(row[0], 9) for row in rows],
+                         [round(0.05 * k, 9) for k in range(1, 9)])
+        return rows
+
+    def test_one_rank(self):
+        rows = self.compare(CONE, 1)
+        # What Python sees is the rows of the run.
+        lines = (self.folder / "python/history.csv").read_text().splitlines()
+        names = lines[0].split(",")
+        last = dict(zip(names, map(float, lines[-1].split(","))))
+        time, fx, fy, fz, ix, iy, iz = rows[-1][:7]
+        for name, value in (("time", time), ("cone_force_x", fx), ("cone_force_y", fy),
+                            ("cone_force_z", fz), ("contacts", rows[-1][10]),
+                            ("energy_kinetic", rows[-1][11]), ("beams_broken", rows[-1][12]),
+                            ("fragments", rows[-1][13] + 1)):
+            self.assertAlmostEqual(value, last[name], delta=1e-11 * max(1, abs(last[name])),
+                                   msg=name)
+        self.assertGreater(last["cone_force_x"], 1e3)
+        self.assertGreater(last["beams_broken"], 3)
+        self.assertAlmostEqual(ix / 0.4, last["cone_mean_force_x"],
+                               delta=1e-9 * abs(last["cone_mean_force_x"]))
+
+    def test_two_ranks(self):
+        self.compare(LEG, 2)
+
+    def test_implicit_and_static(self):
+        """Other integrators can be stepped and looked at as well."""
+        scenes = {"implicit": "integrator: implicit\nforces: [beam, gravity, buoyancy]\n"
+                              "time: {end: 0.02, dt: 0.001}\n",
+                  "static": "forces: [beam]\ntime: {end: 1, dt: 0.25}\nboundary: {names: [a, b], "
+                            "a: {set: left, fix: x y z rx ry rz}, b: {set: right, fix: x, "
+                            "displacement: [0.01, 0, 0], ramp: 1}}\n"}
+        for name, scene in scenes.items():
+            with self.subTest(name):
+                self.scene(scene + "sheet: {length: 8, thickness: 1, element_size: 2, "
+                                   "iterations: 5}\n", name + ".yaml")
+                self.floe(name + ".yaml", "-output_dir", name)
+                out = self.python(f"""
+                    with floe.Simulation(floe.Scene("{name}.yaml", output_dir="p_{name}")) as sim:
+                        end = sim.end
+                        for _ in sim.run(every=end / 4):
+                            energies = sim.energies
+                        print(len(sim.bodies.index), len(sim.beams.damage), len(sim.contacts.area),
+                              sorted(energies))
+                        try:
+                            sim.save()
+                        except floe.InputError as error:
+                            print(error)
+                """)
+                self.assertIn("save: only runs with integrator: explicit", out)
+                self.assertIn("beam", out)
+                self.assertEqual((self.folder / name / "history.csv").read_bytes(),
+                                 (self.folder / f"p_{name}" / "history.csv").read_bytes())
+
+
+class Scenes(PythonTest):
+    def test_dicts_are_the_file(self):
+        """A scene of dicts makes the run of the same text, and its messages."""
+        self.scene(CONE)
+        out = self.python("""
+            import yaml
+            keys = yaml.safe_load(open("s.yaml").read().replace("1e", "1.0e+").replace(
+                "2e-4", "2.0e-4").replace("1.0e+-", "1.0e-"))
+            def numbers(x):
+                if isinstance(x, dict):
+                    return {k: numbers(v) for k, v in x.items()}
+                if isinstance(x, str) and x.replace(".", "").replace("e", "").replace(
+                        "+", "").replace("-", "").isdigit():
+                    return float(x)
+                return x
+            keys = numbers(keys)
+            a = floe.Scene(keys, name="s", time={"end": 0.01})
+            b = floe.Scene("s.yaml", time_end=0.01)
+            assert a.yaml == b.yaml, (a.yaml, b.yaml)
+            assert a.name == b.name == "s" and a.output == "out/s" and a.obstacles == ["cone"]
+            print(a.check())
+            for change in ({"sheet": {"lenght": 3}}, {"time": {"end": -1}},
+                           {"forces": ["beams"]}, {"sheet": {"length": [1, 2]}}):
+                try:
+                    floe.Scene({**keys, **change})
+                except floe.InputError as error:
+                    print(error)
+            try:
+                floe.Scene("s.yaml", sheet_seed=1.5)
+            except ValueError as error:
+                print(error)
+            try:
+                floe.Scene("none.yaml")
+            except floe.InputError as error:
+                print(error)
+        """)
+        self.assertIn("'bodies': ", out)
+        for line in ("sheet: lenght", "time: end: -1", "forces: ", "sheet: length: ",
+                     "sheet: seed: 1.5", "none.yaml"):
+            self.assertIn(line, out)
+        self.assertNotIn("line ", out)
+        self.assertFalse((self.folder / "out").exists(), "checks write nothing")
+
+    def test_options_are_the_table(self):
+        out = self.python("""
+            table = {option.name: option for option in floe.options()}
+            length = table["sheet_length"]
+            print(length.key, length.kind, length.unit, length.default, len(table))
+        """)
+        key = "sheet: length number m 40"
+        self.assertTrue(out.startswith(key), out)
+        self.assertGreater(int(out.split()[-1]), 150)
+
+
+class Back(PythonTest):
+    def test_same_bits_after_going_back(self):
+        """A run that goes back, from later and from its end, also to its first state, is the
+        straight one bit for bit, and so are its files."""
+        for ranks, scene in ((1, CONE), (2, LEG)):
+            with self.subTest(ranks=ranks):
+                self.scene(scene)
+                self.python("""
+                    floe.Simulation(floe.Scene("s.yaml", output_dir="straight",
+                                               output_overwrite=True)).run().close()
+                    sim = floe.Simulation(floe.Scene("s.yaml", output_dir="back",
+                                                     output_overwrite=True))
+                    start = sim.save()
+                    sim.step_to(0.13)
+                    first = sim.save()
+                    before = sim.bodies
+                    sim.step_to(0.25)
+                    sim.restore(first)
+                    assert abs(sim.time - 0.13) < 1e-9
+                    assert all((a == b).all() for a, b in zip(sim.bodies, before))
+                    sim.run()
+                    assert sim.ended
+                    sim.restore(first)
+                    assert not sim.ended
+                    sim.step_to(0.2)
+                    sim.restore(start)
+                    assert sim.time == 0
+                    sim.step_to(0.03)
+                    sim.restore(start)
+                    sim.run()
+                    sim.close()
+                """, ranks=ranks)
+                assert_same_run(self, self.folder / "straight", self.folder / "back")
+
+    def test_states_are_of_one_simulation(self):
+        out = self.python("""
+            from floe import Scene, Simulation
+            scene = {"integrator": "explicit", "forces": ["beam"], "sheet": {"length": 6},
+                     "time": {"end": 0.01}}
+            a = Simulation(Scene(scene, name="a"))
+            b = Simulation(Scene(scene, name="b"))
+            try:
+                b.restore(a.save())
+            except floe.InputError as error:
+                print(error)
+        """)
+        self.assertIn("of another simulation", out)
+
+
+if __name__ == "__main__":
+    unittest.main()
