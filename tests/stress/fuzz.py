@@ -139,7 +139,7 @@ class Case:
 
     def make_structure(self, chance):
         made = fuzz_structures.Made(chance)
-        spoilt = chance.random() < 0.5
+        spoilt, held = chance.random() < 0.5, made.is_held()
         if spoilt:
             self.base.scenes.spoil(made.scene, chance)
         words = bound(made.scene, chance)
@@ -149,7 +149,7 @@ class Case:
                 words += ["-" + "_".join(path), value.strip("[]").replace(", ", ",")]
         self.put_scene(write_scene(made.scene), words)
         self.files.update(made.all_files())
-        self.must = None if spoilt else 0
+        self.must = None if spoilt or held else 0
 
     def make_table(self, chance):
         made = fuzz_structures.Made(chance)

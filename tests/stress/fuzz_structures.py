@@ -356,6 +356,10 @@ class Made:
             self.add_table("water", "", "level_table", ["level"])
             self.scene.pop(("contact", "friction_wet"), None)
 
+    def is_held(self):
+        """Whether a boundary holds all ice, so that nothing may limit the step."""
+        return self.scene.get(("boundary", "b0", "set")) == "all"
+
     def spoil_table(self):
         """Damages one of its tables; returns the exit code that must come of it, or None."""
         chance = self.chance
