@@ -89,7 +89,9 @@ Hdf5File Hdf5File::in_memory() {
   constexpr std::size_t growth = 1 << 20;  // bytes
   constexpr bool on_disk = false;
   H5Pset_fapl_core(access, growth, on_disk);
-  const std::string name = "(state in memory)";  // no file has it
+  // No file has such a name. HDF5 tells open files apart by their names.
+  static std::int64_t number = 0;
+  const std::string name = "(state in memory " + std::to_string(number++) + ")";
   const hid_t id = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   require(id >= 0, name);
   return {id, {}, name};

@@ -22,13 +22,13 @@ class Prescribed(PythonTest):
             scene.run()
             once = run("once", ["cone"])
             at = once["cone"].pose
-            assert np.allclose(at.position, [7.1, 0, -3]), at
+            assert np.allclose(at.position, [7.6, 0, -3]), at
             once["cone"].prescribe(at, (v, spin))
             once.run()
             assert (last(once) == last(scene)).all()
             assert once.energies["external"] == scene.energies["external"] != 0
             pose = once["cone"].pose
-            assert np.allclose(pose.position, [7.1 - 0.14, 0.02, -3 + 0.04], rtol=0, atol=1e-12)
+            assert np.allclose(pose.position, [7.6 - 0.14, 0.02, -3 + 0.04], rtol=0, atol=1e-12)
             half = np.cos(0.03), 0, 0, np.sin(0.03)
             assert np.allclose(pose.orientation, half, rtol=0, atol=1e-12), pose
             assert np.allclose(once["cone"].velocity, (v, spin))
