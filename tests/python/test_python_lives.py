@@ -51,9 +51,10 @@ class Beside(PythonTest):
 
     def test_options_of_petsc_are_checked(self):
         out = self.python(KEYS + """
-for options in ({"ts_max_step": 3}, {"snes_rtol": 1e-3}, {"log_view": None}, {"ts_dt": -1}):
+for k, options in enumerate(({"ts_max_step": 3}, {"snes_rtol": 1e-3}, {"log_view": None},
+                             {"ts_dt": -1})):
     try:
-        sim = floe.Simulation(floe.Scene(keys, **options))
+        sim = floe.Simulation(floe.Scene(keys, name=f"s{k}", **options))
         sim.step_to(0.01)
     except floe.InputError as error:
         print(error)
