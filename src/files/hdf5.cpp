@@ -126,6 +126,9 @@ Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
 }
 
 Hdf5File::~Hdf5File() {
+  int ended = 0;
+  MPI_Finalized(&ended);
+  if (ended != 0) return;  // it has closed whatever HDF5 had open
   if (id_ >= 0 && !hdf5_has_failed && H5Fclose(id_) < 0) give_up_on_hdf5();
   if (!path_.empty() && path_ != final_path_) ::unlink(path_.c_str());
 }
