@@ -23,7 +23,7 @@ MASS, INERTIA = 2e5, 4e6  # [kg, kg m^2 about y]
 STIFFNESS, TURNING = 3e7, 4e9  # of the support [N/m, N m]
 DAMPING = 2e-3  # of both, as part of the stiffness [s]
 CENTRE, SUPPORT = np.array([4.01, 0.0, 0.0]), np.array([4.01, 0.0, -8.0])
-END, DT = 1.0, 2e-4  # [s]
+END, DT = 1.0, 5e-5  # [s]
 SCENE = {
     "integrator": "explicit", "forces": ["beam", "contact"],
     "sheet": {"length": 6, "width": 4, "thickness": 0.4, "element_size": 1, "iterations": 10},
@@ -146,7 +146,7 @@ def errors(steps, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=float, nargs="+", default=[0.1, 0.05, 0.025, 0.0125],
+    parser.add_argument("--steps", type=float, nargs="+", default=[0.1, 0.05, 0.025, 0.0125, 0.00625],
                         help="exchange steps [s], each a whole multiple of the last")
     steps = parser.parse_args().steps
     print("modes of the tower:", ", ".join(f"{f:.3g} Hz" for f in Tower().frequencies))

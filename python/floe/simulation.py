@@ -377,6 +377,6 @@ def _numbers(values: ArrayLike, count: int) -> list[float]:
 
 def _both(values: Any, second: Sequence[float]) -> tuple[list[float], list[float]]:
     """A vector and what stands beside it, which may be left out."""
-    if len(values) == 2:
+    if len(values) == 2 and np.ndim(values[0]) == 1:
         return _numbers(values[0], 3), _numbers(values[1], len(second))
     return _numbers(values, 3), list(second)

@@ -89,7 +89,9 @@ Hdf5File Hdf5File::in_memory() {
   constexpr std::size_t growth = 1 << 20;  // bytes
   constexpr bool on_disk = false;
   H5Pset_fapl_core(access, growth, on_disk);
-  const std::string name = "(state in memory)";  // no file has it
+  // No file has such a name. HDF5 tells open files apart by their names.
+  static std::int64_t number = 0;
+  const std::string name = "(state in memory " + std::to_string(number++) + ")";
   const hid_t id = H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access);
   require(id >= 0, name);
   return {id, {}, name};
@@ -124,6 +126,9 @@ Hdf5File& Hdf5File::operator=(Hdf5File&& other) noexcept {
 }
 
 Hdf5File::~Hdf5File() {
+  int ended = 0;
+  MPI_Finalized(&ended);
+  if (ended != 0) return;  // it has closed whatever HDF5 had open
   if (id_ >= 0 && !hdf5_has_failed && H5Fclose(id_) < 0) give_up_on_hdf5();
   if (!path_.empty() && path_ != final_path_) ::unlink(path_.c_str());
 }

@@ -22,13 +22,13 @@ class Prescribed(PythonTest):
             scene.run()
             once = run("once", ["cone"])
             at = once["cone"].pose
-            assert np.allclose(at.position, [7.1, 0, -3]), at
+            assert np.allclose(at.position, [7.6, 0, -3]), at
             once["cone"].prescribe(at, (v, spin))
             once.run()
             assert (last(once) == last(scene)).all()
             assert once.energies["external"] == scene.energies["external"] != 0
             pose = once["cone"].pose
-            assert np.allclose(pose.position, [7.1 - 0.14, 0.02, -3 + 0.04], rtol=0, atol=1e-12)
+            assert np.allclose(pose.position, [7.6 - 0.14, 0.02, -3 + 0.04], rtol=0, atol=1e-12)
             half = np.cos(0.03), 0, 0, np.sin(0.03)
             assert np.allclose(pose.orientation, half, rtol=0, atol=1e-12), pose
             assert np.allclose(once["cone"].velocity, (v, spin))
@@ -39,14 +39,19 @@ class Prescribed(PythonTest):
             piece = run("piece", ["cone"])
             cone = piece["cone"]
             cone.prescribe(at, (v, spin))
-            for k in range(1, 11):
+            early = run("early", obstacle_cone_velocity=v, obstacle_cone_angular_velocity=spin,
+                        obstacle_cone_ramp=0)
+            for k in range(1, 9):
                 t = 0.02 * k
                 turn = np.cos(0.15 * t), 0, 0, np.sin(0.15 * t)
                 cone.prescribe((at.position + v * t, turn), (v, spin), until=t)
                 piece.step_to(t)
+                early.step_to(t)
                 assert np.allclose(cone.pose.position, at.position + v * t, rtol=0, atol=1e-12)
                 assert np.allclose(cone.pose.orientation, turn, rtol=0, atol=1e-12)
-            assert np.abs(last(piece) - last(scene)).max() < 1e-9
+            # Beams that break amplify rounding: at 0.2 s it would be a centimetre a second.
+            assert early.beams.broken.sum() > 10 and early["cone"].wrench.force[0] > 2e5
+            assert np.abs(last(piece) - last(early)).max() < 1e-11
         """)
 
     def test_cubic_between_exchanges(self):
@@ -98,8 +103,9 @@ class Prescribed(PythonTest):
                 for k in range(1, 6):
                     sim["cone"].apply([1e4 * k, 0, 0], [0, 500, 0])
                     sim.step_to(0.02 * k)
+            bodies = last(sim)
             if floe.rank() == 0:
-                last(sim).tofile(sys.argv[1] + ".raw")
+                bodies.tofile(sys.argv[1] + ".raw")
         """
         self.python(script, "one")
         self.python(script, "two", ranks=2)

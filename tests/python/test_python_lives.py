@@ -51,9 +51,10 @@ class Beside(PythonTest):
 
     def test_options_of_petsc_are_checked(self):
         out = self.python(KEYS + """
-for options in ({"ts_max_step": 3}, {"snes_rtol": 1e-3}, {"log_view": None}, {"ts_dt": -1}):
+for k, options in enumerate(({"ts_max_step": 3}, {"snes_rtol": 1e-3}, {"log_view": None},
+                             {"ts_dt": -1})):
     try:
-        sim = floe.Simulation(floe.Scene(keys, **options))
+        sim = floe.Simulation(floe.Scene(keys, name=f"s{k}", **options))
         sim.step_to(0.01)
     except floe.InputError as error:
         print(error)
@@ -61,7 +62,7 @@ sim = floe.Simulation(floe.Scene(keys))
 print(sim.step_to(0.01))
         """)
         for part in ("ts_max_step: nothing in this run has asked", "snes_rtol: integrator: explicit",
-                     "log_view: PETSc takes it once in a process", "ts_dt: -1 must be > 0", "True"):
+                     "log_view: PETSc takes it once in a process", "ts_dt: -1 must be a number > 0", "True"):
             self.assertIn(part, out)
 
     def test_a_folder_is_locked_until_its_simulation_is_closed(self):
