@@ -154,7 +154,7 @@ def sheet(output: Output, time: float | None = None, colour: str = "axial", cell
     if not output.beams and colour in BEAM_STRESSES:
         raise InputError(f"{output.folder} has no beams; colour by a quantity of the bodies")
     if not output.shapes and (cells or colour in BODY_QUANTITIES):
-        raise InputError(f"{output.folder} has no shapes of bodies; colour by a stress of the beams")
+        raise InputError(f"{output.folder} has no shapes of bodies; colour by a stress of beams")
     at = output.nearest(time)
     ice = output.at(at)
     move = deformed * output.field("bodies_displacement", at)[:, :2]

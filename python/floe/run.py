@@ -330,8 +330,8 @@ def open_run(folder: str | Path) -> Run:
     if not path.is_dir():
         raise InputError(f"{path}: is no folder")
     if not is_run(path) and not is_ensemble(path):
-        raise InputError(f"{path}: is no output folder of a run (no history.csv, no lattice.h5) and "
-                         "has none below")
+        raise InputError(f"{path}: is no output folder of a run (no history.csv, no lattice.h5) "
+                         "and has none below")
     return Run(path)
 
 

@@ -1,33 +1,26 @@
 #!/usr/bin/python3
 """The tools on a run in which ice joins and leaves: the numbers of each are those of the frames and
 of the account in history.csv."""
-import importlib.machinery
-import importlib.util
 import json
 import sys
 import unittest
 
 import h5py
+import matplotlib
 import numpy as np
 
 from launch import REPOSITORY
 from supply_runs import SupplyTools, tool
 
 sys.path.insert(0, str(REPOSITORY / "python"))
-from floe.loads import fields  # noqa: E402
-from floe.loads import statements  # noqa: E402
+from floe import plots  # noqa: E402
+from floe.loads import fields, statements  # noqa: E402
 from floe.report.arrays import unpack  # noqa: E402
 from floe.report.page import data_in  # noqa: E402
 from floe.results import breakage  # noqa: E402
 from floe.results.output import matrices, rotations  # noqa: E402
 
-
-def script(name):
-    """A tool as a module."""
-    loader = importlib.machinery.SourceFileLoader(name, str(REPOSITORY / "tools" / name))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader(name, loader))
-    loader.exec_module(module)
-    return module
+matplotlib.use("Agg")
 
 
 def polygon_volume(points, faces):
@@ -42,9 +35,8 @@ def polygon_volume(points, faces):
 
 class Tools(SupplyTools):
     def test_plots(self):
-        sheet, fragments = script("plot_sheet"), script("plot_fragments")
         for when in self.output.times[[0, 3, 4, -1]]:
-            figure = sheet.draw(self.output, when, "ux", True, 1)
+            figure = plots.sheet(self.output, when, "ux", True, 1).figure
             count = int(self.account.at(when)["bodies"])
             tiles = figure.axes[0].collections[0]
             self.assertEqual(len(tiles.get_paths()), count)
@@ -60,11 +52,9 @@ class Tools(SupplyTools):
                     + np.abs(moment[:, 2]) * beams["width"] / 2 / beams["inertia_z"])
             np.testing.assert_allclose(axial + bent, tensile[:, 0], rtol=1e-9, atol=1e-6)
             np.testing.assert_allclose(axial, force / beams["area"])
-            _, axes = sheet.plt.subplots()
-            fragments.plot_plan(axes, self.output.at(when),
-                                breakage.at_frame(self.output, when))
+            axes = plots.fragments(self.output, when)
             self.assertEqual(len(axes.collections[0].get_paths()), count)
-            sheet.plt.close("all")
+            matplotlib.pyplot.close("all")
         for words in (["plot_sheet", self.made, "--time", 2, "--deformed", 1],
                       ["plot_fragments", self.made, "--time", 2], ["plot_load", self.made]):
             tool(*words, "--file", self.folder / "p.png")

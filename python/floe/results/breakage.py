@@ -94,14 +94,14 @@ def of_file(output, *more):
     for mesh in sorted({0, *numbers_of_meshes(output)}, reverse=True):
         names, pairs = output.mesh_names(mesh)
         if len(names) == count and np.all(beam < len(pairs)) and np.array_equal(
-                pairs[beam], bodies):
+                pairs[beam], names[bodies]):
             frame = np.flatnonzero(output.meshes == mesh)
             broken = np.zeros(0, int)
             if len(frame):  # whose breaks the file has all, unless it is older
                 last = output.times[frame[-1]]
                 broken = np.flatnonzero(output.field("damage", last) >= 1)
             if np.all(np.isin(broken, beam)):
-                return keys(names[pairs[beam]]), *values
+                return keys(pairs[beam]), *values
     return np.zeros(0, np.int64), *(each[:0] for each in values)
 
 

@@ -1,7 +1,7 @@
 """The frames of a run as a lazy xarray dataset: values are read when they are asked for. SI units.
 
     data = dataset_of(Output("out/ice_cone"))
-    data["displacement"].sel(time=3.0, method="nearest", axis="z").max().compute()
+    data["displacement"].sel(axis="z").sel(time=3.0, method="nearest").values.max()
 """
 import threading
 
@@ -47,14 +47,22 @@ class Values:
         with reading(path), h5py.File(path) as file:
             return file[group][self.name][:]
 
+    def whole_frame(self, number):
+        """The values of a frame, in the rows of the run."""
+        values, rows = self.frame(number), self.rows[number]
+        if rows is None:
+            return values
+        found = np.full(self.shape[1:], np.nan, self.dtype)
+        found[rows] = values
+        return found
+
     def __getitem__(self, key):
-        numbers = range(len(self.frames))[key[0]]
-        found = np.full((len(numbers), *self.shape[1:]), np.nan if self.dtype.kind == "f" else 0,
-                        self.dtype)
-        for k, number in enumerate(numbers):
-            rows = self.rows[number]
-            found[k, slice(None) if rows is None else rows] = self.frame(number)
-        return found[(slice(None), *key[1:])]
+        first, *further = key if isinstance(key, tuple) else (key,)
+        numbers, further = np.arange(len(self.frames))[first], tuple(further)
+        if np.ndim(numbers) == 0:
+            return self.whole_frame(numbers)[further]
+        return np.array([self.whole_frame(number)[further] for number in numbers],
+                        self.dtype).reshape(len(numbers), *np.empty(self.shape[1:])[further].shape)
 
 
 class Pieces(Values):
@@ -68,7 +76,7 @@ class Pieces(Values):
         whole = super().frame(number) < 1
         with self.lock:  # one mesh is kept at a time
             ice = self.output.at(self.output.times[number])
-        return breakage.fragments(ice, whole)["fragments/of_body"]
+        return breakage.fragments(ice, whole)["fragments/of_body"].astype(float)
 
 
 def names_of(output):

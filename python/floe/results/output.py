@@ -185,7 +185,7 @@ class Output(Lattice):
             return {name: (data.shape, data.dtype) for name, data in file[group].items()}
 
     def mesh_names(self, mesh):
-        """Names of the bodies of a mesh (0: of lattice.h5), and those m x 2 of its beams' bodies."""
+        """Names of the bodies of a mesh (0: of lattice.h5), and m x 2 of its beams' bodies."""
         if mesh == 0:
             return self.names, self.beams.get("bodies", np.zeros((0, 2), int)).astype(np.int64)
         path = self.mesh_file(mesh)

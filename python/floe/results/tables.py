@@ -25,11 +25,11 @@ def whole_lines(path: str | Path) -> io.StringIO:
 
 
 def table_of(path: str | Path, **options):
-    """A CSV file as a pandas.DataFrame; options: of pandas.read_csv. InputError where it is not
-    there, or is none."""
+    """A CSV file as a pandas.DataFrame, numbers to the last bit; options: of pandas.read_csv.
+    InputError where it is not there, or is none."""
     import pandas
     with reading(path):
-        return pandas.read_csv(whole_lines(path), **options)
+        return pandas.read_csv(whole_lines(path), float_precision="round_trip", **options)
 
 
 def history(folder: str | Path):
