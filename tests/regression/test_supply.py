@@ -292,7 +292,7 @@ class Structures(SupplyTest):
         text = SCENE.replace("names: [slope]", "names: [slope, leg]").replace(
             "boundary: {names: [push],", "  leg: {shape: box, centre: [12.5, 0, 0], size: [1, 1, "
             "4], mass: 2e4, support_stiffness: [4e6, 4e6, 4e7, 4e7, 4e7, 4e7], "
-            "support_damping_ratio: 0.05}\nboundary: {names: [push, guide], "
+            "support_damping_ratio: 0.05, touches: ice}\nboundary: {names: [push, guide], "
             "guide: {set: leg, fix: z rx ry},")
         (self.folder / "scene.yaml").write_text(text)
         folder = self.restarts_and_ranks((1111, 3050, 3200, 6200))
