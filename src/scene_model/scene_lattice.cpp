@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "floe/base/item.h"
+#include "geometry/connected_parts.h"
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
 #include "floe/mesh/cuts.h"
@@ -365,6 +366,16 @@ Lattice mesh_strips(const Scene& scene, MPI_Comm comm, MeshReport& report,
   return lattice;
 }
 
+/// Refuses bodies of several parts, of which drag would act on faces where parts meet.
+void check_parts(const Scene& scene, const Lattice& lattice) {
+  for (std::int32_t b = 0; b < lattice.shapes.bodies(); ++b) {
+    const std::int32_t parts = number_of_parts(lattice.shapes, b);
+    if (parts > 1)
+      throw InputError("water: drag: faces is for convex bodies; body " + std::to_string(b) +
+                       " of '" + scene.lattice_file + "' has " + std::to_string(parts) + " parts");
+  }
+}
+
 }  // namespace
 
 SheetSection section_of(const Scene& scene) {
@@ -384,6 +395,7 @@ Lattice make_lattice(const Scene& scene, MPI_Comm comm, MeshReport& report) {
                          ? "sheet: element_size: the sheet has a single cell and no beam"
                          : "forces: beam: '" + scene.lattice_file + "' has no beams");
   if (!scene.forces.beam) lattice.beams = {};  // loose bodies
+  if (!scene.has_sheet && scene.forces.drag && scene.drag.faces) check_parts(scene, lattice);
   if (scene.calibrate != Calibrate::none)
     report.calibration = calibrate(lattice, scene.ice, scene.calibrate, scene.beam.shear);
   if (finds_strength(scene)) report.strength = strength_of(scene, lattice, around, comm);

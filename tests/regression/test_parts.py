@@ -288,6 +288,11 @@ output: {history: 0.02, fields: 3}
                           (plus, "body 0 of the lattice is not convex, or a face of it is not "
                                  "plane")):
             bad.write(self.folder / "bad.h5")
+            if bad is lattice:
+                scene = TUMBLE.replace("LATTICE", "bad.h5").replace("contact]", "drag, contact]")
+                done = self.run_scene(scene + "water: {drag: faces, shelter: 0}\n", code=2)
+                self.assertIn("water: drag: faces is for convex bodies; body 0 of 'bad.h5' has 2 "
+                              "parts", done.stderr)
             done = self.run_scene(TUMBLE.replace("LATTICE", "bad.h5"), code=2)
             self.assertIn(line, done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
