@@ -235,6 +235,29 @@ class Forces(PythonTest):
             assert abs(sim.energies["external"] / -lost - 1) < 1e-3
         """)
 
+    def test_a_stiff_force_shortens_the_step(self):
+        """The stable step allows for the rates that a force gives: below 2/omega and 2/damping."""
+        self.python("""
+            class Spring(floe.Force):
+                def add(self, bodies):
+                    pass
+            keys = {"integrator": "explicit", "forces": ["beam"],
+                    "sheet": {"length": 6, "thickness": 0.5, "element_size": 2, "iterations": 5},
+                    "time": {"end": 0.01}}
+            def stable(name, **rates):
+                spring = Spring()
+                for key, value in rates.items():
+                    setattr(spring, key, value)
+                sim = floe.Simulation(floe.Scene(keys, name=name), forces=[spring])
+                assert sim.dt <= sim.outcome["stable_dt"]
+                return sim.outcome["stable_dt"]
+            beams = stable("beams")   # 2/omega of the beams
+            k = (2 / beams) ** 2
+            assert abs(stable("both", stiffness=3 * k) / (beams / 2) - 1) < 0.01
+            c = 5 / beams
+            assert abs(stable("damped", damping=c) * c / 2 - 1) < 1e-6
+        """)
+
     def test_an_exception_pauses_the_run(self):
         """An exception in a force comes out of step_to() on its rank, as CallbackError on others;
         the run goes on from there, and is the undisturbed one bit for bit."""

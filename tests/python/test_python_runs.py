@@ -3,6 +3,8 @@
 import json
 import unittest
 
+import numpy as np
+
 from in_python import PythonTest
 from scenes import CONE, LEG, assert_same_run
 
@@ -84,6 +86,58 @@ class SameAsTheCommand(PythonTest):
                 self.assertIn("strain", out)
                 self.assertEqual((self.folder / name / "history.csv").read_bytes(),
                                  (self.folder / f"p_{name}" / "history.csv").read_bytes())
+
+
+class Tables(PythonTest):
+    def test_bodies_beams_and_contacts_are_those_of_the_files(self):
+        """At a frame's time they are the frame's, and contacts add up to the force on the cone and
+        on every body; on two ranks they are those on one, in the same order."""
+        self.scene(CONE)
+        script = """
+            import glob, h5py
+            sim = floe.Simulation(floe.Scene("s.yaml", output_dir=sys.argv[1]))
+            sim.step_to(0.3)
+            bodies, beams, contacts, cone = sim.bodies, sim.beams, sim.contacts, sim["cone"]
+            wrench, pose, columns = cone.wrench, cone.pose, sim.columns
+            assert np.array_equal(bodies.index, np.arange(len(bodies.mass)))
+            on_cone = contacts.obstacle == 0
+            assert on_cone.any() and (contacts.bodies[on_cone, 1] == -1).all()
+            assert (contacts.bodies[~on_cone, 1] > contacts.bodies[~on_cone, 0]).all()
+            force = -contacts.force[on_cone].sum(axis=0)
+            assert np.allclose(force, wrench.force, rtol=1e-9), (force, wrench)
+            moment = -np.cross(contacts.point - pose.position, contacts.force)[on_cone].sum(axis=0)
+            size = np.abs(wrench.force).max() * 3
+            assert np.abs(moment - wrench.moment).max() < 0.02 * size, (moment, wrench)  # couples
+            assert (contacts.volume > 0).all() and (contacts.area > 0).all()
+            assert np.allclose(np.linalg.norm(contacts.normal, axis=1), 1)
+            assert (np.einsum("ij,ij->i", contacts.force, contacts.normal) >= -1e-6).all()
+            assert columns["contacts"] == len(contacts.area)
+            kinetic = 0.5 * (bodies.mass[:, None] * bodies.velocity ** 2).sum()
+            assert 0.5 < kinetic / columns["energy_kinetic"] < 1.5
+            assert bodies.fragment.max() + 1 == len(np.unique(bodies.fragment))
+            joined = beams.bodies[~beams.broken]
+            assert (bodies.fragment[joined[:, 0]] == bodies.fragment[joined[:, 1]]).all()
+            weights = np.bincount(bodies.fragment, bodies.mass)
+            assert (np.diff(weights) <= 1e-9).all() and len(weights) > 1
+            sim.step_to(0.3002)  # the frame of 0.3 s has been written
+            if floe.rank() == 0:
+                np.savez(sys.argv[1], *bodies, *beams, *contacts)
+                frames = {}
+                for path in glob.glob(sys.argv[1] + "/fields/[0-9]*.h5"):
+                    with h5py.File(path) as file:
+                        frames.update({file[g].attrs["time"]: {k: v[()] for k, v in
+                                                               file[g].items()} for g in file})
+                frame = frames[min(frames, key=lambda t: abs(t - 0.3))]
+                assert np.array_equal(frame["centres"], bodies.position)
+                assert np.array_equal(frame["beams_force"], beams.force)
+                assert np.array_equal(frame["beams_moment"], beams.moment)
+                assert np.array_equal(frame["damage"], beams.damage)
+        """
+        self.python(script, "one")
+        self.python(script, "two", ranks=2)
+        one, two = (np.load(self.folder / f"{name}.npz") for name in ("one", "two"))
+        for name in one.files:
+            np.testing.assert_array_equal(one[name], two[name], name)
 
 
 class Scenes(PythonTest):
