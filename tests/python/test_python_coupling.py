@@ -59,8 +59,8 @@ class Prescribed(PythonTest):
         rotation, and its velocity is the rate of its place."""
         self.scene(CONE)
         self.python("""
-            sim = floe.Simulation(floe.Scene("s.yaml", time_end=0.2, obstacle_cone_base=[30, 0, -3]),
-                                  coupled=["cone"])
+            far = floe.Scene("s.yaml", time_end=0.2, obstacle_cone_base=[30, 0, -3])
+            sim = floe.Simulation(far, coupled=["cone"])
             cone = sim["cone"]
             start = cone.pose.position
             cone.prescribe(start, ([1, 0, 0], [0, 0.5, 0]))

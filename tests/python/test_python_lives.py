@@ -61,8 +61,10 @@ for k, options in enumerate(({"ts_max_step": 3}, {"snes_rtol": 1e-3}, {"log_view
 sim = floe.Simulation(floe.Scene(keys))
 print(sim.step_to(0.01))
         """)
-        for part in ("ts_max_step: nothing in this run has asked", "snes_rtol: integrator: explicit",
-                     "log_view: PETSc takes it once in a process", "ts_dt: -1 must be a number > 0", "True"):
+        for part in ("ts_max_step: nothing in this run has asked",
+                     "snes_rtol: integrator: explicit",
+                     "log_view: PETSc takes it once in a process",
+                     "ts_dt: -1 must be a number > 0", "True"):
             self.assertIn(part, out)
 
     def test_a_folder_is_locked_until_its_simulation_is_closed(self):
