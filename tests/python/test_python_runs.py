@@ -140,6 +140,42 @@ class Tables(PythonTest):
             np.testing.assert_array_equal(one[name], two[name], name)
 
 
+    def test_names_of_bodies_stay_where_ice_joins(self):
+        """`index` is the name of a body, whichever bodies join; also on two ranks."""
+        self.scene("""integrator: explicit
+forces: [beam, gravity, buoyancy]
+ice: {young: 4e7}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+supply: {strip: 12, length: 48}
+boundary: {names: [push], push: {set: left, fix: x y z rx ry rz, velocity: [8, 0, 0]}}
+initial: {names: [moving], moving: {set: all, velocity: [8, 0, 0]}}
+time: {end: 3.2, dt: 5e-4}
+output: {history: 0.1, overwrite: true}
+""")
+        for ranks in (1, 2):
+            self.python("""
+                sim = floe.Simulation(floe.Scene("s.yaml"))
+                before, sizes = None, []
+                for _ in sim.run(every=0.8):
+                    now = {n: x for n, x in zip(sim.bodies.index, sim.bodies.position)}
+                    assert len(now) == len(sim.bodies.index)
+                    if before:
+                        assert set(before) <= set(now)   # none leave
+                        assert all(n > max(before) for n in set(now) - set(before))
+                        for n in before:
+                            assert np.abs(now[n] - before[n] - [8 * 0.8, 0, 0]).max() < 0.02
+                    before = now
+                    sizes.append(len(now))
+                assert sizes[-1] > sizes[0], sizes
+                try:
+                    sim.save()
+                except floe.InputError as error:
+                    assert "supply" in str(error)
+                else:
+                    raise AssertionError
+            """, ranks=ranks)
+
+
 class Scenes(PythonTest):
     def test_dicts_are_the_file(self):
         """A scene of dicts makes the run of the same text, and its messages."""
