@@ -184,8 +184,6 @@ class Simulation:
         run = self._open()
         self._changed()
         goes_on = run.step_to(float(time))
-        if goes_on and run.time() < time - run.dt():
-            raise KeyboardInterrupt("another rank was interrupted")
         if not goes_on:
             self._raise_failure()
         return goes_on

@@ -187,6 +187,38 @@ left.step_to(0.05)
             summary = json.loads((self.folder / f"out/{name}/summary.json").read_text())
             self.assertIn(words, json.dumps(summary))
 
+    def test_interrupt_of_one_rank(self):
+        """A signal's exception on one rank pauses all of them, which get KeyboardInterrupt."""
+        out = self.python(KEYS + """
+import os, signal, threading
+class Stop(Exception):
+    pass
+def stop(*_):
+    raise Stop
+signal.signal(signal.SIGUSR1, stop)
+keys["time"]["end"] = 1e5
+keys["limit"] = {"frames": 1e12, "disk": 1e12}
+keys["output"] = {"history": 1e4}
+sim = floe.Simulation(floe.Scene(keys))
+sim.step_to(0.01)
+if floe.rank() == 1:
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+try:
+    sim.step_to(1e5)
+except Stop:
+    assert floe.rank() == 1
+except KeyboardInterrupt:
+    assert floe.rank() == 0
+else:
+    raise AssertionError
+at = sim.time
+assert sim.step_to(at + 0.01)
+if floe.rank() == 0:
+    print("on")
+sim.close()
+""", ranks=2)
+        self.assertEqual(out, "on\n")
+
     def test_interrupt(self):
         """Ctrl-C comes out of a long step_to() between two steps; the simulation goes on."""
         (self.folder / "script.py").write_text(BEGIN + KEYS + """
