@@ -4,11 +4,11 @@
     PYTHONPATH=PREFIX/lib/python3/dist-packages examples/tower.py [--steps 0.1 0.05 0.025]
 
 The tower is a rigid pile on a spring and a rotational spring below it: two modes, which scipy finds
-and integrates. floe has the ice and the pile as an obstacle that Python moves. At each exchange step
-H both agree on motion and load by fixed-point iteration: floe goes back to a state in memory until
-the load that it finds is the one with which the tower has moved. The same pile as a structure of
-floe, with mass and support, is the reference. The load is taken as linear in time within an exchange
-step, so the error falls as H^2 (contacts that begin within a step are of lower order).
+and integrates. floe has the ice and the pile as an obstacle that Python moves. At each exchange
+step H both agree on motion and load by fixed-point iteration: floe goes back to a state in memory
+until the load that it finds is the one with which the tower has moved. The same pile as a structure
+of floe, with mass and support, is the reference. The load is taken as linear in time within an
+exchange step, so the error falls as H^2 (contacts that begin within a step are of lower order).
 """
 import argparse
 import tempfile
@@ -146,7 +146,8 @@ def errors(steps, folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--steps", type=float, nargs="+", default=[0.1, 0.05, 0.025, 0.0125, 0.00625],
+    parser.add_argument("--steps", type=float, nargs="+",
+                        default=[0.1, 0.05, 0.025, 0.0125, 0.00625],
                         help="exchange steps [s], each a whole multiple of the last")
     steps = parser.parse_args().steps
     print("modes of the tower:", ", ".join(f"{f:.3g} Hz" for f in Tower().frequencies))

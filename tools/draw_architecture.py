@@ -276,7 +276,7 @@ MESSAGES = [
         ("look_around()", LEAPFROG, RUN, "look_around()")]),
     ("src/run/dynamic_run.cpp", "bool DynamicRun<Space>::look_around() {",
      [("checkpoints_.wish(", RUN, RUN, "is a stop or a checkpoint due? *"),
-      ("save()", RUN, OUT, "checkpoint, if due *")]),
+      ("write_checkpoint()", RUN, OUT, "checkpoint, if due *")]),
 ]
 
 

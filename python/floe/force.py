@@ -31,8 +31,9 @@ class Force:
 
     It is asked once per step, on all ranks, with the bodies of each. Its work is in the column
     energy_external. The search for the stable step does not see it: a force that grows with places
-    or velocities says how fast, by the attributes `stiffness`, an upper bound of M^-1 K [1/s^2], and
-    `damping`, of M^-1 C [1/s]. With a force of Python the model is spatial.
+    or velocities says how fast, by the attributes `stiffness`, an upper bound of M^-1 K [1/s^2]
+    that is added to that of all else, and `damping`, of M^-1 C [1/s]: steps stay below 2/damping.
+    With a force of Python the model is spatial.
 
     An exception pauses the run before the step on all ranks: the rank that has it gets it from
     step_to(), the others get CallbackError.

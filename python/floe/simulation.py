@@ -35,7 +35,8 @@ class Wrench(NamedTuple):
 
 class Bodies(NamedTuple):
     """All bodies of the model, one row each, in the order of the lattice."""
-    index: Integers  # type: ignore[assignment]  #: in the lattice; with supply the name that a body keeps, (n,)
+    #: in the lattice; with supply the name that a body keeps, (n,)
+    index: Integers  # type: ignore[assignment]
     position: Floats  #: of the centroids [m], (n, 3)
     orientation: Floats  #: rotation since rest, w x y z, (n, 4)
     velocity: Floats  #: [m/s], (n, 3); by leapfrog half a step before the time
@@ -88,8 +89,8 @@ class Obstacle:
 
     @property
     def pose(self) -> Pose:
-        """Where it is: its point (of one with mass, the centre of mass), and its rotation since time
-        0. Collective."""
+        """Where it is: its point (of one with mass, the centre of mass), and its rotation since
+        time 0. Collective."""
         now = self._now()
         return Pose(now["position"], now["orientation"])
 
@@ -108,8 +109,8 @@ class Obstacle:
 
     @property
     def impulse(self) -> Floats:
-        """Integral of the force over the steps since time 0 [N s], (3,): differences over exchanges,
-        divided by their time, are mean forces. Collective."""
+        """Integral of the force over the steps since time 0 [N s], (3,): differences over
+        exchanges, divided by their time, are mean forces. Collective."""
         return self._now()["impulse"]
 
     def prescribe(self, pose: Pose | ArrayLike,
@@ -183,8 +184,6 @@ class Simulation:
         run = self._open()
         self._changed()
         goes_on = run.step_to(float(time))
-        if goes_on and run.time() < time - run.dt():
-            raise KeyboardInterrupt("another rank was interrupted")
         if not goes_on:
             self._raise_failure()
         return goes_on

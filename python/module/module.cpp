@@ -119,11 +119,7 @@ class Run {
       why = error.why();
     }
     if (why) std::rethrow_exception(why);
-    if (interrupt()) {
-      py::error_already_set error = std::move(*interrupt());
-      interrupt().reset();
-      throw error;
-    }
+    raise_interrupt();
     return goes_on;
   }
   bool is_open() { return owner_->get() != nullptr; }
@@ -133,6 +129,20 @@ class Run {
   }
 
  private:
+  /// Raises the exception of a signal's handler on its rank, and KeyboardInterrupt on all others.
+  static void raise_interrupt() {
+    int came = interrupt() ? 1 : 0;
+    if (size() > 1)
+      floe::check(MPI_Allreduce(MPI_IN_PLACE, &came, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));
+    if (came == 0) return;
+    if (!interrupt()) {
+      PyErr_SetString(PyExc_KeyboardInterrupt, "another rank was interrupted");
+      throw py::error_already_set();
+    }
+    py::error_already_set error = std::move(*interrupt());
+    interrupt().reset();
+    throw error;
+  }
   struct Quiet {
     explicit Quiet(bool progress) { show_progress(progress); }
     ~Quiet() { show_progress(true); }

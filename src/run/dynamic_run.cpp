@@ -238,9 +238,9 @@ std::vector<std::int32_t> DynamicRun<Space>::owners() const {
 
 template <class Space>
 std::unique_ptr<const RunState> DynamicRun<Space>::save() {
-  if (!can_go_back() || !options_.remake) return refuse_to_go_back();
   if (options_.supply)
     throw InputError("save: runs whose ice joins and leaves (supply) cannot go back to a state");
+  if (!can_go_back() || !options_.remake) return refuse_to_go_back();
   const MPI_Comm comm = model_.part().comm;
   auto saved = std::make_unique<SavedRun>();
   on_root(comm, [&] { saved->file.emplace(Hdf5File::in_memory()); });

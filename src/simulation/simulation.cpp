@@ -624,6 +624,8 @@ BeamTable RunningIn<Space>::beams() const {
   const State<Space>* now = state();
   const Part& part = model_->part();
   if (now == nullptr || model_->beams() == nullptr) return table;
+  if (auto* moving = dynamic_cast<DynamicRun<Space>*>(run_.get()))  // ghosts are of the last step
+    part.ghosts.update(moving->state().records, Space::record);
   const std::vector<BeamSection> sections = model_->beams()->sections(*now);
   constexpr std::size_t width = 7;
   std::vector<std::int32_t> beams;  // global beam and its bodies

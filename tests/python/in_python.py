@@ -18,7 +18,8 @@ def sanitizer():
                     if "libasan" in line or "libubsan" in line)
 
 
-ENVIRONMENT = {**launch.ENVIRONMENT, "PYTHONPATH": f"{PACKAGE}:{Path(__file__).resolve().parent}", "PYTHONDONTWRITEBYTECODE": "1"}
+ENVIRONMENT = {**launch.ENVIRONMENT, "PYTHONDONTWRITEBYTECODE": "1",
+               "PYTHONPATH": f"{PACKAGE}:{Path(__file__).resolve().parent}"}
 if sanitizer():
     ENVIRONMENT["LD_PRELOAD"] = sanitizer()
 
@@ -35,8 +36,8 @@ class PythonTest(launch.FolderTest):
         super().setUp()
 
     def python(self, script, *words, ranks=1, code=0):
-        """Standard output of a script, which begins with the imports of BEGIN; with another exit code its
-        standard error as well."""
+        """Standard output of a script, which begins with the imports of BEGIN; with another exit
+        code its standard error as well."""
         path = self.folder / "script.py"
         path.write_text(BEGIN + textwrap.dedent(script))
         command = ["/usr/bin/python3", path, *words]

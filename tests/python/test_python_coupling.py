@@ -59,8 +59,8 @@ class Prescribed(PythonTest):
         rotation, and its velocity is the rate of its place."""
         self.scene(CONE)
         self.python("""
-            sim = floe.Simulation(floe.Scene("s.yaml", time_end=0.2, obstacle_cone_base=[30, 0, -3]),
-                                  coupled=["cone"])
+            far = floe.Scene("s.yaml", time_end=0.2, obstacle_cone_base=[30, 0, -3])
+            sim = floe.Simulation(far, coupled=["cone"])
             cone = sim["cone"]
             start = cone.pose.position
             cone.prescribe(start, ([1, 0, 0], [0, 0.5, 0]))
@@ -233,6 +233,29 @@ class Forces(PythonTest):
             mass = sim.bodies.mass.sum()
             lost = 0.5 * mass * 5 * (1 - np.exp(-3))
             assert abs(sim.energies["external"] / -lost - 1) < 1e-3
+        """)
+
+    def test_a_stiff_force_shortens_the_step(self):
+        """The stable step allows for the rates that a force gives: below 2/omega and 2/damping."""
+        self.python("""
+            class Spring(floe.Force):
+                def add(self, bodies):
+                    pass
+            keys = {"integrator": "explicit", "forces": ["beam"],
+                    "sheet": {"length": 6, "thickness": 0.5, "element_size": 2, "iterations": 5},
+                    "time": {"end": 0.01}}
+            def stable(name, **rates):
+                spring = Spring()
+                for key, value in rates.items():
+                    setattr(spring, key, value)
+                sim = floe.Simulation(floe.Scene(keys, name=name), forces=[spring])
+                assert sim.dt <= sim.outcome["stable_dt"]
+                return sim.outcome["stable_dt"]
+            beams = stable("beams")   # 2/omega of the beams
+            k = (2 / beams) ** 2
+            assert abs(stable("both", stiffness=3 * k) / (beams / 2) - 1) < 0.01
+            c = 5 / beams
+            assert abs(stable("damped", damping=c) * c / 2 - 1) < 1e-6
         """)
 
     def test_an_exception_pauses_the_run(self):

@@ -61,8 +61,10 @@ for k, options in enumerate(({"ts_max_step": 3}, {"snes_rtol": 1e-3}, {"log_view
 sim = floe.Simulation(floe.Scene(keys))
 print(sim.step_to(0.01))
         """)
-        for part in ("ts_max_step: nothing in this run has asked", "snes_rtol: integrator: explicit",
-                     "log_view: PETSc takes it once in a process", "ts_dt: -1 must be a number > 0", "True"):
+        for part in ("ts_max_step: nothing in this run has asked",
+                     "snes_rtol: integrator: explicit",
+                     "log_view: PETSc takes it once in a process",
+                     "ts_dt: -1 must be a number > 0", "True"):
             self.assertIn(part, out)
 
     def test_a_folder_is_locked_until_its_simulation_is_closed(self):
@@ -184,6 +186,38 @@ left.step_to(0.05)
                             ("left", "ended by the program")):
             summary = json.loads((self.folder / f"out/{name}/summary.json").read_text())
             self.assertIn(words, json.dumps(summary))
+
+    def test_interrupt_of_one_rank(self):
+        """A signal's exception on one rank pauses all of them, which get KeyboardInterrupt."""
+        out = self.python(KEYS + """
+import os, signal, threading
+class Stop(Exception):
+    pass
+def stop(*_):
+    raise Stop
+signal.signal(signal.SIGUSR1, stop)
+keys["time"]["end"] = 1e5
+keys["limit"] = {"frames": 1e12, "disk": 1e12}
+keys["output"] = {"history": 1e4}
+sim = floe.Simulation(floe.Scene(keys))
+sim.step_to(0.01)
+if floe.rank() == 1:
+    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+try:
+    sim.step_to(1e5)
+except Stop:
+    assert floe.rank() == 1
+except KeyboardInterrupt:
+    assert floe.rank() == 0
+else:
+    raise AssertionError
+at = sim.time
+assert sim.step_to(at + 0.01)
+if floe.rank() == 0:
+    print("on")
+sim.close()
+""", ranks=2)
+        self.assertEqual(out, "on\n")
 
     def test_interrupt(self):
         """Ctrl-C comes out of a long step_to() between two steps; the simulation goes on."""

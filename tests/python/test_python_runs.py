@@ -3,6 +3,8 @@
 import json
 import unittest
 
+import numpy as np
+
 from in_python import PythonTest
 from scenes import CONE, LEG, assert_same_run
 
@@ -84,6 +86,94 @@ class SameAsTheCommand(PythonTest):
                 self.assertIn("strain", out)
                 self.assertEqual((self.folder / name / "history.csv").read_bytes(),
                                  (self.folder / f"p_{name}" / "history.csv").read_bytes())
+
+
+class Tables(PythonTest):
+    def test_bodies_beams_and_contacts_are_those_of_the_files(self):
+        """At a frame's time they are the frame's, and contacts add up to the force on the cone and
+        on every body; on two ranks they are those on one, in the same order."""
+        self.scene(CONE)
+        script = """
+            import glob, h5py
+            sim = floe.Simulation(floe.Scene("s.yaml", output_dir=sys.argv[1]))
+            sim.step_to(0.3)
+            bodies, beams, contacts, cone = sim.bodies, sim.beams, sim.contacts, sim["cone"]
+            wrench, pose, columns = cone.wrench, cone.pose, sim.columns
+            assert np.array_equal(bodies.index, np.arange(len(bodies.mass)))
+            on_cone = contacts.obstacle == 0
+            assert on_cone.any() and (contacts.bodies[on_cone, 1] == -1).all()
+            assert (contacts.bodies[~on_cone, 1] > contacts.bodies[~on_cone, 0]).all()
+            force = -contacts.force[on_cone].sum(axis=0)
+            assert np.allclose(force, wrench.force, rtol=1e-9), (force, wrench)
+            moment = -np.cross(contacts.point - pose.position, contacts.force)[on_cone].sum(axis=0)
+            size = np.abs(wrench.force).max() * 3
+            assert np.abs(moment - wrench.moment).max() < 0.02 * size, (moment, wrench)  # couples
+            assert (contacts.volume > 0).all() and (contacts.area > 0).all()
+            assert np.allclose(np.linalg.norm(contacts.normal, axis=1), 1)
+            assert (np.einsum("ij,ij->i", contacts.force, contacts.normal) >= -1e-6).all()
+            assert columns["contacts"] == len(contacts.area)
+            kinetic = 0.5 * (bodies.mass[:, None] * bodies.velocity ** 2).sum()
+            assert 0.5 < kinetic / columns["energy_kinetic"] < 1.5
+            assert bodies.fragment.max() + 1 == len(np.unique(bodies.fragment))
+            joined = beams.bodies[~beams.broken]
+            assert (bodies.fragment[joined[:, 0]] == bodies.fragment[joined[:, 1]]).all()
+            weights = np.bincount(bodies.fragment, bodies.mass)
+            assert (np.diff(weights) <= 1e-9).all() and len(weights) > 1
+            sim.step_to(0.3002)  # the frame of 0.3 s has been written
+            if floe.rank() == 0:
+                np.savez(sys.argv[1], *bodies, *beams, *contacts)
+                frames = {}
+                for path in glob.glob(sys.argv[1] + "/fields/[0-9]*.h5"):
+                    with h5py.File(path) as file:
+                        frames.update({file[g].attrs["time"]: {k: v[()] for k, v in
+                                                               file[g].items()} for g in file})
+                frame = frames[min(frames, key=lambda t: abs(t - 0.3))]
+                assert np.array_equal(frame["centres"], bodies.position)
+                assert np.array_equal(frame["beams_force"], beams.force)
+                assert np.array_equal(frame["beams_moment"], beams.moment)
+                assert np.array_equal(frame["damage"], beams.damage)
+        """
+        self.python(script, "one")
+        self.python(script, "two", ranks=2)
+        one, two = (np.load(self.folder / f"{name}.npz") for name in ("one", "two"))
+        for name in one.files:
+            np.testing.assert_array_equal(one[name], two[name], name)
+
+
+    def test_names_of_bodies_stay_where_ice_joins(self):
+        """`index` is the name of a body, whichever bodies join; also on two ranks."""
+        self.scene("""integrator: explicit
+forces: [beam, gravity, buoyancy]
+ice: {young: 4e7}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+supply: {strip: 12, length: 48}
+boundary: {names: [push], push: {set: left, fix: x y z rx ry rz, velocity: [8, 0, 0]}}
+initial: {names: [moving], moving: {set: all, velocity: [8, 0, 0]}}
+time: {end: 3.2, dt: 5e-4}
+output: {history: 0.1, overwrite: true}
+""")
+        for ranks in (1, 2):
+            self.python("""
+                sim = floe.Simulation(floe.Scene("s.yaml"))
+                before, sizes = None, []
+                for _ in sim.run(every=0.8):
+                    now = {n: x for n, x in zip(sim.bodies.index, sim.bodies.position)}
+                    assert len(now) == len(sim.bodies.index)
+                    if before:
+                        assert set(before) <= set(now)   # none leave
+                        assert all(n > max(before) for n in set(now) - set(before))
+                        for n in before:
+                            assert np.abs(now[n] - before[n] - [8 * 0.8, 0, 0]).max() < 0.02
+                    before = now
+                    sizes.append(len(now))
+                assert sizes[-1] > sizes[0], sizes
+                try:
+                    sim.save()
+                except floe.InputError as error:
+                    assert "supply" in str(error)
+                else:
+                    raise AssertionError
+            """, ranks=ranks)
 
 
 class Scenes(PythonTest):
