@@ -204,7 +204,8 @@ class LoadTools(FolderTest):
                 self.assertIn("units", data.attrs, name)
             self.assertRegex(name, r"^[A-Za-z]\w*$")
         for seed in (1, 2):
-            history = pandas.read_csv(self.folder / f"out/r{seed}/history.csv")
+            history = pandas.read_csv(self.folder / f"out/r{seed}/history.csv",
+                                      float_precision="round_trip")
             one = joined.sel(run=f"r{seed}", obstacle="wall")
             np.testing.assert_array_equal(one["obstacle_force"], column(history, "wall_force"))
             np.testing.assert_array_equal(one["sample_time"], history["time"])
