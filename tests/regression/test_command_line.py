@@ -8,7 +8,8 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from launch import ENVIRONMENT, FLOE, REPOSITORY, FolderTest, on_ranks, own_words
+from launch import (ENVIRONMENT, FLOE, REPOSITORY, FolderTest, in_short_form, on_ranks,
+                    own_words)
 
 SCENES = REPOSITORY / "input"
 LOADER = Path("/lib64/ld-linux-x86-64.so.2")
@@ -75,7 +76,8 @@ class CommandLine(FolderTest):
             with self.subTest(tool=tool):
                 self.assertTrue(os.access(REPOSITORY / "tools" / tool, os.X_OK))
                 self.assertIn(tool, self.run_it(tool, "--help")[0])
-                self.assertIn(tool, self.run_it("help", tool)[0])
+                if in_short_form(tool, 3):  # floe help TOOL calls the same
+                    self.assertIn(tool, self.run_it("help", tool)[0])
 
     def test_a_tool_gets_its_words(self):
         out = self.run_it("make_lattice", "block", "a b.h5")[0]

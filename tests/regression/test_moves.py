@@ -9,6 +9,7 @@ import unittest
 
 import numpy as np
 
+from launch import FULL
 from test_restart import Killing, RestartTest, contents
 
 SCENE = """integrator: explicit
@@ -22,7 +23,7 @@ obstacle:
   names: [slope]
   slope: {shape: halfspace, point: [6.02, 0, -0.4554], normal: [-1, 0, 1], friction: 0.1}
 boundary: {names: [push], push: {set: left, fix: x y rz, velocity: [1, 0, 0], ramp: 0.1}}
-time: {end: 0.6, dt: 2e-4}
+time: {end: 0.42, dt: 2e-4}
 output: {history: 0.0101, fields: 0.037}
 checkpoint: {every: 1000}
 """
@@ -81,12 +82,13 @@ class Moves(RestartTest):
         self.assertGreater(json.loads((alone / "summary.json").read_text())["beams_broken"], 5)
         self.assertNotIn("moves", json.loads((alone / "summary.json").read_text()))
         for ranks in (2, 3):
-            still = self.run_whole(*NEVER, dir=f"n{ranks}", ranks=ranks)
             moved = self.run_whole(*OFTEN, dir=f"m{ranks}", ranks=ranks)
-            self.assertEqual(self.moves(still)["count"], 0)
-            self.assertEqual(self.moves(moved)["count"], 3000 // 37)
-            self.same_states(alone, still)
+            self.assertEqual(self.moves(moved)["count"], 2100 // 37)
             self.same_states(alone, moved)
+            if ranks == 2 or FULL:
+                still = self.run_whole(*NEVER, dir=f"n{ranks}", ranks=ranks)
+                self.assertEqual(self.moves(still)["count"], 0)
+                self.same_states(alone, still)
 
     def test_a_run_is_repeated(self):
         """Counts decide on moves, no clock, so sums over ranks have the same bits too."""
