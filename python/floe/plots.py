@@ -29,8 +29,8 @@ def new_axes(axes: Axes | None, size: tuple[float, float]) -> Axes:
     return axes
 
 
-def figure_of(axes: Axes) -> Figure:
-    return axes.figure  # type: ignore[return-value]
+def figure_of(axes: Axes) -> Any:
+    return axes.figure
 
 
 def unit_of_time(output: Output) -> str:
@@ -97,7 +97,7 @@ def energies(table: Any, axes: Axes | None = None) -> Axes:
 
 # -- sheets from above ----------------------------------------------------------------------------
 
-def colours(values: np.ndarray):
+def colours(values: np.ndarray) -> tuple[str, Any]:
     """Colour map and range: diverging about zero if both signs matter, else sequential."""
     from matplotlib.colors import Normalize
     low, high = values.min(), values.max()
@@ -115,7 +115,7 @@ def paint(axes: Axes, collection: Any, values: np.ndarray, label: str) -> None:
     collection.set(array=values, cmap=colour_map, norm=norm)
     bar = figure_of(axes).colorbar(collection, ax=axes, shrink=0.85, pad=0.02, aspect=30)
     bar.set_label(label)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
 
 
 def mean_over_beams(ice: Any, values: np.ndarray) -> np.ndarray:
@@ -127,7 +127,8 @@ def mean_over_beams(ice: Any, values: np.ndarray) -> np.ndarray:
     return total / np.maximum(count, 1)
 
 
-def quantity(output: Output, name: str, time: float, on_cells: bool):
+def quantity(output: Output, name: str, time: float,
+             on_cells: bool) -> tuple[np.ndarray, str, bool]:
     """Values of a quantity in a readable unit, label with that unit, and whether they belong to
     cells."""
     if name in BODY_QUANTITIES:
@@ -229,7 +230,7 @@ def fragments(output: Output, time: float | None = None, axes: Axes | None = Non
         axes.add_collection(lines)
         bar = figure_of(axes).colorbar(lines, ax=axes, shrink=0.85,
                                        label=f"time of the break{unit_of_time(output)}")
-        bar.outline.set_visible(False)  # type: ignore[operator]
+        bar.outline.set_visible(False)
     axes.set_aspect("equal")
     axes.autoscale()
     axes.set(xlabel="x [m]", ylabel="y [m]")

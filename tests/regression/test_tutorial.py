@@ -37,8 +37,8 @@ class Tutorial(FolderTest):
         self.assertGreater(min(found["maxima"]), 1000, "every passage loads the cone")
         # Each maximum is below the largest step of its run, and the curve rises as it gets rarer.
         with open(self.folder / "out/seeds/runs.csv", newline="") as file:
-            peaks = {row["run"]: np.linalg.norm([float(row[f"peak_force_cone_{axis}"])
-                                                 for axis in "xyz"]) for row in csv.DictReader(file)}
+            peaks = {row["run"]: np.linalg.norm([float(row[f"peak_force_cone_{a}"]) for a in "xyz"])
+                     for row in csv.DictReader(file)}
         for folder, largest in zip(found["runs"], found["largest_of_runs"]):
             self.assertLess(largest, peaks[os.path.basename(folder)])
         values = [level["moments"] for level in found["gumbel"]["levels"]]
