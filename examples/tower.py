@@ -23,7 +23,7 @@ MASS, INERTIA = 2e5, 4e6  # [kg, kg m^2 about y]
 STIFFNESS, TURNING = 3e7, 4e9  # of the support [N/m, N m]
 DAMPING = 2e-3  # of both, as part of the stiffness [s]
 CENTRE, SUPPORT = np.array([4.01, 0.0, 0.0]), np.array([4.01, 0.0, -8.0])
-END, DT = 1.0, 5e-5  # [s]
+END, DT = 1.0, 1e-4  # [s]
 SCENE = {
     "integrator": "explicit", "forces": ["beam", "contact"],
     "sheet": {"length": 6, "width": 4, "thickness": 0.4, "element_size": 1, "iterations": 10},
@@ -73,6 +73,8 @@ def coupled(step, folder, tolerance=1e-6, most=30):
     tower, load, found, tries = Tower(), np.zeros(2), [np.zeros(2)], 0
     scene = floe.Scene(SCENE, name="tower", output_dir=str(folder / f"coupled_{step:g}"))
     exchanges = round(END / step)
+    if abs(round(step / DT) * DT - step) > 1e-9:
+        raise ValueError(f"{step:g} s must be a multiple of {DT:g} s, floe's own step")
     with floe.Simulation(scene, coupled=["pile"]) as sim:
         pile = sim["pile"]
         scale = np.array([1e5, 1e6])  # of loads, below which changes do not count [N, N m]
@@ -147,8 +149,8 @@ def errors(steps, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=float, nargs="+",
-                        default=[0.1, 0.05, 0.025, 0.0125, 0.00625],
-                        help="exchange steps [s], each a whole multiple of the last")
+                        default=[0.1, 0.05, 0.02, 0.01, 0.005, 0.0025],
+                        help="exchange steps [s], whole multiples of floe's step and of the least")
     steps = parser.parse_args().steps
     print("modes of the tower:", ", ".join(f"{f:.3g} Hz" for f in Tower().frequencies))
     with tempfile.TemporaryDirectory() as folder:

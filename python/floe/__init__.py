@@ -17,8 +17,11 @@ from .errors import InputError
 from .failures import CallbackError, RunFailed
 
 if TYPE_CHECKING:
+    import os
+
     from .force import Force
     from .library import rank, size, version
+    from .run import Run
     from .scene import Option, Scene, options
     from .simulation import Motion, Pose, Simulation, State, Wrench
 
@@ -43,7 +46,7 @@ def __dir__():
     return sorted({*globals(), *_HOMES})
 
 
-def open(folder):  # noqa: A001
+def open(folder: "str | os.PathLike[str]") -> "Run":  # noqa: A001
     """The results in an output folder, or in the folder of an ensemble: floe.run.Run."""
     from .run import open_run
     return open_run(folder)

@@ -61,6 +61,13 @@ std::string first_difference(const std::string& here, const std::string& there) 
   return "table";
 }
 
+/// Returns what a program does to the run, which stands behind the fingerprint of its obstacles.
+std::string of_program(const std::string& obstacles) {
+  const auto at = obstacles.find("; ");
+  return at == std::string::npos ? "no program moves obstacles or gives forces"
+                                 : obstacles.substr(at + 2);
+}
+
 /// Beginning of messages about a checkpoint.
 std::string named(const std::string& file) { return "checkpoint: restart: '" + file + "' "; }
 
@@ -240,6 +247,10 @@ void Checkpoints::head(Archive& archive) {
   if (lattice != options_.lattice)
     throw OtherRun(named(options_.restart) + "is of another lattice (" + lattice +
                    "; this scene's is " + options_.lattice + ")");
+  const std::string program = of_program(obstacles), here = of_program(options_.obstacles);
+  if (program != here)
+    throw OtherRun(named(options_.restart) + "is of a run in which " + program + "; in this one " +
+                   here);
   if (obstacles != options_.obstacles)
     throw OtherRun(named(options_.restart) +
                    "is of obstacles of other shapes: a file of theirs "

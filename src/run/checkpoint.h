@@ -23,7 +23,8 @@ struct CheckpointOptions {
   std::string stop_file;  ///< its presence asks for a checkpoint and a stop
   std::string restart;    ///< checkpoint to go on from; empty: start at t = 0
   std::string lattice;    ///< fingerprint of the lattice
-  std::string obstacles;  ///< fingerprint of the obstacles' shapes
+  /// Fingerprint of the obstacles' shapes; then, after "; ", what a program does to the run.
+  std::string obstacles;
   /// Fingerprints of the tables that files give, a line each: KEY: fingerprint; empty: none.
   std::string tables;
   std::string options;  ///< every option as used

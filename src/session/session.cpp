@@ -55,6 +55,7 @@ Mpi::Mpi(int& argc, char**& argv) {
 }
 
 Mpi::Mpi(Guest) {
+  std::set_terminate(report_uncaught);  // of what a callback of PETSc lets through
   set_failure_handler(throw_known_failure);
   int running = 0;
   MPI_Initialized(&running);

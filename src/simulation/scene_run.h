@@ -29,6 +29,7 @@ struct RunHooks {
   std::function<void(Archive&)> others;                          ///< CheckpointOptions::others
   BalanceOptions balance;                                        ///< for explicit runs with contact
   std::optional<SupplyOptions> supply;                           ///< for ice without end
+  std::string program;  ///< what a program does to the model, for checkpoints; empty: nothing
   std::function<void(const std::vector<std::int32_t>&)> remake;  ///< DynamicOptions::remake
   std::function<bool()> wants_pause;                             ///< CheckpointOptions
   const std::vector<PlacedLoad>* loads = nullptr;                ///< for static: monitor

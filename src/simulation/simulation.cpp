@@ -117,6 +117,17 @@ bool can_go_back(const Scene& scene) {
   return scene.integrator == Integrator::explicit_ && !scene.check_only && !scene.supply.on;
 }
 
+/// Describes what a program does to a model: a checkpoint of that is no other run's.
+std::string part_of_program(const SimulationSettings& settings) {
+  std::string text;
+  for (const std::string& name : settings.coupled)
+    text += (text.empty() ? " moves or loads " : ", ") + name;
+  if (!settings.forces.empty())
+    text += (text.empty() ? " gives " : " and gives ") + std::to_string(settings.forces.size()) +
+            (settings.forces.size() == 1 ? " force" : " forces");
+  return text.empty() ? text : "; a program" + text;
+}
+
 bool is_coupled(const Setting& setting, const std::string& obstacle) {
   const std::vector<std::string>& names = setting.settings.coupled;
   return std::find(names.begin(), names.end(), obstacle) != names.end();
@@ -269,6 +280,7 @@ RunningIn<Space>::RunningIn(Setting& setting, const Simulation::Observer& observ
                    .others = [this](Archive& archive) { persist(archive); },
                    .balance = std::move(balance),
                    .supply = supply(),
+                   .program = part_of_program(setting_.settings),
                    .remake = setting_.settings.goes_back && can_go_back(scene_)
                                  ? [this](const std::vector<std::int32_t>& owner) { divide(owner); }
                                  : std::function<void(const std::vector<std::int32_t>&)>{},

@@ -113,6 +113,50 @@ class Prescribed(PythonTest):
                          (self.folder / "two.raw").read_bytes())
 
 
+class Checkpoints(PythonTest):
+    def test_a_run_goes_on_with_its_motions_and_loads(self):
+        """A checkpoint keeps what Python moves and loads; a run in which nobody does is another."""
+        self.scene(CONE)
+        self.scene(LEG, "leg.yaml")
+        self.python("""
+            import shutil
+            for scene in ("s.yaml", "leg.yaml"):
+                def act(sim):
+                    if scene == "s.yaml":
+                        sim["cone"].prescribe([7.6, 0, -3], [-1, 0, 0])
+                    else:
+                        sim["cone"].apply([-5e4, 1e4, 0], [0, 1e4, 0])
+                def make(name, **options):
+                    return floe.Simulation(floe.Scene(scene, output_dir=name, time_end=0.15,
+                                                      **options), coupled=["cone"])
+                for name in ("whole", "part"):
+                    shutil.rmtree(name, ignore_errors=True)
+                whole = make("whole")
+                act(whole)
+                whole.run()
+                part = make("part", ts_max_steps=500)
+                act(part)
+                part.run().close()
+                for coupled in ([], ["cone"]):
+                    sim = None
+                    try:
+                        sim = floe.Simulation(floe.Scene(
+                            scene, checkpoint_restart="part/checkpoint.h5", time_end=0.15,
+                            output_dir="part", ts_max_steps=750), coupled=coupled)
+                        sim.run()
+                    except floe.InputError as error:
+                        assert not coupled, error
+                        assert "a program moves or loads cone; in this one no program" in str(error)
+                    else:
+                        assert coupled
+                    if sim is not None and coupled:
+                        assert sim.time == whole.time, sim.time
+                        assert (last(sim) == last(whole)).all()
+                    sim and sim._free()
+                whole.close()
+        """)
+
+
 class Applied(PythonTest):
     def test_constant_load_is_that_of_the_scene(self):
         """A force that Python applies before the first step is the scene's load, bit for bit, and

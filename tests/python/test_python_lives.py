@@ -190,7 +190,7 @@ left.step_to(0.05)
     def test_interrupt_of_one_rank(self):
         """A signal's exception on one rank pauses all of them, which get KeyboardInterrupt."""
         out = self.python(KEYS + """
-import os, signal, threading
+import os, pathlib, signal, threading, time
 class Stop(Exception):
     pass
 def stop(*_):
@@ -198,11 +198,16 @@ def stop(*_):
 signal.signal(signal.SIGUSR1, stop)
 keys["time"]["end"] = 1e5
 keys["limit"] = {"frames": 1e12, "disk": 1e12}
-keys["output"] = {"history": 1e4}
+keys["output"] = {"history": 0.1}
 sim = floe.Simulation(floe.Scene(keys))
 sim.step_to(0.01)
+history = pathlib.Path("out/scene/history.csv")
+def kill():
+    while len(history.read_text().splitlines()) < 4:  # then step_to() is under way
+        time.sleep(0.01)
+    os.kill(os.getpid(), signal.SIGUSR1)
 if floe.rank() == 1:
-    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGUSR1)).start()
+    threading.Thread(target=kill).start()
 try:
     sim.step_to(1e5)
 except Stop:
@@ -224,7 +229,7 @@ sim.close()
         (self.folder / "script.py").write_text(BEGIN + KEYS + """
 keys["time"]["end"] = 1e5
 keys["limit"] = {"frames": 1e12, "disk": 1e12}
-keys["output"] = {"history": 1e4}
+keys["output"] = {"history": 0.1}
 sim = floe.Simulation(floe.Scene(keys))
 sim.step_to(0.01)
 print("stepping", flush=True)
@@ -244,7 +249,9 @@ sim.close()
                                    env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(self.end, process)
         self.assertEqual(process.stdout.readline(), "stepping\n")
-        time.sleep(1)
+        history = self.folder / "out/scene/history.csv"
+        while process.poll() is None and len(history.read_text().splitlines()) < 4:
+            time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         out, error = process.communicate()
         self.assertEqual((out, process.returncode), ("on\n", 0), error)

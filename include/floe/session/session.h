@@ -30,8 +30,8 @@ class Mpi {
   struct Guest {};
 
   Mpi(int& argc, char**& argv);
-  /// Initialises MPI only if nobody has, and finalises it only then; installs no handlers of
-  /// crashes and of uncaught exceptions. Floe's messages get a communicator of their own.
+  /// Initialises MPI only if nobody has, and finalises it only then; installs the terminate
+  /// handler, but no handlers of crashes. Floe's messages get a communicator of their own.
   explicit Mpi(Guest);
   ~Mpi();
   Mpi(const Mpi&) = delete;
