@@ -28,10 +28,13 @@ constexpr std::size_t longest_line = 1U << 20U;
 class Reader {
  public:
   Reader(const std::string& file, double unit, const std::string& key)
-      : where_(key + ": '" + file + "'"), unit_(unit), file_(file, std::ios::binary) {
+      : where_(key + ": '" + file + "'"), unit_(unit) {
     std::error_code error;
+    if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
+      refuse("is not a regular file");  // a pipe would be waited for
     size_ = std::filesystem::file_size(file, error);
-    if (error || !std::filesystem::is_regular_file(file, error) || !file_) refuse("cannot be read");
+    file_.open(file, std::ios::binary);
+    if (error || !file_) refuse("cannot be read");
     if (size_ > most_bytes)
       refuse("has " + std::to_string(size_) + " bytes, must have at most " +
              std::to_string(most_bytes));

@@ -149,13 +149,15 @@ class Case:
                 words += ["-" + "_".join(path), value.strip("[]").replace(", ", ",")]
         self.put_scene(write_scene(made.scene), words)
         self.files.update(made.all_files())
-        self.must = None if spoilt or held else 0
+        self.must = None if spoilt or held or made.may_overlap else 0
 
     def make_table(self, chance):
         made = fuzz_structures.Made(chance)
         while not made.tables:
             made = fuzz_structures.Made(chance)
         self.must = made.spoil_table()
+        if made.may_overlap and self.must == 0:
+            self.must = None
         self.put_scene(write_scene(made.scene), bound(made.scene, chance))
         self.files.update(made.all_files())
 

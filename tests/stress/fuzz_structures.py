@@ -136,6 +136,13 @@ class Made:
             self.add_obstacle(f"o{k}", k)
         self.add_parts()
         names = [name for name, _ in self.obstacles]
+        self.may_overlap = False  # structures and other obstacles, at the start
+        if sum(("obstacle", name, "part_of") not in self.scene for name in names) > 1:
+            for name in self.structures:
+                if chance.random() < 0.8:
+                    self.put("obstacle", name, "touches", "ice")
+                else:
+                    self.may_overlap = True
         self.scene[("obstacle", "names")] = "[" + ", ".join(names) + "]"
         self.add_lines()
         self.add_motions()

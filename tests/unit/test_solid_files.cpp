@@ -1,5 +1,6 @@
 // Files of solids: what is read, what is refused and by which words, and what is kept of them.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -70,7 +71,9 @@ TEST(SolidFiles, BadFilesAreRefused) {
   const std::string good = binary_stl(box(1, 1, 1));
   EXPECT_EQ(refusal("none.stl"), "cannot be read");
   std::filesystem::create_directory("folder.stl");
-  EXPECT_EQ(refusal("folder.stl"), "cannot be read");
+  EXPECT_EQ(refusal("folder.stl"), "is not a regular file");
+  ASSERT_EQ(mkfifo("pipe.stl", 0600), 0);
+  EXPECT_EQ(refusal("pipe.stl"), "is not a regular file");
   const std::vector<std::pair<std::string, std::string>> cases{
       {"a.ply|" + good, "must end in .stl or .obj"},
       {"empty.stl|", "is no STL file, or incomplete: it has 0 bytes"},

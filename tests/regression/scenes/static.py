@@ -1,9 +1,14 @@
 """Sheets and lattices in equilibrium: moduli, deflections, calibrated stiffnesses."""
+import sys
+
 import numpy as np
 
-import campaign_cases
-from floe.sheets import plate
+from launch import REPOSITORY
 from scenes.shared import last_row
+
+sys.path.insert(0, str(REPOSITORY / "tools"))
+import campaign_cases  # noqa: E402
+from floe.sheets import plate  # noqa: E402
 
 YOUNG = 4e9  # of the triangles [Pa]
 # r = k_s/k_n
