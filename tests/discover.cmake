@@ -1,7 +1,7 @@
 # Run by ctest before it looks at its tests: adds an entry for each case of the GoogleTest programs
 # for several ranks, at 1 and 2 ranks, in the long form at 3 as well (some at one more), and for
-# each group of cases of the Python tests. What is set here comes from CMakeLists.txt: source, mpi_tests
-# (folder and program, by a blank), mpiexec, environment, floe, hangs [s].
+# each group of cases of the Python tests. What is set here comes from CMakeLists.txt: source,
+# mpi_tests (folder and program, by a blank), mpiexec, environment, floe, hangs [s].
 
 # Long forms take long. (CMake's own function, which comes first, leaves the names of its tests in
 # PROGRAM_TESTS.)

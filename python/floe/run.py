@@ -9,6 +9,7 @@ Also of a run that is under way: each attribute is of what is there when it is a
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -321,7 +322,7 @@ def is_ensemble(folder: Path) -> bool:
     return (folder / "ensemble.json").exists() or not is_run(folder) and bool(runs_below(folder))
 
 
-def open_run(folder: str | Path) -> Run:
+def open_run(folder: str | os.PathLike[str]) -> Run:
     """The results in an output folder, or in the folder of an ensemble (Run.ensemble). InputError
     if it is neither."""
     path = Path(folder)

@@ -56,9 +56,9 @@ struct PrescribedMotion {
 /// \param lattice  whole; not used after construction
 /// \param prescribed  what it names must outlive the force
 /// Bodies of the lattice may have several convex parts that share no vertices.
-/// \throws InputError if the lattice has no shapes, a part is not convex, parts overlap, a body lies wholly
-/// inside another or inside an obstacle, or overlaps it by more than a tenth of the smaller size
-/// (unless initial_overlap is stress_free)
+/// \throws InputError if the lattice has no shapes, a part is not convex, parts overlap, a body
+/// lies wholly inside another or inside an obstacle, or overlaps it by more than a tenth of the
+/// smaller size (unless initial_overlap is stress_free)
 std::unique_ptr<Contact> make_contact(const Part& part, const Lattice& lattice,
                                       const ContactOptions& options,
                                       std::vector<Obstacle> obstacles,

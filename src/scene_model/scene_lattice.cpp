@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "floe/base/item.h"
-#include "geometry/connected_parts.h"
 #include "floe/base/petsc.h"
 #include "floe/files/log.h"
 #include "floe/mesh/cuts.h"
+#include "geometry/connected_parts.h"
 #include "run/expected_cost.h"
 #include "scene/reading.h"
 #include "scene_model/bonds.h"

@@ -194,7 +194,8 @@ class Bodies(SceneTest):
 
     def setUp(self):
         super().setUp()
-        whole = fl.blocks(np.array([[2, 1, 0.5], [1, 1, 1]]), np.array([[0, 0, 0.4], [0.3, 0, 1.3]]))
+        whole = fl.blocks(np.array([[2, 1, 0.5], [1, 1, 1]]),
+                          np.array([[0, 0, 0.4], [0.3, 0, 1.3]]))
         halves = fl.blocks(
             np.array([[1, 1, 0.5], [1, 1, 0.5], [1, 1, 0.5], [1, 0.5, 0.5], [1, 0.5, 0.5]]),
             np.array([[-0.5, 0, 0.4], [0.5, 0, 0.4], [0.3, 0, 1.05], [0.3, 0.25, 1.55],
@@ -237,9 +238,9 @@ class Bodies(SceneTest):
         lattice.beam = {"length": length,
                         **fl.Section(1, 1, young=1e7, poisson=0.3).scalars(length)}
         lattice.write(self.folder / "joined.h5")
-        scene = TUMBLE.replace("LATTICE", "joined.h5").replace("[gravity, ", "[beam, ").replace(
-            "velocity: [0.5, 0.2, 0], angular_velocity: [0.3, 1, 1]", "velocity: [0, 0, 1]").replace(
-            "end: 1,", "end: 0.1,")
+        scene = (TUMBLE.replace("LATTICE", "joined.h5").replace("[gravity, ", "[beam, ")
+                 .replace("[0.5, 0.2, 0], angular_velocity: [0.3, 1, 1]", "[0, 0, 1]")
+                 .replace("end: 1,", "end: 0.1,"))
         self.run_scene(scene, name="joined")
         rows = rows_of(self.folder / "out/joined")
         self.assertEqual(np.max(rows["contacts"]), 0)
