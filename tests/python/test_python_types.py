@@ -3,8 +3,11 @@
 import shutil
 import subprocess
 import unittest
+from pathlib import Path
 
 from in_python import PACKAGE, PythonTest
+
+CONFIGURATION = Path(__file__).resolve().parents[2] / "python/mypy.ini"
 
 
 class Types(PythonTest):
@@ -23,7 +26,8 @@ with floe.Simulation(scene, coupled=["cone"]) as sim:
 """)
         for words in (["-p", "floe"], ["user.py"]):
             done = subprocess.run(
-                ["mypy", "--ignore-missing-imports", "--cache-dir", self.folder / "cache", *words],
+                ["mypy", "--config-file", CONFIGURATION, "--cache-dir", self.folder / "cache",
+                 *words],
                 cwd=self.folder, env={"PATH": "/usr/bin:/bin", "MYPYPATH": str(PACKAGE)},
                 capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)

@@ -608,7 +608,8 @@ class Lines(StructureTest):
 
     def test_refusals(self):
         for name, rows in (("line", "1, 5\n2, 4"), ("slack", "0, 0\n1, 0"),
-                           ("huge", "0, 0\n1, 1e13"), ("long", "0, 0\n1e300, 1"), ("steep", "0, 0\n1e-9, 1e12")):
+                           ("huge", "0, 0\n1, 1e13"), ("long", "0, 0\n1e300, 1"),
+                           ("steep", "0, 0\n1e-9, 1e12")):
             (self.folder / f"{name}.csv").write_text(f"length, tension\n{rows}\n")
         for words, part in (
                 ("stiffness: 1", "line: east: pretension"),
