@@ -24,7 +24,7 @@ if sanitizer():
     ENVIRONMENT["LD_PRELOAD"] = sanitizer()
 
 
-BEGIN = "import sys\nimport numpy as np\nimport floe\nfrom scenes import BLOCKS, last, memory\n"
+BEGIN = "import sys\nimport numpy as np\nimport floe\nfrom coupled_scenes import BLOCKS, last, memory\n"
 
 
 class PythonTest(launch.FolderTest):

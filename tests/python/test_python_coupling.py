@@ -3,7 +3,7 @@
 import unittest
 
 from in_python import PythonTest
-from scenes import CONE, LEG
+from coupled_scenes import CONE, LEG
 
 
 class Prescribed(PythonTest):

@@ -8,7 +8,7 @@ import time
 import unittest
 
 from in_python import BEGIN, ENVIRONMENT, PythonTest
-from scenes import CONE, LEG, assert_same_run
+from coupled_scenes import CONE, LEG, assert_same_run
 
 KEYS = "keys = BLOCKS\n"
 

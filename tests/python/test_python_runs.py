@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 
 from in_python import PythonTest
-from scenes import CONE, LEG, assert_same_run
+from coupled_scenes import CONE, LEG, assert_same_run
 
 STEPPED = """
     samples = []
