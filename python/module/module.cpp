@@ -135,13 +135,9 @@ class Run {
     if (size() > 1)
       floe::check(MPI_Allreduce(MPI_IN_PLACE, &came, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD));
     if (came == 0) return;
-    if (!interrupt()) {
-      PyErr_SetString(PyExc_KeyboardInterrupt, "another rank was interrupted");
-      throw py::error_already_set();
-    }
-    py::error_already_set error = std::move(*interrupt());
-    interrupt().reset();
-    throw error;
+    if (auto mine = std::exchange(interrupt(), std::nullopt)) throw std::move(*mine);
+    PyErr_SetString(PyExc_KeyboardInterrupt, "another rank was interrupted");
+    throw py::error_already_set();
   }
   struct Quiet {
     explicit Quiet(bool progress) { show_progress(progress); }
@@ -207,6 +203,7 @@ void register_errors() {
              failures = py::module_::import("floe.failures");
   static const auto* const all = new std::array<py::object, 3>{
       errors.attr("InputError"), failures.attr("CallbackError"), failures.attr("RunFailed")};
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 wants it by value
   py::register_exception_translator([](std::exception_ptr error) {
     const auto raise = [](std::size_t type, const std::exception& why) {
       PyErr_SetString((*all)[type].ptr(), why.what());
@@ -264,13 +261,14 @@ void define_scene(py::module_& m) {
       .def_property_readonly("warnings", [](const ReadScene& r) { return r.scene.warnings; })
       .def_property_readonly("obstacles", [](const ReadScene& r) {
         std::vector<std::string> names;
+        names.reserve(r.scene.obstacles.size());
         for (const Obstacle& obstacle : r.scene.obstacles) names.push_back(obstacle.name);
         return names;
       });
 }
 
 void define_run(py::module_& m) {
-  py::class_<SavedState, std::shared_ptr<SavedState>>(m, "State");
+  const py::class_<SavedState, std::shared_ptr<SavedState>> state(m, "State");
   py::class_<Run>(m, "Run")
       .def(py::init<const ReadScene&, const std::vector<std::string>&, const py::list&, bool, bool,
                     bool>(),
