@@ -153,8 +153,9 @@ void Contacts::evaluate_pairs(const Law& law, const OffloadedOverlaps& offloaded
 }
 
 /// Takes over the contacts of a body, or of an obstacle that a body carries, with an obstacle,
-/// where one of them has several parts or both are obstacles. \param first  index of the first of
-/// their pairs \returns the index behind their last pair
+/// where one of them has several parts or both are obstacles.
+/// \param first  index of the first of their pairs
+/// \returns the index behind their last pair
 // Not inlined: the loop over all pairs is not to pay for it.
 template <IsContactLaw Law>
 [[gnu::noinline]] std::int32_t Contacts::meet_parts(const Law& law, std::int32_t first,

@@ -1,61 +1,29 @@
 // A scene's run, from the lock of its folder to its summary.
-#include "floe/simulation.h"
-
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <optional>
-#include <tuple>
 #include <type_traits>
 
-#include "base/collectives.h"
-#include "base/union_find.h"
-#include "contact_force/contact.h"
 #include "explicit/explicit_ts_options.h"
-
 #include "files/files.h"
-#include "files/run_log.h"
 #include "floe/base/item.h"
-#include "floe/base/petsc.h"
-#include "floe/beams/moduli.h"
 #include "floe/files/log.h"
 #include "floe/options/options.h"
 #include "floe/scene/restart.h"
 #include "floe/session/session.h"
 #include "floe/session/unused_options.h"
 #include "floe/session/version.h"
-#include "forces/program_force.h"
-#include "lattice/packed_lattice.h"
-#include "output/output.h"
-#include "run/dynamic_run.h"
-#include "run/run.h"
-#include "run_folder/run_folder.h"
-#include "scene_model/scene_model.h"
-#include "scene_model/supplied_ice.h"
 #include "session/run_place.h"
 #include "session/signals.h"
-#include "simulation/plan.h"
-#include "simulation/scene_run.h"
-#include "simulation/summary.h"
+#include "simulation/running.h"
 
 namespace floe {
 namespace {
 
 constexpr int exit_failed = 1;
 
-using Columns = std::vector<std::pair<std::string, double>>;
-
-/// The initial state, kept until the output folder exists.
-template <class Space>
-struct First {
-  State<Space> state;
-  Wrenches<Space> wrenches;
-  Columns columns, forces;
-};
-
-std::vector<std::string> names_of(const Columns& forces, const Columns& integrator) {
+std::vector<std::string> names_of(const NamedValues& forces, const NamedValues& integrator) {
   std::vector<std::string> names;
-  for (const Columns* columns : {&forces, &integrator}) {
+  for (const NamedValues* columns : {&forces, &integrator}) {
     for (const auto& [name, value] : *columns) names.push_back(name);
   }
   return names;
@@ -71,15 +39,6 @@ Vec3<double> strips_of(const Scene& scene, const Lattice& lattice) {
   return way_to_nearest(scene.obstacles, (1.0 / static_cast<double>(places.size())) * sum);
 }
 
-/// Returns the moduli of a sheet's lattice; of a regular one where all bodies lie on its sides.
-LatticeModuli moduli_of(const Scene& scene, const Lattice& lattice) {
-  const LatticeRatios ratios = lattice_ratios(lattice, scene.beam.shear);
-  if (std::isfinite(ratios.irregularity))
-    return lattice_moduli(ratios, scene.ice.poisson, scene.beam.shear);
-  return lattice_moduli(scene.sheet.element_size, scene.thickness, scene.ice, scene.shear_factor,
-                        scene.beam.shear, scene.torsion);
-}
-
 /// Refuses a folder with files of another run, which would be cut back.
 void require_same_run(const Scene& scene, const RunFolder& folder, const std::string& run) {
   if (run.empty())
@@ -89,32 +48,6 @@ void require_same_run(const Scene& scene, const RunFolder& folder, const std::st
   throw InputError("checkpoint: restart: '" + scene.checkpoint.restart +
                    "' is of another run than the files in " + scene.output.dir +
                    "; a run goes on in the folder where it began");
-}
-
-/// What a simulation has before its model.
-struct Setting {
-  Scene scene;
-  SimulationSettings settings;
-  std::optional<RunFolder> folder;  ///< none if the scene is only checked
-  MeshReport mesh;
-  Lattice lattice;
-  ModelChoice choice;
-
-  void say(const std::string& text) const {
-    if (settings.talks && rank() == 0) print(text);
-  }
-  /// Prints the scene's warnings. Bad input ends with a single line, so they come only when the run
-  /// is known to be possible.
-  void say_warnings() const {
-    if (!settings.talks || rank() != 0) return;
-    for (const std::string& warning : scene.warnings)
-      print_error("floe: warning: " + warning + "\n");
-  }
-};
-
-/// Whether a run of the scene may go back to a saved state.
-bool can_go_back(const Scene& scene) {
-  return scene.integrator == Integrator::explicit_ && !scene.check_only && !scene.supply.on;
 }
 
 /// Describes what a program does to a model: a checkpoint of that is no other run's.
@@ -128,127 +61,13 @@ std::string part_of_program(const SimulationSettings& settings) {
   return text.empty() ? text : "; a program" + text;
 }
 
-bool is_coupled(const Setting& setting, const std::string& obstacle) {
-  const std::vector<std::string>& names = setting.settings.coupled;
-  return std::find(names.begin(), names.end(), obstacle) != names.end();
-}
-
 /// The scene's claim to its output folder.
 FolderWish wish_of(const Scene& scene) {
   return {scene.output.dir, scene.path, scene.inputs, scene.output.overwrite,
           !scene.checkpoint.restart.empty()};
 }
 
-/// Of one simulation.
-class KeptState final : public SavedState {
- public:
-  const void* of = nullptr;
-  std::unique_ptr<const RunState> run;
-  std::optional<OutputState> output;  ///< none: no file was written
-};
-
-/// The model of a simulation and its run, in space or in the plane.
-class Running {
- public:
-  virtual ~Running() = default;
-  virtual bool prepare() = 0;
-  virtual bool advance(double until) = 0;
-  virtual Results finish() = 0;
-  virtual double time() const = 0;
-  virtual std::vector<BodyState> bodies() const = 0;
-  virtual const Part& part() const = 0;
-  virtual const RunResult& outcome() const = 0;
-  virtual BodyTable all_bodies() const = 0;
-  virtual BeamTable beams() const = 0;
-  virtual std::vector<ContactOfPair> contacts() = 0;
-  virtual Columns columns() = 0;
-  virtual std::vector<ObstacleNow> obstacles() = 0;
-  virtual void drive(std::size_t k, const PlaceAndMotion& to, std::optional<double> until) = 0;
-  virtual void apply(std::size_t structure, const Vec3<double>& force,
-                     const Vec3<double>& moment) = 0;
-  virtual std::shared_ptr<const SavedState> save() = 0;
-  virtual void restore(const SavedState& state) = 0;
-};
-
-template <class Space>
-class RunningIn final : public Running {
- public:
-  RunningIn(Setting& setting, const Simulation::Observer& observer);
-
-  bool prepare() override { return run_->prepare(); }
-  bool advance(double until) override { return run_->advance(until); }
-  Results finish() override;
-  double time() const override { return run_->time(); }
-  std::vector<BodyState> bodies() const override;
-  const Part& part() const override { return model_->part(); }
-  const RunResult& outcome() const override { return run_->outcome(); }
-  BodyTable all_bodies() const override;
-  BeamTable beams() const override;
-  std::vector<ContactOfPair> contacts() override;
-  Columns columns() override;
-  std::vector<ObstacleNow> obstacles() override;
-  void drive(std::size_t k, const PlaceAndMotion& to, std::optional<double> until) override;
-  void apply(std::size_t structure, const Vec3<double>& force, const Vec3<double>& moment) override;
-  std::shared_ptr<const SavedState> save() override;
-  void restore(const SavedState& state) override;
-
- private:
-  const State<Space>* state() const;
-  std::int32_t body_of(std::size_t structure) const {
-    return model_->part().global_bodies - static_cast<std::int32_t>(scene_.structures.size()) +
-           static_cast<std::int32_t>(structure);
-  }
-  void open(const std::vector<std::string>& columns);
-  void prepare_output(const std::vector<std::string>& columns) {
-    if (!output_) open(columns);
-  }
-  void equip(const Lattice& lattice);
-  void add_forces_of_program();
-  void add_far_edge();
-  void divide(const std::vector<std::int32_t>& owner);
-  BalanceOptions balance();
-  std::optional<SupplyOptions> supply();
-  void divide(Lattice lattice, const std::vector<std::int32_t>& owner);
-  Renumbering change(SuppliedIce::Change change, const IceNow& now);
-  void persist_ice(Archive& archive);
-  PresentMesh present_mesh() const;
-  bool plan(const RunPlan& plan);
-  void observe(const Accepted<Space>& accepted);
-  void show(std::int64_t step);
-  void persist(Archive& archive);
-
-  Setting& setting_;
-  const Simulation::Observer& observer_;
-  const Scene& scene_ = setting_.scene;
-  const bool is_static_ = scene_.integrator == Integrator::quasistatic;
-  const std::string lattice_id_ = fingerprint(setting_.lattice);
-  const OutputSize size_of_output_ =
-      output_size(setting_.lattice, scene_.forces.fracture, scene_.boundaries.size(),
-                  scene_.loads.size(), scene_.obstacles.size());
-  PackedLattice packed_;
-  /// The lattice once more, for moves of bodies between ranks; empty where none can move.
-  Lattice whole_;
-  PackedLattice packed_whole_;
-  LatticeModuli moduli_ = setting_.scene.supply.absorbs
-                              ? moduli_of(setting_.scene, setting_.lattice)
-                              : LatticeModuli{};             ///< over that of the ice
-  double young_ = moduli_.young * setting_.scene.ice.young;  ///< of the sheet [Pa]
-  const FarEdge<Space>* far_edge_ = nullptr;
-  std::int64_t mesh_frame_ = 0;  ///< first frame of the mesh of the present bodies, on a restart
-  std::vector<std::int32_t> owner_;  ///< of the bodies since ice has joined or left last
-  std::vector<PlacedLoad> loads_;
-  std::optional<Model<Space>> model_;
-  std::optional<OutOfPlane> out_of_plane_;
-  std::unique_ptr<Output<Space>> output_;
-  std::optional<OutputArchive> restart_;  // history of the files to go on with, from a checkpoint
-  std::optional<First<Space>> first_;
-  const State<Space>* state_ = nullptr;  // of the last accepted state
-  Contact* contact_ = nullptr;           // null without contact
-  bool keeps_contacts_ = false;          // of contacts the forces
-  std::shared_ptr<std::vector<AppliedWrench>> applied_ =
-      std::make_shared<std::vector<AppliedWrench>>();
-  std::unique_ptr<Run> run_;
-};
+}  // namespace
 
 /// Makes the model: this rank's part of the lattice, boundaries, forces.
 template <class Space>
@@ -560,239 +379,6 @@ std::vector<BodyState> RunningIn<Space>::bodies() const {
   }
   return all;
 }
-
-/// The last accepted state; null before the first one.
-template <class Space>
-const State<Space>* RunningIn<Space>::state() const {
-  if (auto* moving = dynamic_cast<DynamicRun<Space>*>(run_.get())) return &moving->state();
-  return state_;
-}
-
-template <class Space>
-BodyTable RunningIn<Space>::all_bodies() const {
-  BodyTable table;
-  const State<Space>* now = state();
-  const Part& part = model_->part();
-  constexpr std::size_t width = 14;
-  std::vector<double> mine;
-  for (std::size_t b = 0; now != nullptr && b < static_cast<std::size_t>(part.owned); ++b) {
-    const Vec3<double> x = part.bodies.position[b] + displacement(*now, b), v = velocity(*now, b),
-                       w = angular_velocity(*now, b);
-    const Quat<double> q = rotation(*now, b);
-    mine.insert(mine.end(), {x.x, x.y, x.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z,
-                             part.bodies.mass[b]});
-  }
-  const std::vector<double> all = all_gathered(mine, part.comm);
-  const std::vector<std::int32_t> index = all_gathered(
-      std::vector<std::int32_t>(part.global.begin(), part.global.begin() + part.owned), part.comm);
-  const std::size_t n = all.size() / width;
-  table.position.resize(n), table.orientation.resize(n), table.velocity.resize(n);
-  table.spin.resize(n), table.mass.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double* v = &all[k * width];
-    item(table.position, index[k]) = {v[0], v[1], v[2]};
-    item(table.orientation, index[k]) = {v[3], v[4], v[5], v[6]};
-    item(table.velocity, index[k]) = {v[7], v[8], v[9]};
-    item(table.spin, index[k]) = {v[10], v[11], v[12]};
-    item(table.mass, index[k]) = v[13];
-  }
-  if (setting_.mesh.ice) {
-    const auto names = setting_.mesh.ice->names_of_bodies();
-    table.index.assign(names.begin(), names.end());
-  }
-  for (auto k = static_cast<std::int32_t>(table.index.size()); k < static_cast<std::int32_t>(n);
-       ++k)
-    table.index.push_back(k);
-  // Pieces that unbroken beams join
-  std::vector<std::int32_t> joined;
-  for (std::size_t m = 0; m < part.counts_here.size(); ++m) {
-    const bool is_broken = model_->fracture() != nullptr &&
-                           model_->fracture()->damage(static_cast<std::int32_t>(m)) >= 1;
-    if (!part.counts_here[m] || is_broken) continue;
-    for (const std::int32_t local : part.beams.bodies[m])
-      joined.push_back(item(part.global, local));
-  }
-  joined = all_gathered(joined, part.comm);
-  UnionFind pieces(n);
-  for (std::size_t k = 0; k + 1 < joined.size(); k += 2) pieces.unite(joined[k], joined[k + 1]);
-  const std::vector<std::int32_t> root = pieces.representatives();
-  std::vector<double> mass(n, 0);
-  for (std::size_t b = 0; b < n; ++b) item(mass, root[b]) += table.mass[b];
-  std::vector<std::int32_t> order;
-  for (std::size_t b = 0; b < n; ++b)
-    if (root[b] == static_cast<std::int32_t>(b)) order.push_back(root[b]);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](auto a, auto b) { return item(mass, a) > item(mass, b); });
-  std::vector<std::int32_t> number(n);
-  for (std::size_t k = 0; k < order.size(); ++k)
-    item(number, order[k]) = static_cast<std::int32_t>(k);
-  for (std::size_t b = 0; b < n; ++b) table.fragment.push_back(item(number, root[b]));
-  return table;
-}
-
-template <class Space>
-BeamTable RunningIn<Space>::beams() const {
-  BeamTable table;
-  const State<Space>* now = state();
-  const Part& part = model_->part();
-  if (now == nullptr || model_->beams() == nullptr) return table;
-  if (auto* moving = dynamic_cast<DynamicRun<Space>*>(run_.get()))  // ghosts are of the last step
-    part.ghosts.update(moving->state().records, Space::record);
-  const std::vector<BeamSection> sections = model_->beams()->sections(*now);
-  constexpr std::size_t width = 7;
-  std::vector<std::int32_t> beams;  // global beam and its bodies
-  std::vector<double> values;
-  for (std::size_t m = 0; m < part.counts_here.size(); ++m) {
-    if (!part.counts_here[m]) continue;
-    const auto& [a, b] = part.beams.bodies[m];
-    beams.insert(beams.end(), {part.global_beam[m], item(part.global, a), item(part.global, b)});
-    values.insert(values.end(), sections[m].begin(), sections[m].end());
-    values.push_back(model_->fracture() != nullptr
-                         ? model_->fracture()->damage(static_cast<std::int32_t>(m))
-                         : 0);
-  }
-  beams = all_gathered(beams, part.comm);
-  values = all_gathered(values, part.comm);
-  const std::size_t n = beams.size() / 3;
-  table.bodies.resize(n), table.section.resize(n), table.damage.resize(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::int32_t beam = beams[3 * k];
-    item(table.bodies, beam) = {beams[3 * k + 1], beams[3 * k + 2]};
-    std::copy_n(&values[k * width], 6, item(table.section, beam).begin());
-    item(table.damage, beam) = values[k * width + 6];
-  }
-  return table;
-}
-
-template <class Space>
-std::vector<ContactOfPair> RunningIn<Space>::contacts() {
-  Contact* role = contact_;
-  if (role == nullptr) return {};
-  if (!keeps_contacts_) {
-    keeps_contacts_ = true;
-    role->keep_contacts();
-    run_->forces_have_changed();
-  }
-  run_->know_forces();
-  constexpr std::size_t width = 14;
-  std::vector<double> mine;
-  for (const ContactOfPair& c : role->contacts_here())
-    mine.insert(mine.end(),
-                {static_cast<double>(c.a), static_cast<double>(c.b),
-                 static_cast<double>(c.obstacle), c.force.x, c.force.y, c.force.z, c.point.x,
-                 c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.volume, c.area});
-  const std::vector<double> rows = all_gathered(mine, model_->part().comm);
-  std::vector<ContactOfPair> all;
-  for (std::size_t k = 0; k < rows.size(); k += width) {
-    const double* v = &rows[k];
-    all.push_back({.a = static_cast<std::int32_t>(v[0]),
-                   .b = static_cast<std::int32_t>(v[1]),
-                   .obstacle = static_cast<std::int32_t>(v[2]),
-                   .force = {v[3], v[4], v[5]},
-                   .point = {v[6], v[7], v[8]},
-                   .normal = {v[9], v[10], v[11]},
-                   .volume = v[12],
-                   .area = v[13]});
-  }
-  std::stable_sort(all.begin(), all.end(), [](const ContactOfPair& a, const ContactOfPair& b) {
-    return std::tie(a.a, a.b, a.obstacle) < std::tie(b.a, b.b, b.obstacle);
-  });
-  return all;
-}
-
-template <class Space>
-Columns RunningIn<Space>::columns() {
-  Columns now = run_->columns_now();
-  if (!now.empty() || !output_) return now;
-  return columns_of(output_->last());
-}
-
-template <class Space>
-std::vector<ObstacleNow> RunningIn<Space>::obstacles() {
-  Contact* role = contact_;
-  std::vector<ObstacleNow> all;
-  if (role == nullptr) return all;
-  run_->know_forces();
-  const auto wrenches = role->obstacle_wrenches();
-  const Part& part = model_->part();
-  const State<Space>& now = *state();
-  for (std::size_t k = 0; k < scene_.obstacles.size(); ++k) {
-    ObstacleNow& o = all.emplace_back();
-    o.name = scene_.obstacles[k].name;
-    o.coupled = is_coupled(setting_, o.name);
-    o.force = wrenches[k][0], o.moment = wrenches[k][1];
-    o.impulse = role->impulse(k);
-    for (std::size_t s = 0; s < scene_.structures.size(); ++s)
-      if (scene_.structures[s].obstacle == k) o.body = body_of(s);
-    if (o.body < 0) {
-      const DrivenMotion::Place place = role->place_of_obstacle(k, run_->time());
-      o.position = scene_.obstacles[k].point + place.way;
-      o.orientation = place.turn, o.velocity = place.rate, o.spin = place.spin;
-      continue;
-    }
-    std::array<double, 13> numbers{};
-    const std::int32_t local = part.local_index(o.body);
-    if (local >= 0 && local < part.owned) {
-      const auto b = static_cast<std::size_t>(local);
-      const Vec3<double> x = part.bodies.position[b] + displacement(now, b), v = velocity(now, b),
-                         w = angular_velocity(now, b);
-      const Quat<double> q = rotation(now, b);
-      numbers = {x.x, x.y, x.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z};
-    }
-    const auto n = sum_over_ranks(numbers, part.comm);
-    o.position = {n[0], n[1], n[2]};
-    o.orientation = {n[3], n[4], n[5], n[6]};
-    o.velocity = {n[7], n[8], n[9]}, o.spin = {n[10], n[11], n[12]};
-  }
-  return all;
-}
-
-template <class Space>
-void RunningIn<Space>::drive(std::size_t k, const PlaceAndMotion& to, std::optional<double> until) {
-  Contact* role = contact_;
-  const double now = run_->time();
-  DrivenMotion motion{.from = now, .until = now, .start = {}, .end = {}};
-  motion.end = {.way = to.position - scene_.obstacles[k].point,
-                .turn = normalised(to.orientation),
-                .rate = to.velocity,
-                .spin = to.spin};
-  motion.start = motion.end;
-  if (until) {
-    motion.until = *until;
-    motion.start = role->place_of_obstacle(k, now);
-  }
-  role->drive(k, motion);
-  run_->forces_have_changed();
-}
-
-template <class Space>
-void RunningIn<Space>::apply(std::size_t structure, const Vec3<double>& force,
-                             const Vec3<double>& moment) {
-  for (AppliedWrench& wrench : *applied_)
-    if (wrench.body == body_of(structure)) wrench.force = force, wrench.moment = moment;
-  run_->forces_have_changed();
-}
-
-template <class Space>
-std::shared_ptr<const SavedState> RunningIn<Space>::save() {
-  auto saved = std::make_shared<KeptState>();
-  saved->of = this;
-  saved->run = run_->save();
-  if (output_) saved->output = output_->save();
-  return saved;
-}
-
-template <class Space>
-void RunningIn<Space>::restore(const SavedState& state) {
-  const auto* kept = dynamic_cast<const KeptState*>(&state);
-  if (kept == nullptr || kept->of != this)
-    throw InputError("restore: the state is of another simulation");
-  run_->restore(*kept->run);
-  if (keeps_contacts_) contact_->keep_contacts();
-  if (output_) output_->restore(kept->output.value_or(OutputState{}));
-}
-
-}  // namespace
 
 struct Simulation::Impl : Setting {
   Observer observer;
