@@ -24,7 +24,8 @@ if sanitizer():
     ENVIRONMENT["LD_PRELOAD"] = sanitizer()
 
 
-BEGIN = "import sys\nimport numpy as np\nimport floe\nfrom coupled_scenes import BLOCKS, last, memory\n"
+BEGIN = ("import sys\nimport numpy as np\nimport floe\n"
+         "from coupled_scenes import BLOCKS, last, memory\n")
 
 
 class PythonTest(launch.FolderTest):
