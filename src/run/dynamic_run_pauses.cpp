@@ -15,6 +15,8 @@ struct SavedRun final : RunState {
   std::vector<std::int32_t> owner;       ///< of each body
   std::int64_t looked = -1;
   std::size_t warnings = 0;
+
+  Hdf5File* archive_file() const { return file ? &*file : nullptr; }
 };
 
 }  // namespace
@@ -41,7 +43,7 @@ std::unique_ptr<const RunState> DynamicRun<Space>::save() {
   const MPI_Comm comm = model_.part().comm;
   auto saved = std::make_unique<SavedRun>();
   on_root(comm, [&] { saved->file.emplace(Hdf5File::in_memory()); });
-  Archive archive(model_.part(), saved->file ? &*saved->file : nullptr, Transfer::save);
+  Archive archive(model_.part(), saved->archive_file(), Transfer::save);
   archive.stay_in_run();
   persist(archive);
   share_outcome(archive.outcome(), comm);
@@ -61,7 +63,7 @@ void DynamicRun<Space>::restore(const RunState& state) {
   }
   options_.remake(saved->owner);
   follow_division();
-  Archive archive(model_.part(), saved->file ? &*saved->file : nullptr, Transfer::load);
+  Archive archive(model_.part(), saved->archive_file(), Transfer::load);
   archive.stay_in_run();
   persist(archive);
   take_up_state();

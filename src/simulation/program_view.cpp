@@ -83,11 +83,12 @@ template <class Space>
 BeamTable RunningIn<Space>::beams() const {
   BeamTable table;
   const State<Space>* now = state();
-  const Part& part = model_->part();
-  if (now == nullptr || model_->beams() == nullptr) return table;
+  const Model<Space>& model = *model_;  // NOLINT(bugprone-unchecked-optional-access): made first
+  const Part& part = model.part();
+  if (now == nullptr || model.beams() == nullptr) return table;
   if (auto* moving = dynamic_cast<DynamicRun<Space>*>(run_.get()))  // ghosts are of the last step
     part.ghosts.update(moving->state().records, Space::record);
-  const std::vector<BeamSection> sections = model_->beams()->sections(*now);
+  const std::vector<BeamSection> sections = model.beams()->sections(*now);
   constexpr std::size_t width = 7;
   std::vector<std::int32_t> beams;  // global beam and its bodies
   std::vector<double> values;
@@ -96,9 +97,8 @@ BeamTable RunningIn<Space>::beams() const {
     const auto& [a, b] = part.beams.bodies[m];
     beams.insert(beams.end(), {part.global_beam[m], item(part.global, a), item(part.global, b)});
     values.insert(values.end(), sections[m].begin(), sections[m].end());
-    values.push_back(model_->fracture() != nullptr
-                         ? model_->fracture()->damage(static_cast<std::int32_t>(m))
-                         : 0);
+    values.push_back(
+        model.fracture() != nullptr ? model.fracture()->damage(static_cast<std::int32_t>(m)) : 0);
   }
   beams = all_gathered(beams, part.comm);
   values = all_gathered(values, part.comm);
