@@ -21,7 +21,7 @@ template <class Space>
 BodyTable RunningIn<Space>::all_bodies() const {
   BodyTable table;
   const State<Space>* now = state();
-  const Part& part = model_->part();
+  const Part& part = this->part();
   constexpr std::size_t width = 14;
   std::vector<double> mine;
   for (std::size_t b = 0; now != nullptr && b < static_cast<std::size_t>(part.owned); ++b) {
@@ -130,7 +130,7 @@ std::vector<ContactOfPair> RunningIn<Space>::contacts() {
                 {static_cast<double>(c.a), static_cast<double>(c.b),
                  static_cast<double>(c.obstacle), c.force.x, c.force.y, c.force.z, c.point.x,
                  c.point.y, c.point.z, c.normal.x, c.normal.y, c.normal.z, c.volume, c.area});
-  const std::vector<double> rows = all_gathered(mine, model_->part().comm);
+  const std::vector<double> rows = all_gathered(mine, part().comm);
   std::vector<ContactOfPair> all;
   for (std::size_t k = 0; k < rows.size(); k += width) {
     const double* v = &rows[k];
@@ -163,7 +163,7 @@ std::vector<ObstacleNow> RunningIn<Space>::obstacles() {
   if (role == nullptr) return all;
   run_->know_forces();
   const auto wrenches = role->obstacle_wrenches();
-  const Part& part = model_->part();
+  const Part& part = this->part();
   const State<Space>& now = *state();
   for (std::size_t k = 0; k < scene_.obstacles.size(); ++k) {
     ObstacleNow& o = all.emplace_back();
