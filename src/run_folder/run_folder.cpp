@@ -188,6 +188,14 @@ bool write_into_reserve(const std::string& dir, const std::string& text) {
   return good && std::rename(path.c_str(), (dir + "/summary.json").c_str()) == 0;
 }
 
+/// Members of the summary of a run that failed, apart from why, where and when.
+Json known_facts(const std::string& started, MPI_Comm comm) {
+  return {{"ranks", size(comm)},
+          {"host", host_name()},
+          {"started", started},
+          {"version", FLOE_VERSION}};
+}
+
 }  // namespace
 
 std::string options_heading() {
@@ -246,6 +254,7 @@ void RunFolder::begin(const std::string& run) {
   on_root(comm_, [&] { begin_here(run); });
   begun_ = true;
   broadcast(run_, comm_);
+  crash_.emplace(dir_, reserve, known_facts(started_, comm_).dump(2) + "\n");
 }
 
 void RunFolder::begin_here(const std::string& run) {
@@ -269,13 +278,20 @@ void RunFolder::finish(const std::string& summary) {
   begun_ = false;
 }
 
+bool RunFolder::fail_in_crash(const char* why) const noexcept {
+  return begun_ && crash_ && crash_->write(why, time_, step_);
+}
+
 void RunFolder::fail(const std::string& why) noexcept {
   if (!begun_ && goes_on_) return;  // the files are those of the run to be continued
   try {
     if (!begun_ && impl_) begin_here({});
-    const Json json{{"status", "failed"},  {"message", why},           {"time", time_},
-                    {"steps", step_},      {"ranks", size(comm_)},     {"host", host_name()},
-                    {"started", started_}, {"ended", date_and_time()}, {"version", FLOE_VERSION}};
+    Json json{{"status", "failed"},
+              {"message", why},
+              {"time", time_},
+              {"steps", step_},
+              {"ended", date_and_time()}};
+    json.update(known_facts(started_, comm_));
     const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     try {
       write_whole(dir_ + "/summary.json", text);

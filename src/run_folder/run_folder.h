@@ -3,11 +3,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <mpi.h>
+
+#include "run_folder/crash_summary.h"
 
 namespace floe {
 
@@ -60,6 +63,9 @@ class RunFolder {
   /// a single rank and where the disk is full. If the run has not begun yet, it begins with this,
   /// unless it was to go on with another. Never fails.
   void fail(const std::string& why) noexcept;
+  /// Does the same in the handler of a crash, by system calls only.
+  /// \return whether the summary is there: not if the run has not begun, or if writing failed
+  bool fail_in_crash(const char* why) const noexcept;
   /// Stores the time [s] and the step that fail() reports.
   void note(double time, long long step) { time_ = time, step_ = step; }
 
@@ -70,6 +76,7 @@ class RunFolder {
   std::unique_ptr<Impl> impl_;  ///< rank 0
   MPI_Comm comm_;
   std::string dir_, run_, started_;
+  std::optional<CrashSummary> crash_;
   bool begun_ = false, goes_on_;
   double time_ = 0;
   long long step_ = 0;

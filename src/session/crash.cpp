@@ -39,7 +39,11 @@ void put(const char* text) {
   put_into_log(text);
 }
 
-void when_words_hang(int) { ::_exit(exit_failed); }
+/// The end of a process whose last words hang or crash.
+void end_without_words(int) {
+  const int code = run_place().code;
+  ::_exit(code == 0 ? exit_failed : code);
+}
 
 void handle_crash(int signal) { end_crashed(name_of(signal)); }
 
@@ -59,12 +63,12 @@ RunPlace& run_place() {
 }
 
 void end_crashed(const char* what) noexcept {
-  // A second crash inside this function ends the process by the system's default action.
-  for (const int signal : crashes) ::signal(signal, SIG_DFL);
+  // A second crash, inside this function or in another thread, ends the process too.
+  for (const int signal : crashes) ::signal(signal, end_without_words);
   // The crash may have been in the allocator, so the code after the printed line may hang. On a
   // machine that is busy with other things that code takes its time, so this is long.
   constexpr unsigned patience = 60;  // [s]
-  ::signal(SIGALRM, when_words_hang);
+  ::signal(SIGALRM, end_without_words);
   ::alarm(patience);
   std::array<char, 2000> line{};
   int code = exit_failed;
@@ -89,7 +93,7 @@ void end_crashed(const char* what) noexcept {
   put(line.data());
   put("\n");
   run_place().code = code;
-  say_last_words(line.data());
+  say_last_words_in_crash(line.data());
   if (code == exit_bad_input) drop_petsc_files();
   end_at_once(code);
 }

@@ -23,10 +23,14 @@
 namespace floe {
 namespace {
 
-using Words = std::function<void(const std::string&)>;
+struct Words {
+  const LastWords* owner;
+  std::function<void(const std::string&)> words;
+  LastWords::InCrash in_crash;
+};
 /// In the order in which they were set.
-std::vector<std::pair<const LastWords*, Words>>& last_words() {
-  static std::vector<std::pair<const LastWords*, Words>> words;
+std::vector<Words>& last_words() {
+  static std::vector<Words> words;
   return words;
 }
 
@@ -57,19 +61,28 @@ void report_mpi_error(MPI_Comm*, int* code, ...) {  // NOLINT: MPI's form
 
 }  // namespace
 
-LastWords::LastWords(Words words) { last_words().emplace_back(this, std::move(words)); }
+LastWords::LastWords(std::function<void(const std::string&)> words, InCrash in_crash) {
+  last_words().push_back({this, std::move(words), std::move(in_crash)});
+}
 LastWords::~LastWords() {
-  std::erase_if(last_words(), [this](const auto& entry) { return entry.first == this; });
+  std::erase_if(last_words(), [this](const Words& words) { return words.owner == this; });
 }
 
 void say_last_words(const std::string& why) noexcept {
   const auto all = std::exchange(last_words(), {});
-  for (const auto& [owner, words] : all) {
+  for (const Words& one : all) {
     try {
-      words(why);
+      one.words(why);
     } catch (...) {  // NOLINT: a failure here has no remedy
     }
   }
+}
+
+void say_last_words_in_crash(const char* why) noexcept {
+  bool all_done = true;
+  for (const Words& one : last_words())
+    all_done = one.in_crash && one.in_crash(why) && all_done;
+  if (!all_done) say_last_words(why);
 }
 
 void end_at_once(int code) {

@@ -31,6 +31,8 @@ class OptionFailed : public std::runtime_error {
 
 /// Calls all last words (LastWords), once.
 void say_last_words(const std::string& why) noexcept;
+/// Does the same in the handler of a crash: by system calls only, where that is all there is to do.
+void say_last_words_in_crash(const char* why) noexcept;
 
 /// Makes errors of MPI end the process with one line. Call after MPI_Init.
 void report_mpi_errors();

@@ -446,13 +446,15 @@ Simulation::Impl::~Impl() {
 
 void Simulation::Impl::lock() {
   folder.emplace(wish_of(scene), PETSC_COMM_WORLD);
-  last_words.emplace([this](const std::string& why) {
-    if (folder && (folder->has_begun() || run_place().code == exit_failed)) {
-      folder->fail(why);
-    } else {
-      folder.reset();  // removes all that was made
-    }
-  });
+  last_words.emplace(
+      [this](const std::string& why) {
+        if (folder && (folder->has_begun() || run_place().code == exit_failed)) {
+          folder->fail(why);
+        } else {
+          folder.reset();  // removes all that was made
+        }
+      },
+      [this](const char* why) { return folder && folder->fail_in_crash(why); });
 }
 
 void Simulation::Impl::make_lattice_and_choose_model() {

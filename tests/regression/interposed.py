@@ -1,5 +1,6 @@
 """A library that is loaded before floe's: it notes how files get to the disk, and ends or
-interrupts the run at a given call, or lets the closing of a file fail, as on a full network disk.
+interrupts the run at a given call, lets it crash as if inside the allocator, or lets the closing of
+a file fail, as on a full network disk.
 
 Calls that count are those that make, rename or remove a checkpoint or bring something to the disk.
 """
@@ -53,6 +54,19 @@ static int fails_to_close(int file) {
 
 #define REAL(name) ((__typeof__(name)*)dlsym(RTLD_NEXT, #name))
 
+/* As after a crash inside the allocator, which holds its lock. */
+static volatile int allocator_is_locked = 0;
+extern void* __libc_malloc(size_t size);
+extern void __libc_free(void* bytes);
+void* malloc(size_t size) {
+  while (allocator_is_locked) pause();
+  return __libc_malloc(size);
+}
+void free(void* bytes) {
+  while (allocator_is_locked) pause();
+  __libc_free(bytes);
+}
+
 int rename(const char* a, const char* b) {
   note("rename", a, b);
   return REAL(rename)(a, b);
@@ -86,6 +100,10 @@ ssize_t write(int file, const void* text, size_t size) {
   name_of(file, path, sizeof path);
   const ssize_t done = REAL(write)(file, text, size);
   if (strstr(path, "history.csv") != NULL && ++rows == number("TEST_TERM_AT_ROW")) raise(SIGTERM);
+  if (!allocator_is_locked && rows > 0 && rows == number("TEST_CRASH_AT_ROW")) {
+    allocator_is_locked = 1;
+    raise(SIGSEGV);
+  }
   return done;
 }
 """

@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import unittest
+from datetime import datetime, timedelta, timezone
 
 from interposed import library
 from launch import ENVIRONMENT, FLOE, on_ranks, own_words
@@ -43,14 +44,14 @@ class OutOfMemory(RunningTest):
 
     def test_one_line(self):
         """From little to almost enough. Where MPI finds too little to begin, its libraries complain
-        too."""
+        too. Two ranks get more: in less than that Open MPI's own start hangs or aborts."""
         if has_sanitizers():
             self.skipTest("a build with sanitizers")
         for scene, ranks in ((STATIC, 1), (STATIC, 2),
                              (STATIC + "integrator: implicit\ntime: {end: 1e-3}\n", 1)):
             self.write(scene)
             ended = []
-            for megabytes in (260, 340, 420, 500, 580):
+            for megabytes in (260, 340, 420, 500, 580)[2 * (ranks > 1):]:
                 shutil.rmtree(self.folder / "out", ignore_errors=True)
                 code, said = self.limited(megabytes, ranks=ranks)
                 ended.append(code)
@@ -114,6 +115,27 @@ class Crash(RunningTest):
                                      ("failed", said))
                     if ranks == 1:
                         self.assertIn(said, (self.folder / "out/scene/floe.log").read_text())
+
+    def test_in_the_allocator(self):
+        """Nobody can allocate any more, so the last words do not either."""
+        if has_sanitizers():
+            self.skipTest("sanitizers have handlers and an allocator of their own")
+        self.write(AFLOAT)
+        before = datetime.now(timezone.utc).replace(microsecond=0)
+        said = self.floe(code=FAILED, environment={**library(self.folder),
+                                                   "TEST_CRASH_AT_ROW": "20"})
+        summary = self.summary()
+        self.assertEqual("floe: " + summary.pop("message") + "\n", said)
+        self.assertRegex(said, r"crashed after time \S+, step \d+: segmentation fault; ")
+        ended, started = (datetime.fromisoformat(summary.pop(key)) for key in ("ended", "started"))
+        self.assertLessEqual(before, started)
+        self.assertLessEqual(started, ended)
+        self.assertLess(ended, before + timedelta(minutes=20))
+        self.assertGreater(summary.pop("time"), 0)
+        self.assertGreater(summary.pop("steps"), 0)
+        self.assertEqual(summary, {"status": "failed", "ranks": 1, "host": os.uname().nodename,
+                                   "version": summary["version"]})
+        self.assertIn(said, (self.folder / "out/scene/floe.log").read_text())
 
     def test_petsc_may_be_asked(self):
         """Its traces for whoever wants them, or the system's own end."""

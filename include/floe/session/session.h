@@ -16,7 +16,10 @@ namespace floe {
 /// while this object lives. The function must neither fail nor wait for other ranks.
 class LastWords {
  public:
-  explicit LastWords(std::function<void(const std::string&)> words);
+  /// Called in the handler of a crash, where it may only make system calls (signal-safety(7)).
+  /// Returns whether it has done all that there is to do; else `words` is called, which may hang.
+  using InCrash = std::function<bool(const char*)>;
+  explicit LastWords(std::function<void(const std::string&)> words, InCrash in_crash = {});
   ~LastWords();
   LastWords(const LastWords&) = delete;
   LastWords& operator=(const LastWords&) = delete;
