@@ -23,12 +23,13 @@
 /// An eccentric beam joins points of the bodies at o_i, o_j from their centroids at rest. These
 /// arms turn with the bodies, a = R o: d is T^T (u_j + a_j - o_j - u_i - a_i + o_i), and a force f
 /// on the end of an arm is the force f and the moment a x f on the body (model.md, "Beam").
+///
+/// This text is that of every back end: the lanes of a processor (kernel_lanes.h) and devices.
 #pragma once
 
 #include <array>
 #include <cmath>
 
-#include "base/simd.h"
 #include "beams/stiffness.h"
 #include "floe/base/rotation.h"
 #include "floe/lattice/kinematics.h"
@@ -41,11 +42,11 @@ struct AnyFrame {
   Vec3<C> e1, e2, e3;
 
   template <class T>
-  Vec3<T> to_local(const Vec3<T>& v) const {
+  constexpr Vec3<T> to_local(const Vec3<T>& v) const {
     return {dot(e1, v), dot(e2, v), dot(e3, v)};
   }
   template <class T>
-  Vec3<T> to_world(const Vec3<T>& v) const {
+  constexpr Vec3<T> to_world(const Vec3<T>& v) const {
     return {T(T(e1.x * v.x) + T(e2.x * v.y)) + T(e3.x * v.z),
             T(T(e1.y * v.x) + T(e2.y * v.y)) + T(e3.y * v.z),
             T(T(e1.z * v.x) + T(e2.z * v.y)) + T(e3.z * v.z)};
@@ -74,11 +75,11 @@ struct FlatFrame {
   C c, s;
 
   template <class T>
-  Vec3<T> to_local(const Vec3<T>& v) const {
+  constexpr Vec3<T> to_local(const Vec3<T>& v) const {
     return {T(c * v.x) + T(s * v.y), T(c * v.y) - T(s * v.x), v.z};
   }
   template <class T>
-  Vec3<T> to_world(const Vec3<T>& v) const {
+  constexpr Vec3<T> to_world(const Vec3<T>& v) const {
     return {T(c * v.x) - T(s * v.y), T(s * v.x) + T(c * v.y), v.z};
   }
 };
@@ -125,7 +126,7 @@ struct Between {
 /// g at s = sin(phi/4):  h = -g_1 - sum (g_k+1 - g_k) x^k. Below series_limit (a relative rotation
 /// of 11 degrees) the first omitted term is 6e-18.
 template <class T>
-T remainder_series(const T& square) {
+constexpr T remainder_series(const T& square) {
   // Estrin's scheme: the dependency chain of Horner's scheme would be twice as long.
   const T square2 = T(square * square);
   const T low = T(T((2.0 / 60.0) * square) - 2.0 / 3.0),
@@ -136,18 +137,18 @@ T remainder_series(const T& square) {
 inline constexpr double series_limit = 0.01;  ///< of Between::square
 
 template <class T>
-Quat<T> operator-(const Quat<T>& a, const Quat<T>& b) {
+constexpr Quat<T> operator-(const Quat<T>& a, const Quat<T>& b) {
   return {T(a.w - b.w), T(a.x - b.x), T(a.y - b.y), T(a.z - b.z)};
 }
 template <class T>
-T dot(const Quat<T>& a, const Quat<T>& b) {
+constexpr T dot(const Quat<T>& a, const Quat<T>& b) {
   return T(T(a.w * b.w) + T(a.x * b.x)) + T(T(a.y * b.y) + T(a.z * b.z));
 }
 
 /// The relative rotation of the ends' quaternions: of b and -b, which are the same rotation, the
 /// one nearer to a.
 template <class T>
-Between<T> between(const Quat<T>& a, const Quat<T>& b) {
+constexpr Between<T> between(const Quat<T>& a, const Quat<T>& b) {
   using std::atan2;
   using std::sqrt;
   Between<T> r;
@@ -166,51 +167,9 @@ Between<T> between(const Quat<T>& a, const Quat<T>& b) {
   r.h = T(T(1.0 - g) * sum) / r.square;
   return r;
 }
-/// Computes large turns lane by lane: such lanes are rare (a beam bent by 11 degrees).
-/// \param numbers  a, then b, difference, square and h of Between, which change
-[[gnu::noinline, gnu::cold]] inline void large_turns(std::array<Lanes, 14>& numbers) {
-  for (std::size_t k = 0; k < lanes; ++k) {
-    if (numbers[12][k] < series_limit) continue;
-    const auto at = [&](std::size_t n) { return double(numbers[n][k]); };
-    const Between<double> r =
-        between(Quat<double>{at(0), at(1), at(2), at(3)}, Quat<double>{at(4), at(5), at(6), at(7)});
-    const std::array<double, 10> values{
-        r.b.w,          r.b.x,          r.b.y,          r.b.z,    r.difference.w,
-        r.difference.x, r.difference.y, r.difference.z, r.square, r.h};
-    for (std::size_t n = 0; n < values.size(); ++n) numbers[4 + n][k] = values[n];
-  }
-}
-inline Between<Lanes> between(const Quat<Lanes>& a, const Quat<Lanes>& b) {
-  Between<Lanes> r{b, b - a, {}, {}};
-  r.square = dot(r.difference, r.difference);
-  r.h = remainder_series(r.square);
-  if (!all_of(r.square < series_limit)) [[unlikely]] {
-    // Number by number: what is copied or passed whole lies in memory on the other path too.
-    std::array<Lanes, 14> n{a.w,
-                            a.x,
-                            a.y,
-                            a.z,
-                            r.b.w,
-                            r.b.x,
-                            r.b.y,
-                            r.b.z,
-                            r.difference.w,
-                            r.difference.x,
-                            r.difference.y,
-                            r.difference.z,
-                            r.square,
-                            r.h};
-    large_turns(n);
-    r.b.w = n[4], r.b.x = n[5], r.b.y = n[6], r.b.z = n[7];
-    r.difference.w = n[8], r.difference.x = n[9], r.difference.y = n[10], r.difference.z = n[11];
-    r.square = n[12], r.h = n[13];
-  }
-  return r;
-}
-
 /// The triad of the rotation q/|q|. \param inverse  1/|q|^2
 template <class T>
-Triad<T> triad(const Quat<T>& q, const T& inverse) {
+constexpr Triad<T> triad(const Quat<T>& q, const T& inverse) {
   const T twice = T(inverse + inverse);
   const Quat<T> s{T(twice * q.w), T(twice * q.x), T(twice * q.y), T(twice * q.z)};
   const T xy = T(s.x * q.y), xz = T(s.x * q.z), yz = T(s.y * q.z);
@@ -224,8 +183,8 @@ Triad<T> triad(const Quat<T>& q, const T& inverse) {
 /// \param d       u_j - u_i [m], world axes
 /// \param qi, qj  rotations of the bodies from rest
 template <class T, class Constants>
-BeamStrains<T> corotational_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
-                                    const Quat<T>& qj) {
+constexpr BeamStrains<T> corotational_strains(const Constants& beam, const Vec3<T>& d,
+                                              const Quat<T>& qi, const Quat<T>& qj) {
   using std::sqrt;
   BeamStrains<T> s;
   const Between<T> r = between(qi, qj);
@@ -259,8 +218,8 @@ BeamStrains<T> corotational_strains(const Constants& beam, const Vec3<T>& d, con
 /// \param d       u_j - u_i [m], world axes
 /// \param qi, qj  linearised quaternions (1, x, y, z) of rotation vectors 2 (x, y, z)
 template <class T, class Constants>
-BeamStrains<T> linear_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
-                              const Quat<T>& qj) {
+constexpr BeamStrains<T> linear_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
+                                        const Quat<T>& qj) {
   BeamStrains<T> s;
   const Vec3<T> chord = beam.rest.to_local(d);
   const Vec3<T> sum = beam.rest.to_local(Vec3<T>{T(qi.x + qj.x), T(qi.y + qj.y), T(qi.z + qj.z)});
@@ -273,7 +232,7 @@ BeamStrains<T> linear_strains(const Constants& beam, const Vec3<T>& d, const Qua
 
 /// Strain energy U [J].
 template <class T, class Constants>
-T beam_energy(const Constants& beam, const BeamStrains<T>& s) {
+constexpr T beam_energy(const Constants& beam, const BeamStrains<T>& s) {
   return T(0.5 * (beam.kn * s.delta * s.delta + beam.ksz * s.gamma_y * s.gamma_y +
                   beam.ksy * s.gamma_z * s.gamma_z + beam.kt * s.psi.x * s.psi.x +
                   beam.kby * s.psi.y * s.psi.y + beam.kbz * s.psi.z * s.psi.z));
@@ -289,7 +248,7 @@ struct BeamStress {
 
 /// Section forces of the springs.
 template <class T, class Constants>
-BeamStress<T> elastic_stress(const Constants& beam, const BeamStrains<T>& s) {
+constexpr BeamStress<T> elastic_stress(const Constants& beam, const BeamStrains<T>& s) {
   return {T(beam.kn * s.delta),
           T(beam.ksz * s.gamma_y),
           T(beam.ksy * s.gamma_z),
@@ -297,7 +256,7 @@ BeamStress<T> elastic_stress(const Constants& beam, const BeamStrains<T>& s) {
 }
 
 template <class T>
-BeamStress<T> operator+(const BeamStress<T>& a, const BeamStress<T>& b) {
+constexpr BeamStress<T> operator+(const BeamStress<T>& a, const BeamStress<T>& b) {
   return {T(a.n + b.n), T(a.qy + b.qy), T(a.qz + b.qz), a.c + b.c};
 }
 
@@ -306,7 +265,7 @@ using BeamDashpots = std::array<double, 6>;
 
 /// Section forces of the dashpots at the given strain rates.
 template <class T>
-BeamStress<T> viscous_stress(const BeamDashpots& c, const BeamStress<T>& rate) {
+constexpr BeamStress<T> viscous_stress(const BeamDashpots& c, const BeamStress<T>& rate) {
   return {T(c[0] * rate.n),
           T(c[1] * rate.qy),
           T(c[2] * rate.qz),
@@ -315,8 +274,8 @@ BeamStress<T> viscous_stress(const BeamDashpots& c, const BeamStress<T>& rate) {
 
 /// Exact gradient B^T stress of the co-rotational strains (model.md, "Beam").
 template <class T, class Constants>
-BeamGradient<T> corotational_gradient(const Constants& beam, const BeamStrains<T>& s,
-                                      const BeamStress<T>& stress) {
+constexpr BeamGradient<T> corotational_gradient(const Constants& beam, const BeamStrains<T>& s,
+                                                const BeamStress<T>& stress) {
   const T& inverse = s.inverse_l;
   const T stretch = T(beam.l0 * inverse);
   const T &qy = stress.qy, &qz = stress.qz;
@@ -339,9 +298,9 @@ BeamGradient<T> corotational_gradient(const Constants& beam, const BeamStrains<T
 /// \param velocity        v_j - v_i [m/s], world axes
 /// \param spin_i, spin_j  w_i, w_j [rad/s], world axes
 template <class T, class Constants>
-BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
-                                 const Vec3<T>& velocity, const Vec3<T>& spin_i,
-                                 const Vec3<T>& spin_j) {
+constexpr BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
+                                           const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                                           const Vec3<T>& spin_j) {
   const auto local = [&](const Vec3<T>& v) { return s.mean.to_local(beam.rest.to_local(v)); };
   const Vec3<T> d = local(spin_j - spin_i), mean = local(0.5 * (spin_i + spin_j));
   const Vec3<T> turn = mean - 0.5 * cross(s.tau, d);
@@ -356,8 +315,8 @@ BeamStress<T> corotational_rates(const Constants& beam, const BeamStrains<T>& s,
 
 /// Rates of the linear strains; parameters as for corotational_rates().
 template <class T, class Constants>
-BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity, const Vec3<T>& spin_i,
-                           const Vec3<T>& spin_j) {
+constexpr BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity,
+                                     const Vec3<T>& spin_i, const Vec3<T>& spin_j) {
   const Vec3<T> chord = beam.rest.to_local(velocity),
                 mean = beam.rest.to_local(0.5 * (spin_i + spin_j));
   return {chord.x, T(chord.y - T(beam.l0 * mean.z)), T(chord.z + T(beam.l0 * mean.y)),
@@ -366,7 +325,7 @@ BeamStress<T> linear_rates(const Constants& beam, const Vec3<T>& velocity, const
 
 /// Exact gradient B^T stress of the linear strains.
 template <class T, class Constants>
-BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stress) {
+constexpr BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stress) {
   const T &qy = stress.qy, &qz = stress.qz;
   const Vec3<T>& c = stress.c;
   const Vec3<T> half{T(0.0 * qy), T((0.5 * beam.l0) * qz), T((-0.5 * beam.l0) * qy)};
@@ -378,7 +337,7 @@ BeamGradient<T> linear_gradient(const Constants& beam, const BeamStress<T>& stre
 /// rotation vector times o.
 /// \param q  rotation of the body from rest, or its linearised quaternion
 template <Kinematics kinematics, class T, class C>
-Vec3<T> move_of_end(const Quat<T>& q, const Vec3<C>& o) {
+constexpr Vec3<T> move_of_end(const Quat<T>& q, const Vec3<C>& o) {
   const Vec3<T> offset{T(o.x), T(o.y), T(o.z)}, axis{q.x, q.y, q.z};
   const Vec3<T> turn = cross(axis, offset) + cross(axis, offset);
   if constexpr (kinematics == Kinematics::linear) return turn;
@@ -395,8 +354,8 @@ struct BeamKernel {
   };
 
   template <class T, class Constants>
-  static BeamStrains<T> strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
-                                const Quat<T>& qj) {
+  static constexpr BeamStrains<T> strains(const Constants& beam, const Vec3<T>& d,
+                                          const Quat<T>& qi, const Quat<T>& qj) {
     if constexpr (is_eccentric<Constants>) {
       const auto &oi = beam.rest.offset_i, &oj = beam.rest.offset_j;
       const Vec3<T> i = move_of_end<kinematics>(qi, oi), j = move_of_end<kinematics>(qj, oj);
@@ -409,8 +368,8 @@ struct BeamKernel {
     }
   }
   template <class T, class Constants>
-  static BeamGradient<T> gradient(const Constants& beam, const BeamStrains<T>& s,
-                                  const BeamStress<T>& stress) {
+  static constexpr BeamGradient<T> gradient(const Constants& beam, const BeamStrains<T>& s,
+                                            const BeamStress<T>& stress) {
     BeamGradient<T> g = [&] {
       if constexpr (is_linear) {
         return linear_gradient(beam, stress);
@@ -425,13 +384,13 @@ struct BeamKernel {
     return g;
   }
   template <class T, class Constants>
-  static BeamGradient<T> gradient(const Constants& beam, const BeamStrains<T>& s) {
+  static constexpr BeamGradient<T> gradient(const Constants& beam, const BeamStrains<T>& s) {
     return gradient(beam, s, elastic_stress(beam, s));
   }
   template <class T, class Constants>
-  static BeamStress<T> rates(const Constants& beam, const BeamStrains<T>& s,
-                             const Vec3<T>& velocity, const Vec3<T>& spin_i,
-                             const Vec3<T>& spin_j) {
+  static constexpr BeamStress<T> rates(const Constants& beam, const BeamStrains<T>& s,
+                                       const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                                       const Vec3<T>& spin_j) {
     if constexpr (is_eccentric<Constants>) {
       const Vec3<T> between = cross(spin_j, s.arm_j) - cross(spin_i, s.arm_i);
       return centric_rates(beam, s, Vec3<T>(velocity + between), spin_i, spin_j);
@@ -442,8 +401,8 @@ struct BeamKernel {
 
  private:
   template <class T, class Constants>
-  static BeamStrains<T> centric_strains(const Constants& beam, const Vec3<T>& d, const Quat<T>& qi,
-                                        const Quat<T>& qj) {
+  static constexpr BeamStrains<T> centric_strains(const Constants& beam, const Vec3<T>& d,
+                                                  const Quat<T>& qi, const Quat<T>& qj) {
     if constexpr (is_linear) {
       return linear_strains(beam, d, qi, qj);
     } else {
@@ -451,9 +410,9 @@ struct BeamKernel {
     }
   }
   template <class T, class Constants>
-  static BeamStress<T> centric_rates(const Constants& beam, const BeamStrains<T>& s,
-                                     const Vec3<T>& velocity, const Vec3<T>& spin_i,
-                                     const Vec3<T>& spin_j) {
+  static constexpr BeamStress<T> centric_rates(const Constants& beam, const BeamStrains<T>& s,
+                                               const Vec3<T>& velocity, const Vec3<T>& spin_i,
+                                               const Vec3<T>& spin_j) {
     if constexpr (is_linear) {
       return linear_rates(beam, velocity, spin_i, spin_j);
     } else {

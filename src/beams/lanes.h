@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "beams/kernel.h"
+#include "beams/kernel_lanes.h"
 #include "floe/lattice/state.h"
 
 namespace floe {

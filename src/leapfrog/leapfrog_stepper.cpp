@@ -1,10 +1,9 @@
 #include "leapfrog/leapfrog_stepper.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
 
 #include "floe/base/item.h"
+#include "leapfrog/held_body.h"
 
 namespace floe {
 namespace {
@@ -22,14 +21,6 @@ void write(const BodyMotion<double>& m, double* r) {
                                    m.q.z, m.v.x,        m.v.y,        m.v.z,       m.w.x, m.w.y,
                                    m.w.z, m.momentum.x, m.momentum.y, m.momentum.z};
   std::copy(all.begin(), all.end(), r);
-}
-
-/// Returns the tensor of inertia in world axes, or its inverse, from principal values.
-Eigen::Matrix3d in_world(const Triad<double>& axes, const Vec3<double>& principal) {
-  Eigen::Matrix3d r;
-  r << axes.e1.x, axes.e2.x, axes.e3.x, axes.e1.y, axes.e2.y, axes.e3.y, axes.e1.z, axes.e2.z,
-      axes.e3.z;
-  return r * Eigen::Vector3d(principal.x, principal.y, principal.z).asDiagonal() * r.transpose();
 }
 
 /// Force and moment, with the prescribed components set to zero.
@@ -269,60 +260,16 @@ void LeapfrogStepper::step_held(std::int32_t body, const double* before, State<S
                                 const Wrenches<Spatial>& wrenches, std::span<const double> now,
                                 std::span<const double> next, double dt) {
   const auto b = static_cast<std::size_t>(body);
-  const std::uint8_t bits = model_.prescribed()[b];
-  double* after = state.record(b);
-  for (std::size_t k = 0; k < 3; ++k) {
-    if ((bits >> k & 1U) == 0) continue;
-    const std::size_t u = Spatial::displacement + k, v = Spatial::velocity + k;
-    const double given = (next[k] - now[k]) / dt;
-    const double mass = 1.0 / blocks_[b / lanes].values[0][b % lanes];
-    boundary_work_ += mass * (given - after[v]) * 0.5 * (given + before[v]);
-    after[v] = given;
-    after[u] = before[u] + dt * given;
-  }
-  if (bits >> 3 != 0) turn_held(body, before, after, wrenches.of(b), now, next, dt);
-}
-
-/// Corrects the rotation of a body that is held about some axes.
-void LeapfrogStepper::turn_held(std::int32_t body, const double* before, double* after,
-                                const double* f, std::span<const double> now,
-                                std::span<const double> next, double dt) {
-  const std::uint8_t bits = model_.prescribed()[static_cast<std::size_t>(body)];
-  const auto fixed = [&](std::size_t k) { return (bits >> k & 1U) != 0; };
+  const HeldBody<double> held{model_.prescribed()[b], now.data(), next.data(), dt};
   const BodyConstants<double> c = constants(body);
-  BodyMotion<double> m = read(before);
-  m.momentum = m.momentum + dt * Vec3<double>{f[3], f[4], f[5]};
-  const Eigen::Matrix3d inverse = in_world(triad(product(m.q, c.axes)), c.inverse_inertia);
-  const Eigen::Vector3d spin = inverse * Eigen::Vector3d(m.momentum.x, m.momentum.y, m.momentum.z);
-  const Eigen::Vector3d old_spin(m.w.x, m.w.y, m.w.z);
-  // Impulses about the held axes, 0 about the others.
-  Eigen::Matrix3d compliance = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d miss = Eigen::Vector3d::Zero(), mean = miss;
-  for (Eigen::Index r = 0; r < 3; ++r) {
-    const auto k = static_cast<std::size_t>(3 + r);
-    if (!fixed(k)) continue;
-    const double given = (next[k] - now[k]) / dt;
-    miss[r] = given - spin[r];
-    mean[r] = 0.5 * (given + old_spin[r]);
-    for (Eigen::Index s = 0; s < 3; ++s)
-      compliance(r, s) = fixed(static_cast<std::size_t>(3 + s)) ? inverse(r, s) : 0.0;
+  const BodyMotion<double> from = read(before);
+  BodyMotion<double> to = read(state.record(b));
+  boundary_work_ += hold_displacements(held, c.inverse_mass, from, to);
+  if (held.bits >> 3 != 0) {
+    const double* f = wrenches.of(b);
+    boundary_work_ += hold_rotations(held, c, from, Vec3<double>{f[3], f[4], f[5]}, to);
   }
-  const Eigen::Vector3d impulse = compliance.partialPivLu().solve(miss);
-  boundary_work_ += impulse.dot(mean);
-  m.momentum = m.momentum + Vec3<double>{impulse[0], impulse[1], impulse[2]};
-  if (bits >> 3 == 7) {  // the rotation is prescribed completely: no gyroscopic motion
-    m.w = {(next[3] - now[3]) / dt, (next[4] - now[4]) / dt, (next[5] - now[5]) / dt};
-    m.q = normalised(product(exp_rotation(dt * m.w), m.q));
-    const Triad<double> axes = triad(product(m.q, c.axes));
-    const Vec3<double> w = axes.to_local(m.w), inertia = inverse_of(c.inverse_inertia);
-    m.momentum = axes.to_world({inertia.x * w.x, inertia.y * w.y, inertia.z * w.z});
-  } else {
-    drift_rotation(c, m, dt);
-  }
-  const Vec3<double> u{after[0], after[1], after[2]},
-      v{after[Spatial::velocity], after[Spatial::velocity + 1], after[Spatial::velocity + 2]};
-  m.u = u, m.v = v;
-  write(m, after);
+  write(to, state.record(b));
 }
 
 /// Velocity and angular momentum half a step later: by the forces where a body is free, prescribed

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/simd.h"
-#include "leapfrog/rigid_body_step.h"
+#include "leapfrog/rigid_body_step_lanes.h"
 #include "model/model.h"
 
 namespace floe {
@@ -78,8 +78,6 @@ class LeapfrogStepper {
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
                  const Wrenches<Spatial>& wrenches, std::span<const double> now,
                  std::span<const double> next, double dt);
-  void turn_held(std::int32_t body, const double* before, double* after, const double* wrench,
-                 std::span<const double> now, std::span<const double> next, double dt);
   BodyConstants<double> constants(std::int32_t body) const;
   Vec3<double> masses(std::int32_t body) const;
   Vec3<double> momentum_of(std::int32_t body, const Triad<double>& axes,

@@ -1,5 +1,5 @@
 /// \file
-/// One leapfrog step of rigid bodies, one body per lane (model.md, "Explicit dynamics").
+/// One leapfrog step of a rigid body, on any scalar (model.md, "Explicit dynamics").
 ///
 /// Kick:  v += dt F/m, L += dt tau   (L: angular momentum in the world)
 /// Drift: u += dt v, and the free rotation of a rigid body with angular momentum L over dt, by the
@@ -10,10 +10,8 @@
 /// second order, without a transcendental function.
 #pragma once
 
-#include <array>
 #include <cmath>
 
-#include "base/simd.h"
 #include "floe/base/rotation.h"
 
 namespace floe {
@@ -40,28 +38,28 @@ inline constexpr double small_square = 1e-4;
 
 /// 1/(1 + x) for a small x >= 0 by its series, whose first neglected term is 1e-16.
 template <class T>
-T inverse_above_one(const T& x) {
+constexpr T inverse_above_one(const T& x) {
   return T(1.0 - x) * T(1.0 + T(x * x));
 }
-inline double inverse_above_one(double x) {
+constexpr double inverse_above_one(double x) {
   return x < small_square ? inverse_above_one<double>(x) : 1.0 / (1.0 + x);
 }
 
 /// 1/sqrt(1 + x) for a small x by its series, whose first neglected term is 3e-17 (Abramowitz &
 /// Stegun 3.6.10).
 template <class T>
-T inverse_root(const T& x) {
+constexpr T inverse_root(const T& x) {
   return T(1.0 - T(0.5 * x)) + T(T(x * x) * T(3.0 / 8.0 - T(5.0 / 16.0 * x)));
 }
-inline double inverse_root(double x) {
-  return std::abs(x) < small_square ? inverse_root<double>(x) : 1.0 / std::sqrt(1.0 + x);
+constexpr double inverse_root(double x) {
+  return -small_square < x && x < small_square ? inverse_root<double>(x) : 1.0 / std::sqrt(1.0 + x);
 }
 
 /// Turns the angular momentum l (in principal axes) and the quaternion q (principal axes to world,
 /// not normalised) about one axis.
 /// \param half  half the step over the moment of inertia: t = half l, the rotation is by 2 atan t
 template <int axis, class T>
-void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
+constexpr void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
   // sin = 2 t/(1 + t^2), cos = 1 - t sin
   const auto turn = [&](const T& t, T& first, T& second) {
     const T s = T(t + t) * inverse_above_one(T(t * t));
@@ -87,14 +85,14 @@ void turn_about(Quat<T>& q, Vec3<T>& l, const T& half) {
 /// |q|^2 - 1 of a quaternion whose norm differs from 1 by the rotations of one step only: of a unit
 /// quaternion, the sum of their t^2 to first order, and not less.
 template <class T>
-T excess_of(const Quat<T>& q) {
+constexpr T excess_of(const Quat<T>& q) {
   return T(T(T(q.w * q.w) - 1.0) + T(q.x * q.x)) + T(T(q.y * q.y) + T(q.z * q.z));
 }
 
 /// The vector that the unit quaternion (w, u) turns v to: v + 2 w u x v + 2 u x (u x v), which
 /// takes half the operations of a triad where only one vector is turned.
 template <class T>
-Vec3<T> turned(const T& w, const Vec3<T>& u, const Vec3<T>& v) {
+constexpr Vec3<T> turned(const T& w, const Vec3<T>& u, const Vec3<T>& v) {
   const Vec3<T> across = cross(Vec3<T>{T(u.x + u.x), T(u.y + u.y), T(u.z + u.z)}, v);
   return v + w * across + cross(u, across);
 }
@@ -107,8 +105,8 @@ struct Drift {
   T excess;
 };
 template <class T>
-Drift<T> drift_of(const BodyConstants<T>& body, const Quat<T>& q, const Vec3<T>& momentum,
-                  double dt) {
+constexpr Drift<T> drift_of(const BodyConstants<T>& body, const Quat<T>& q, const Vec3<T>& momentum,
+                            double dt) {
   Quat<T> axes = product(q, body.axes);
   Vec3<T> l = turned(axes.w, Vec3<T>{T(-axes.x), T(-axes.y), T(-axes.z)}, momentum);
   const Vec3<T>& inverse = body.inverse_inertia;
@@ -128,49 +126,15 @@ Drift<T> drift_of(const BodyConstants<T>& body, const Quat<T>& q, const Vec3<T>&
 }
 
 /// Turns a body freely over dt under its angular momentum and sets its angular velocity at the end.
-inline void drift_rotation(const BodyConstants<double>& body, BodyMotion<double>& m, double dt) {
+constexpr void drift_rotation(const BodyConstants<double>& body, BodyMotion<double>& m, double dt) {
   const Drift<double> d = drift_of(body, m.q, m.momentum, dt);
   m.q = d.q;
   m.w = d.w;
 }
-/// Computes the drifts of lanes that turn far, one by one: such lanes are rare.
-/// \param numbers  inverse inertia, axes, rotation and momentum before the drift; then rotation and
-///   angular velocity after it, which change, and Drift::excess
-[[gnu::noinline, gnu::cold]] inline void large_drifts(std::array<Lanes, 22>& numbers, double dt) {
-  for (std::size_t k = 0; k < lanes; ++k) {
-    if (numbers[21][k] < small_square) continue;
-    const auto at = [&](std::size_t n) { return double(numbers[n][k]); };
-    const auto vector = [&](std::size_t n) { return Vec3<double>{at(n), at(n + 1), at(n + 2)}; };
-    const auto turn = [&](std::size_t n) {
-      return Quat<double>{at(n), at(n + 1), at(n + 2), at(n + 3)};
-    };
-    const Drift<double> d = drift_of({0, vector(0), turn(3)}, turn(7), vector(11), dt);
-    const std::array<double, 7> values{d.q.w, d.q.x, d.q.y, d.q.z, d.w.x, d.w.y, d.w.z};
-    for (std::size_t n = 0; n < values.size(); ++n) numbers[14 + n][k] = values[n];
-  }
-}
-inline void drift_rotation(const BodyConstants<Lanes>& body, BodyMotion<Lanes>& m, double dt) {
-  Drift<Lanes> d = drift_of(body, m.q, m.momentum, dt);
-  if (!all_of(d.excess < small_square)) [[unlikely]] {
-    // Number by number: what is copied or passed whole lies in memory on the other path too.
-    const Vec3<Lanes>& inverse = body.inverse_inertia;
-    std::array<Lanes, 22> n{inverse.x,   inverse.y,    inverse.z,    body.axes.w,  body.axes.x,
-                            body.axes.y, body.axes.z,  m.q.w,        m.q.x,        m.q.y,
-                            m.q.z,       m.momentum.x, m.momentum.y, m.momentum.z, d.q.w,
-                            d.q.x,       d.q.y,        d.q.z,        d.w.x,        d.w.y,
-                            d.w.z,       d.excess};
-    large_drifts(n, dt);
-    d.q.w = n[14], d.q.x = n[15], d.q.y = n[16], d.q.z = n[17];
-    d.w.x = n[18], d.w.y = n[19], d.w.z = n[20];
-  }
-  m.q = d.q;
-  m.w = d.w;
-}
-
 /// Kick and drift of a free body.
 template <class T>
-void leap(const BodyConstants<T>& body, BodyMotion<T>& m, const Vec3<T>& force,
-          const Vec3<T>& moment, double dt) {
+constexpr void leap(const BodyConstants<T>& body, BodyMotion<T>& m, const Vec3<T>& force,
+                    const Vec3<T>& moment, double dt) {
   m.v = m.v + T(dt * body.inverse_mass) * force;
   m.u = m.u + dt * m.v;
   m.momentum = m.momentum + dt * moment;
@@ -190,8 +154,9 @@ void leap(const BodyConstants<T>& body, BodyMotion<T>& m, const Vec3<T>& force,
 /// \param mass  along the principal axes
 /// \returns the velocity after the kick, with the axes before the drift: forces work with it
 template <class T>
-Vec3<T> leap_with_added_mass(const BodyConstants<T>& body, const Vec3<T>& mass, BodyMotion<T>& m,
-                             const Vec3<T>& force, const Vec3<T>& moment, double dt) {
+constexpr Vec3<T> leap_with_added_mass(const BodyConstants<T>& body, const Vec3<T>& mass,
+                                       BodyMotion<T>& m, const Vec3<T>& force,
+                                       const Vec3<T>& moment, double dt) {
   const Vec3<T> inverse{T(1.0 / mass.x), T(1.0 / mass.y), T(1.0 / mass.z)};
   const auto along = [](const Triad<T>& axes, const Vec3<T>& factors, const Vec3<T>& v) {
     const Vec3<T> l = axes.to_local(v);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "leapfrog/rigid_body_step.h"
+#include "leapfrog/rigid_body_step_lanes.h"
 #include "support/random.h"
 
 namespace floe {

@@ -5,6 +5,8 @@
 /// Notation: quaternions are (w, x, y, z); q rotates body to world, v_world = q v_body q*; products
 /// compose right to left; exp_rotation(t) is the rotation by |t| about t. Spins are spatial: q(t) =
 /// exp(t) q.
+///
+/// Functions that steps use are constexpr templates, which a compiler for devices can take too.
 #pragma once
 
 #include <cassert>
@@ -38,32 +40,32 @@ constexpr bool operator==(const Vec3<T>& a, const Vec3<T>& b) {
 }
 
 template <class T>
-Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
+constexpr Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
   return {T(a.x + b.x), T(a.y + b.y), T(a.z + b.z)};
 }
 template <class T>
-Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) {
+constexpr Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) {
   return {T(a.x - b.x), T(a.y - b.y), T(a.z - b.z)};
 }
 template <class T>
-Vec3<T> operator-(const Vec3<T>& a) {
+constexpr Vec3<T> operator-(const Vec3<T>& a) {
   return {T(-a.x), T(-a.y), T(-a.z)};
 }
 template <class S, class T>
-Vec3<T> operator*(const S& s, const Vec3<T>& a) {
+constexpr Vec3<T> operator*(const S& s, const Vec3<T>& a) {
   return {T(s * a.x), T(s * a.y), T(s * a.z)};
 }
 template <class S, class T>
-T dot(const Vec3<S>& a, const Vec3<T>& b) {
+constexpr T dot(const Vec3<S>& a, const Vec3<T>& b) {
   return T(a.x * b.x) + T(a.y * b.y) + T(a.z * b.z);
 }
 template <class T>
-T length(const Vec3<T>& a) {
+constexpr T length(const Vec3<T>& a) {
   using std::sqrt;
   return sqrt(dot(a, a));
 }
 template <class T>
-Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
   return {T(a.y * b.z) - T(a.z * b.y), T(a.z * b.x) - T(a.x * b.z), T(a.x * b.y) - T(a.y * b.x)};
 }
 
@@ -75,7 +77,7 @@ struct Quat {
 /// Returns the quaternion product a b: first the rotation b, then a. The scalars may differ (a
 /// derivative type times constants).
 template <class S, class T>
-auto product(const Quat<S>& a, const Quat<T>& b) {
+constexpr auto product(const Quat<S>& a, const Quat<T>& b) {
   using P = std::conditional_t<std::is_arithmetic_v<S>, T, S>;
   return Quat<P>{P(P(a.w * b.w) - P(a.x * b.x)) - P(P(a.y * b.y) + P(a.z * b.z)),
                  P(P(a.w * b.x) + P(a.x * b.w)) + P(P(a.y * b.z) - P(a.z * b.y)),
@@ -83,7 +85,7 @@ auto product(const Quat<S>& a, const Quat<T>& b) {
                  P(P(a.w * b.z) + P(a.z * b.w)) + P(P(a.x * b.y) - P(a.y * b.x))};
 }
 template <class T>
-Quat<T> conjugate(const Quat<T>& q) {
+constexpr Quat<T> conjugate(const Quat<T>& q) {
   return {q.w, T(-q.x), T(-q.y), T(-q.z)};
 }
 
@@ -92,12 +94,16 @@ template <class T>
 struct Triad {
   Vec3<T> e1, e2, e3;
   /// Returns the components in the triad of a world vector.
-  Vec3<T> to_local(const Vec3<T>& v) const { return {dot(e1, v), dot(e2, v), dot(e3, v)}; }
+  constexpr Vec3<T> to_local(const Vec3<T>& v) const {
+    return {dot(e1, v), dot(e2, v), dot(e3, v)};
+  }
   /// Returns the world vector with the given components in the triad.
-  Vec3<T> to_world(const Vec3<T>& v) const { return T(v.x) * e1 + T(v.y) * e2 + T(v.z) * e3; }
+  constexpr Vec3<T> to_world(const Vec3<T>& v) const {
+    return T(v.x) * e1 + T(v.y) * e2 + T(v.z) * e3;
+  }
 };
 template <class T>
-Triad<T> triad(const Quat<T>& q) {
+constexpr Triad<T> triad(const Quat<T>& q) {
   const T xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z,
           yz = q.y * q.z, wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
   return {{T(1.0 - 2.0 * T(yy + zz)), T(2.0 * T(xy + wz)), T(2.0 * T(xz - wy))},
@@ -105,16 +111,18 @@ Triad<T> triad(const Quat<T>& q) {
           {T(2.0 * T(xz + wy)), T(2.0 * T(yz - wx)), T(1.0 - 2.0 * T(xx + yy))}};
 }
 
-inline Vec3<double> rotate(const Quat<double>& q, const Vec3<double>& v) {
+template <class T = double>
+constexpr Vec3<T> rotate(const Quat<T>& q, const Vec3<T>& v) {
   return triad(q).to_world(v);
 }
 
 /// Returns the unit quaternion of the rotation by |t| about t, to rounding for any t.
-inline Quat<double> exp_rotation(const Vec3<double>& t) {
-  const double angle2 = dot(t, t);
-  const double angle = std::sqrt(angle2);
+template <class T = double>
+constexpr Quat<T> exp_rotation(const Vec3<T>& t) {
+  const T angle2 = dot(t, t);
+  const T angle = std::sqrt(angle2);
   // sin(a/2)/a as a series: the next term is a^4/3840, below rounding for a < 1e-3.
-  const double s = angle < 1e-3 ? 0.5 - angle2 / 48.0 : std::sin(0.5 * angle) / angle;
+  const T s = angle < 1e-3 ? 0.5 - angle2 / 48.0 : std::sin(0.5 * angle) / angle;
   return {std::cos(0.5 * angle), s * t.x, s * t.y, s * t.z};
 }
 
@@ -126,8 +134,9 @@ inline Vec3<double> log_rotation(const Quat<double>& q) {
   return {sign * factor * q.x, sign * factor * q.y, sign * factor * q.z};
 }
 
-inline Quat<double> normalised(const Quat<double>& q) {
-  const double n = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+template <class T = double>
+constexpr Quat<T> normalised(const Quat<T>& q) {
+  const T n = 1.0 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {n * q.w, n * q.x, n * q.y, n * q.z};
 }
 
