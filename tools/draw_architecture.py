@@ -45,6 +45,7 @@ ROLES = {
     "paths": ("equilibria along a path,", "load factor unknown"),
     "stability": ("stable step", "of explicit runs"),
     "leapfrog": ("update of bodies,", "works of forces"),
+    "device": ("the step's text in tiles,", "for devices"),
     "explicit": ("the step, runs by leapfrog", "and Runge-Kutta"),
     "implicit": ("generalised-alpha", "method"),
     "output": ("history, frames,", "fields"),

@@ -16,6 +16,7 @@
 #include "floe/beams/calibration.h"
 #include "floe/contact/obstacle.h"
 #include "floe/contact_laws/contact_options.h"
+#include "floe/explicit/backend.h"
 #include "floe/forces/boundary.h"
 #include "floe/forces/load.h"
 #include "floe/forces/mooring_line.h"
@@ -171,7 +172,8 @@ struct Scene {
   BeamOptions beam;
   FractureOptions fracture;
   Calibrate calibrate = Calibrate::none;
-  double gravity = 9.81;        ///< [m/s^2]
+  double gravity = 9.81;  ///< [m/s^2]
+  Backend backend = Backend::cpu;
   double water_density = 1010;  ///< [kg/m^3]
   int water_pace = 1;           ///< the submerged parts are found in every step of this number
   DragOptions drag;

@@ -24,7 +24,8 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
                      public Damps<typename Beam::Space>,
                      public DoesWork<typename Beam::Space>,
                      public LimitsStep<typename Beam::Space>,
-                     public BearsLoad<typename Beam::Space> {
+                     public BearsLoad<typename Beam::Space>,
+                     public OnDevice {
  public:
   using Pointwise = Beam;
   using Space = typename Beam::Space;
@@ -54,7 +55,31 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     Roles<Space> roles{.tangent = this, .step = this};
     if constexpr (damped) roles.damping = this, roles.work = this;
     roles.load = this;
+    if (std::is_same_v<Space, Spatial> && !Beam::Kernel::is_linear) roles.device = this;
     return roles;
+  }
+
+  void describe(DeviceModel& model) const override {
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      model.damped = damped;
+      model.beam_work = model.next_work;
+      for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
+        const Constants c = constants(m);
+        const AnyFrame<double>& t = c.rest;
+        DeviceModel::Beam beam{
+            {i, j},
+            {t.e1.x, t.e1.y, t.e1.z, t.e2.x, t.e2.y, t.e2.z, t.e3.x, t.e3.y, t.e3.z},
+            {},
+            c.l0,
+            {c.kn, c.ksz, c.ksy, c.kt, c.kby, c.kbz}};
+        if constexpr (Beam::Kernel::template is_eccentric<Constants>) {
+          const auto &a = c.rest.offset_i, &b = c.rest.offset_j;
+          beam.offsets = {a.x, a.y, a.z, b.x, b.y, b.z};
+        }
+        if constexpr (damped) beam.dashpots = dashpots(m);
+        model.beams.push_back(beam);
+      });
+    }
   }
 
   void add_load(const State<Space>& /*state*/, std::span<double> load) const override {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "explicit/device_run.h"
 #include "explicit/explicit_run.h"
 #include "explicit/explicit_ts_options.h"
 #include "explicit/leapfrog.h"
@@ -101,20 +102,27 @@ class LeapfrogRun final : public ExplicitRun<Space> {
 
 }  // namespace
 
-std::string explicit_needs_space() {
-  return explicit_type() == TSRK ? "-ts_type rk steps bodies in space" : "";
+std::string explicit_needs_space(Backend backend) {
+  if (explicit_type() == TSRK) return "-ts_type rk steps bodies in space";
+  if (backend != Backend::cpu)
+    return "backend: " + std::string(name_of(backend)) + " steps bodies in space";
+  return "";
 }
 
 template <class Space>
 std::unique_ptr<Run> make_explicit_run(Model<Space>& model, const ExplicitOptions& options,
                                        ObserverOf<Space> observer) {
+  if constexpr (std::is_same_v<Space, Spatial>) {
+    if (options.backend != Backend::cpu)
+      return make_device_run(model, options, std::move(observer));
+  }
   if (explicit_type() != TSRK)
     return std::make_unique<LeapfrogRun<Space>>(model, options, std::move(observer));
   if (options.supply) throw InputError("supply: -ts_type rk steps a lattice that stays as it is");
   if constexpr (std::is_same_v<Space, Spatial>) {
     return make_rk_run(model, options, std::move(observer));
   } else {
-    throw InputError("model: planar: " + explicit_needs_space());
+    throw InputError("model: planar: " + explicit_needs_space(options.backend));
   }
 }
 

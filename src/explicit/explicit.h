@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "floe/explicit/backend.h"
 #include "run/integrator.h"
 #include "run/run.h"
 
@@ -14,6 +15,7 @@ namespace floe {
 struct ExplicitOptions : DynamicOptions {
   double safety = 0.9;          ///< with dt = 0: the step as a part of the stable step
   bool allow_unstable = false;  ///< accept a given dt above the stable step
+  Backend backend = Backend::cpu;
 };
 
 /// Makes a run that integrates Newton's equations by PETSc's TS, of the own type `leapfrog`
@@ -34,6 +36,6 @@ RunResult run_explicit(Model<Space>& model, const ExplicitOptions& options,
 }
 
 /// Returns why the chosen stepper takes spatial models only; empty if it takes planar models too.
-std::string explicit_needs_space();
+std::string explicit_needs_space(Backend backend);
 
 }  // namespace floe

@@ -99,6 +99,13 @@ class ExplicitStep {
   /// Works of the forces at t_n, of which evaluate() has found the forces [J].
   std::vector<double> works() const { return work_.works(); }
   double boundary_work() const { return stepper_.boundary_work(); }
+  double last_dt() const { return work_.last_dt(); }
+  /// Takes note of steps that were made elsewhere, whose works are in the ledger.
+  /// \param work  by boundaries in these steps [J] \param dt  length of the last step [s]
+  void take_over(double work, double dt) {
+    stepper_.set_boundary_work(stepper_.boundary_work() + work);
+    work_.set_last_dt(dt);
+  }
   /// Saves or loads what the next step needs beside the state and the works. Collective.
   void persist(Archive& archive) {
     double work = stepper_.boundary_work();

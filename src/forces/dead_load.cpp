@@ -23,7 +23,8 @@ template <class Space>
 class DeadLoad final : public Force<Space>,
                        public HasTangent<Space>,
                        public DoesWork<Space>,
-                       public DependsOnTime {
+                       public DependsOnTime,
+                       public OnDevice {
  public:
   DeadLoad(const Part& part, PlacedLoad placed, Kinematics kinematics)
       : load_(std::move(placed.load)), part_(part), linear_(kinematics == Kinematics::linear) {
@@ -37,7 +38,16 @@ class DeadLoad final : public Force<Space>,
   }
 
   std::string_view name() const override { return "load"; }
-  Roles<Space> roles() override { return {.tangent = this, .work = this, .time = this}; }
+  Roles<Space> roles() override {
+    return {.tangent = this, .work = this, .time = this, .device = this};
+  }
+
+  void describe(DeviceModel& model) const override {
+    model.loads.push_back({model.next_work, bodies_, arm_, [this](double time) {
+                             const Vec3<double> f = force(time), m = moment(time);
+                             return std::array{f.x, f.y, f.z, m.x, m.y, m.z};
+                           }});
+  }
 
   void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
     force_ = force(state.time), moment_ = moment(state.time);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "floe/lattice/state.h"
+#include "forces/device_model.h"
 #include "forces/tangent.h"
 #include "lattice/archive.h"
 #include "lattice/partition.h"
@@ -250,6 +251,17 @@ class ActsOnPatches {
   ~ActsOnPatches() = default;
 };
 
+/// Role of a force that a back end can compute by itself (src/device).
+class OnDevice {
+ public:
+  /// Adds the numbers of the force.
+  /// \throws InputError if a back end cannot compute it with these options
+  virtual void describe(DeviceModel& model) const = 0;
+
+ protected:
+  ~OnDevice() = default;
+};
+
 /// Roles of a force beside adding wrenches; null: the force does not have the role.
 template <class Space>
 struct Roles {
@@ -265,6 +277,7 @@ struct Roles {
   Remarks* remarks = nullptr;
   BearsLoad<Space>* load = nullptr;
   ActsOnPatches* patches = nullptr;  ///< null also where there are no patches
+  OnDevice* device = nullptr;        ///< null: steps of the processor only
 };
 
 /// A force on the bodies of a part. An evaluation makes one virtual call per force; a scene that

@@ -5,11 +5,18 @@
 namespace floe {
 namespace {
 
-class Gravity final : public Force<Spatial> {
+class Gravity final : public Force<Spatial>, public OnDevice {
  public:
   Gravity(const Part& part, double acceleration) : part_(part), g_(acceleration) {}
 
   std::string_view name() const override { return "gravity"; }
+  Roles<Spatial> roles() override { return {.device = this}; }
+
+  void describe(DeviceModel& model) const override {
+    model.weights.resize(static_cast<std::size_t>(part_.owned));
+    for (std::int32_t b = 0; b < part_.owned; ++b)
+      item(model.weights, b) = is_dry(part_.bodies, b) ? 0.0 : item(part_.bodies.mass, b) * g_;
+  }
   void add(const State<Spatial>&, Wrenches<Spatial>& wrenches) override {
     const bool all = part_.bodies.dry.empty();
     for (std::int32_t b = 0; b < part_.owned; ++b) {

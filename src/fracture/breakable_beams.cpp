@@ -110,6 +110,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     Roles<Spatial> roles = Base::roles();
     roles.commits = this;
     roles.persists = this;
+    roles.device = nullptr;
     return roles;
   }
 

@@ -42,6 +42,8 @@ class LeapfrogWork {
   std::vector<double> works() const;
   /// Length of the last step [s]; 0 before the first one.
   double last_dt() const { return last_dt_; }
+  /// Sets it, where steps were made elsewhere.
+  void set_last_dt(double dt) { last_dt_ = dt; }
   /// Saves or loads the length of the last step. The works are the owner's to keep.
   void persist(Archive& archive) { archive.common("last_dt", last_dt_, not_negative); }
 

@@ -118,6 +118,7 @@ void DynamicRun<Space>::replan(double wanted) {
 /// Saves or loads the whole history of the run. Collective.
 template <class Space>
 void DynamicRun<Space>::persist(Archive& archive) {
+  if (!archive.loading()) bring_state();
   largest_ = largest_over_ranks(largest_, model_.part().comm);
   archive.enter("run");
   std::string type = type_;
@@ -452,6 +453,7 @@ bool DynamicRun<Space>::advance(double until) {
     if (stand_ == Stand::prepared) begin_steps();
     const Return back = stand_ == Stand::running ? make_steps() : Return::failure;
     count_steps();
+    bring_state();
     if (back == Return::pause) return true;
     if (back == Return::end) change_ice_if_due();
     result_.done = back == Return::end && finish();
@@ -558,7 +560,7 @@ template <class Space>
 bool DynamicRun<Space>::moved(double time, double speed2) {
   ++done_;
   state_.time = time_ = time;
-  largest_ = std::isfinite(speed2) ? std::max(largest_, speed2) : speed2;
+  note_speed2(speed2);
   audit("a step");
   return done_ % check_every != 0 || within_limits();
 }
@@ -715,7 +717,8 @@ bool DynamicRun<Space>::sample(bool last) {
 
 /// Describes the body that is fastest in the present state.
 template <class Space>
-std::string DynamicRun<Space>::where() const {
+std::string DynamicRun<Space>::where() {
+  bring_state();
   const Part& part = model_.part();
   RankedValue mine{-1, rank(part.comm)};
   std::size_t at = 0;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -118,6 +119,9 @@ class DynamicRun : public Run {
   /// Adapts the integrator's objects to a model that has been divided anew; the state follows. An
   /// integrator that leaves this out is given neither DynamicOptions::balance nor supply.
   virtual void follow_model() {}
+  /// Brings the state, the works and the integrator's history to where they are read, for
+  /// integrators that keep them elsewhere.
+  virtual void bring_state() {}
   /// Whether a state at a pause is all that later steps need: then runs can go back to it.
   virtual bool can_go_back() const { return false; }
   /// Evaluates the forces at the start, with the velocities there, as the run's first step wants
@@ -177,6 +181,7 @@ class DynamicRun : public Run {
   virtual void evaluate();
   /// Hands the state to the observer if a sample is due at its time. False: the run ends here.
   bool sample_if_due() { return !due() || sample(); }
+  bool due() const;
   /// Whether a sample was due at the present state and was taken; also where a run is in parts,
   /// each of which samples its last state.
   bool sampled_when_due() const { return sampled_when_due_ == done_; }
@@ -188,6 +193,10 @@ class DynamicRun : public Run {
   /// Counts a step after which the state is that of `time` [s]. False: the run ends here.
   /// \param speed2  square of the largest speed of this rank's bodies [m^2/s^2]
   bool moved(double time, double speed2);
+  /// Takes note of the square of a speed that a body has had [m^2/s^2].
+  void note_speed2(double speed2) {
+    largest_ = std::isfinite(speed2) ? std::max(largest_, speed2) : speed2;
+  }
   /// Shows progress; writes a checkpoint or stops if that is due. False: the run ends here.
   bool look_around();
 
@@ -240,13 +249,12 @@ class DynamicRun : public Run {
   /// Last step of the run, unless its end time comes first.
   std::int64_t last_step() const { return adaptive_ ? most_steps_ : std::min(steps_, most_steps_); }
   void set_sampling();
-  bool due() const;
   bool sample(bool last = false);
   bool finish();
   std::string step_text() const;
   bool within_limits();
   void take_remarks();
-  std::string where() const;
+  std::string where();
   void persist(Archive& archive);
 
   Model<Space>& model_;

@@ -74,16 +74,17 @@ CrashSummary::CrashSummary(const std::string& dir, const std::string& reserved,
 
 bool CrashSummary::write(const char* why, double time, long long step) const noexcept {
   std::array<char, 4096> head{};
-  const int length = std::snprintf(
-      head.data(), head.size(),
-      "{\n  \"status\": \"failed\",\n  \"message\": \"%s\",\n  \"time\": %.17g,\n"
-      "  \"steps\": %lld,\n  \"ended\": \"%s\",\n  ",
-      escaped(why).data(), time, step, now(utc_offset_).data());
+  const int length =
+      std::snprintf(head.data(), head.size(),
+                    "{\n  \"status\": \"failed\",\n  \"message\": \"%s\",\n  \"time\": %.17g,\n"
+                    "  \"steps\": %lld,\n  \"ended\": \"%s\",\n  ",
+                    escaped(why).data(), time, step, now(utc_offset_).data());
   const int file = ::open(reserved_.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) return false;
   const std::string_view front(head.data(), static_cast<std::size_t>(length));
   const auto size = static_cast<off_t>(front.size() + facts_.size());
-  const bool good = write_all(file, front) && write_all(file, facts_) && ::ftruncate(file, size) == 0;
+  const bool good =
+      write_all(file, front) && write_all(file, facts_) && ::ftruncate(file, size) == 0;
   ::close(file);
   return good && std::rename(reserved_.c_str(), summary_.c_str()) == 0;
 }

@@ -14,6 +14,9 @@ constexpr std::array table{
         "integrator", choice, "quasistatic", "", "quasistatic | explicit | implicit",
         "how the state moves on: static equilibrium at each load step, or in time by leapfrog "
         "or by the generalised-alpha method"},
+    OptionSpec{"backend", choice, "cpu", "", "cpu | loop | cuda",
+               "what makes the steps of leapfrog: the processor; a device of NVIDIA, if floe is "
+               "built for it; loop: the device's text on the processor, slow, for tests"},
     OptionSpec{
         "model: planar", choice, "auto", "", "auto | true | false",
         "three unknowns per body where nothing loads, moves or prescribes anything out of the "

@@ -15,12 +15,21 @@ namespace {
 /// Sections and keys that may change. Of the options that move bodies only loads may: they jump at
 /// the time of the checkpoint. The places of obstacles and boundaries are functions of the time
 /// since 0, so they would jump together with everything in contact with them.
-constexpr std::array<std::string_view, 13> may_change{
-    "time: end",         "time: allow_unstable", "limit",           "output",
-    "partition",         "checkpoint",           "report",          "check",
+constexpr std::array<std::string_view, 14> may_change{
+    "time: end",
+    "time: allow_unstable",
+    "limit",
+    "output",
+    "partition",
+    "checkpoint",
+    "report",
+    "check",
     "sheet: mesh_file",
+    "backend",
     "lattice_file",  // its contents may not change
-    "load: NAME: force", "load: NAME: moment",   "load: NAME: ramp"};
+    "load: NAME: force",
+    "load: NAME: moment",
+    "load: NAME: ramp"};
 
 /// What must stay in sections that may change: /obstacles of lattice.h5 has the patches.
 constexpr std::string_view stays = "output: pressure_patch";

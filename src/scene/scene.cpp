@@ -76,20 +76,25 @@ void read_dynamics(Options& options, Scene& scene) {
     constexpr auto why = "would have no effect: 'integrator' is quasistatic";
     for (const auto* key :
          {"initial", "limit: velocity", "limit: energy_error", "checkpoint", "partition",
-          "time: safety", "time: allow_unstable", "beam: damping_ratio", "beam: damping_modes",
-          "model: rotational_inertia_factor"})
+          "time: safety", "time: allow_unstable", "backend", "beam: damping_ratio",
+          "beam: damping_modes", "model: rotational_inertia_factor"})
       options.refuse(key, why);
     return;
   }
   if (scene.integrator == Integrator::implicit) {
     for (const auto* key : {"time: safety", "time: allow_unstable"})
       options.refuse(key, "would have no effect: 'integrator' is implicit, any step is stable");
+    options.refuse("backend", "makes explicit steps; 'integrator' is implicit");
     options.refuse("model: rotational_inertia_factor",
                    "would gain nothing: 'integrator' is implicit, any step is stable");
   } else {
     scene.time.safety = options.number("time: safety");
     scene.time.allow_unstable = options.flag("time: allow_unstable");
     scene.inertia_factor = options.number("model: rotational_inertia_factor");
+    scene.backend = options.choice<Backend>("backend");
+    if (scene.backend != Backend::cpu && options.petsc("ts_type") == "rk")
+      throw InputError(std::string("backend: ") + name_of(scene.backend) +
+                       " makes steps of leapfrog, -ts_type rk does not");
   }
   if (scene.integrator == Integrator::explicit_ && scene.forces.contact) {
     scene.partition.threshold = options.number("partition: threshold");

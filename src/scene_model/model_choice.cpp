@@ -87,7 +87,7 @@ std::string lattice_needs_space(const Scene& scene, const Lattice& lattice) {
 std::string why_space(const Scene& scene, const Lattice& lattice) {
   if (std::string why = scene_needs_space(scene); !why.empty()) return why;
   if (scene.integrator == Integrator::explicit_) {
-    if (std::string why = explicit_needs_space(); !why.empty()) return why;
+    if (std::string why = explicit_needs_space(scene.backend); !why.empty()) return why;
   }
   return lattice_needs_space(scene, lattice);
 }
@@ -113,6 +113,8 @@ ModelChoice choose_model(const Scene& scene, const Lattice& lattice) {
   if (!scene.forces.buoyancy && !scene.forces.drag) choice.text += ", no water";
   if (scene.forces.beam) choice.text += scene.forces.fracture ? ", breakable" : ", unbreakable";
   if (!scene.forces.contact) choice.text += ", no contact";
+  if (scene.backend != Backend::cpu)
+    choice.text += std::string(", steps by ") + name_of(scene.backend);
   return choice;
 }
 

@@ -80,8 +80,7 @@ void say_last_words(const std::string& why) noexcept {
 
 void say_last_words_in_crash(const char* why) noexcept {
   bool all_done = true;
-  for (const Words& one : last_words())
-    all_done = one.in_crash && one.in_crash(why) && all_done;
+  for (const Words& one : last_words()) all_done = one.in_crash && one.in_crash(why) && all_done;
   if (!all_done) say_last_words(why);
 }
 

@@ -69,6 +69,7 @@ std::unique_ptr<Run> make_run(const Scene& scene, Model<Space>& model,
   options.remake = hooks.remake;
   options.safety = scene.time.safety;
   options.allow_unstable = scene.time.allow_unstable;
+  options.backend = scene.backend;
   return make_explicit_run(model, options, std::move(observer));
 }
 

@@ -1,0 +1,188 @@
+#include "device/device_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/collectives.h"
+#include "floe/base/item.h"
+
+namespace floe::device {
+namespace {
+
+/// What the engines have, for messages.
+constexpr auto they_have = "it has beams that do not break, gravity, loads and boundaries";
+
+/// Does work of an engine, whose errors end the run.
+template <class Work>
+auto of_engine(Work&& work) {
+  try {
+    return work();
+  } catch (const Failed& error) {
+    throw RunFailed(error.what());
+  }
+}
+
+void add_beams(const DeviceModel& numbers, const std::vector<std::int32_t>& place,
+               Lattice& lattice) {
+  lattice.damped = numbers.damped;
+  for (const DeviceModel::Beam& beam : numbers.beams) {
+    lattice.ends.push_back({item(place, beam.bodies[0]), item(place, beam.bodies[1])});
+    std::array<double, Lattice::of_beam> all{};
+    auto at = std::copy(beam.triad.begin(), beam.triad.end(), all.begin());
+    at = std::copy(beam.offsets.begin(), beam.offsets.end(), at);
+    *at++ = beam.length;
+    at = std::copy(beam.stiffness.begin(), beam.stiffness.end(), at);
+    std::copy(beam.dashpots.begin(), beam.dashpots.end(), at);
+    lattice.beams.push_back(all);
+    const auto& t = beam.triad;
+    // As FlatFrame has it, to the last bit.
+    lattice.flat = lattice.flat && t[2] == 0 && t[5] == 0 && t[6] == 0 && t[7] == 0 && t[8] == 1 &&
+                   t[3] == -t[1] && t[4] == t[0];
+    lattice.eccentric = lattice.eccentric || std::any_of(beam.offsets.begin(), beam.offsets.end(),
+                                                         [](double o) { return o != 0; });
+  }
+}
+
+void add_held(const Model<Spatial>& model, const std::vector<std::int32_t>& place,
+              Lattice& lattice) {
+  std::vector<std::int32_t> rows(place.size(), -1);
+  const auto& boundaries = model.boundaries();
+  const std::span<const std::uint8_t> bits = model.prescribed();
+  lattice.motions = static_cast<std::int32_t>(6 * boundaries.size());
+  for (std::size_t n = 0; n < boundaries.size(); ++n) {
+    for (const std::int32_t body : boundaries[n].bodies) {
+      std::int32_t& row = item(rows, body);
+      if (row < 0) {
+        row = static_cast<std::int32_t>(lattice.held.size());
+        lattice.held.push_back({item(place, body), item(bits, body), {-1, -1, -1, -1, -1, -1}});
+      }
+      for (std::size_t k = 0; k < 6; ++k) {
+        if (boundaries[n].boundary.fixed[k])
+          item(lattice.held, row).motions[k] = static_cast<std::int32_t>(6 * n + k);
+      }
+    }
+  }
+}
+
+void add_loads(const DeviceModel& numbers, const std::vector<std::int32_t>& place,
+               Lattice& lattice) {
+  lattice.loads = static_cast<std::int32_t>(numbers.loads.size());
+  for (std::int32_t l = 0; l < lattice.loads; ++l) {
+    const DeviceModel::Load& load = item(numbers.loads, l);
+    for (const std::int32_t body : load.bodies)
+      lattice.loaded.push_back({item(place, body), l, {load.arm.x, load.arm.y, load.arm.z}});
+  }
+  std::stable_sort(lattice.loaded.begin(), lattice.loaded.end(),
+                   [](const auto& a, const auto& b) { return a.body < b.body; });
+}
+
+}  // namespace
+
+DescribedModel describe(const Model<Spatial>& model, const std::string& backend) {
+  const Part& part = model.part();
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("backend: " + backend + " has no " + what + " yet: " + they_have +
+                     "; backend: cpu has all");
+  };
+  if (size(part.comm) > 1) refuse("runs on several ranks");
+  if (!model.added_inertia().empty()) refuse("added mass");
+  if (model.fracture() != nullptr) refuse("beams that break");
+  DescribedModel described;
+  DeviceModel& numbers = described.numbers;
+  for (const auto& force : model.forces()) {
+    const Roles<Spatial> roles = force->roles();
+    if (roles.device == nullptr) refuse("force '" + std::string(force->name()) + "'");
+    roles.device->describe(numbers);
+    if (roles.work != nullptr) numbers.next_work += roles.work->works();
+  }
+
+  Lattice& lattice = described.lattice;
+  lattice.bodies = part.owned;
+  described.order = hilbert_order(part.bodies.position);
+  std::vector<std::int32_t> place(described.order.size());
+  for (std::int32_t d = 0; d < lattice.bodies; ++d) {
+    const std::int32_t b = item(described.order, d);
+    item(place, b) = d;
+    const Point3& inertia = item(part.bodies.inertia, b);
+    const auto [w, x, y, z] = item(part.bodies.orientation, b);
+    lattice.constants.push_back({1 / item(model.inertial_mass(), b), 1 / inertia.x, 1 / inertia.y,
+                                 1 / inertia.z, w, x, y, z});
+    if (!numbers.weights.empty()) lattice.weights.push_back(item(numbers.weights, b));
+  }
+  add_beams(numbers, place, lattice);
+  add_held(model, place, lattice);
+  add_loads(numbers, place, lattice);
+  return described;
+}
+
+DeviceStepper::DeviceStepper(const Model<Spatial>& model, DescribedModel described,
+                             std::unique_ptr<Engine> engine)
+    : model_(model),
+      described_(std::move(described)),
+      engine_(std::move(engine)),
+      room_(described_.order.size() * Engine::record) {
+  static_assert(Engine::record == Spatial::record);
+}
+
+void DeviceStepper::put(const State<Spatial>& state) {
+  for (std::size_t d = 0; d < described_.order.size(); ++d) {
+    std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), Engine::record,
+                &room_[d * Engine::record]);
+  }
+  of_engine([&] { engine_->put(0, room_); });
+}
+
+void DeviceStepper::get(State<Spatial>& state) {
+  of_engine([&] { engine_->get(0, room_); });
+  for (std::size_t d = 0; d < described_.order.size(); ++d) {
+    std::copy_n(&room_[d * Engine::record], Engine::record,
+                state.record(static_cast<std::size_t>(described_.order[d])));
+  }
+  state.fastest = fastest_;
+  state.fastest_spin = fastest_spin_;
+}
+
+void DeviceStepper::queue(double time, double dt, double before) {
+  if (steps_.count == 0) {
+    steps_ = {.count = 0, .dt = dt, .before = before, .motions = {}, .wrenches = {}};
+  } else if (dt != steps_.dt) {
+    throw std::logic_error("steps of one queue are equal");
+  }
+  ++steps_.count;
+  for (const double at : {time, time + dt}) {
+    for (const PlacedBoundary& placed : model_.boundaries()) {
+      const std::array<double, 6> values = placed.boundary.value(at);
+      steps_.motions.insert(steps_.motions.end(), values.begin(), values.end());
+    }
+  }
+  for (const DeviceModel::Load& load : described_.numbers.loads) {
+    const std::array<double, 6> wrench = load.wrench(time);
+    steps_.wrenches.insert(steps_.wrenches.end(), wrench.begin(), wrench.end());
+  }
+}
+
+double DeviceStepper::flush() {
+  if (steps_.count == 0) return 0;
+  of_engine([&] { engine_->step({&steps_, 1}); });
+  steps_.count = 0;
+  const Findings found = of_engine([&] { return engine_->findings(0); });
+  fastest_ = std::sqrt(found.speed2);
+  fastest_spin_ = std::sqrt(found.spin2);
+  return found.speed2;
+}
+
+double DeviceStepper::take_works(std::span<double> works) {
+  const Works parts = of_engine([&] { return engine_->works(0); });
+  for (const double work : parts.beams) works[described_.numbers.beam_work] += work;
+  for (std::size_t l = 0; l < parts.loaded.size(); ++l) {
+    const DeviceModel::Load& load =
+        item(described_.numbers.loads, described_.lattice.loaded[l].load);
+    works[load.work] += parts.loaded[l];
+  }
+  double boundaries = 0;
+  for (const double work : parts.held) boundaries += work;
+  return boundaries;
+}
+
+}  // namespace floe::device

@@ -1,0 +1,60 @@
+/// \file
+/// Leapfrog on a back end that keeps the state: what joins an engine and a model.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/engine.h"
+#include "model/model.h"
+
+namespace floe::device {
+
+/// A model in the form of an engine.
+struct DescribedModel {
+  Lattice lattice;
+  std::vector<std::int32_t> order;  ///< per body of the engine: the body of the part
+  DeviceModel numbers;              ///< of the forces
+};
+/// \param backend  its name, for messages
+/// \throws InputError for what no engine can compute yet, with its name
+DescribedModel describe(const Model<Spatial>& model, const std::string& backend);
+
+/// Steps the bodies of a model on an engine. The state lies there; it is handed over and brought
+/// back where somebody looks at it. Steps are queued and made many at once.
+class DeviceStepper {
+ public:
+  /// \param model  must outlive this object
+  DeviceStepper(const Model<Spatial>& model, DescribedModel described,
+                std::unique_ptr<Engine> engine);
+
+  /// Hands the records to the engine.
+  void put(const State<Spatial>& state);
+  /// Makes what is queued and copies the records. Times of the state are the caller's.
+  void get(State<Spatial>& state);
+  /// Queues a step. \param time  of its start [s] \param before  length of the step before it [s]
+  void queue(double time, double dt, double before);
+  /// Makes the queued steps. Returns the square of the largest speed in them [m^2/s^2].
+  double flush();
+  /// Adds what forces have worked since the last call to `works`, by their indices. Returns the
+  /// boundaries' work [J].
+  double take_works(std::span<double> works);
+  /// Largest speed and spin of the steps of the last flush [m/s, rad/s].
+  double fastest() const { return fastest_; }
+  double fastest_spin() const { return fastest_spin_; }
+
+  const Engine& engine() const { return *engine_; }
+
+ private:
+  const Model<Spatial>& model_;
+  DescribedModel described_;
+  std::unique_ptr<Engine> engine_;
+  Steps steps_;
+  std::vector<double> room_;
+  double fastest_ = 0, fastest_spin_ = 0;
+};
+
+}  // namespace floe::device

@@ -1,0 +1,107 @@
+/// \file
+/// Back ends that keep the motion of bodies in memory of their own and step it there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace floe::device {
+
+/// An error of a device or of its library.
+struct Failed : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One run's lattice for an engine. Bodies are in the engine's order, in which those of a tile
+/// follow each other.
+struct Lattice {
+  std::int32_t bodies = 0;
+  std::vector<std::array<double, 8>> constants;  ///< 1/m, 1/I_1, 1/I_2, 1/I_3, axes w x y z
+  std::vector<double> weights;                   ///< along -z [N]; empty: none
+
+  /// Numbers of a beam: triad (9), offsets (6), length, stiffnesses (6), dashpots (6).
+  static constexpr std::size_t of_beam = 28;
+  std::vector<std::array<std::int32_t, 2>> ends;
+  std::vector<std::array<double, of_beam>> beams;
+  bool damped = false, flat = true, eccentric = false;
+
+  /// Bodies with prescribed components.
+  struct Held {
+    std::int32_t body;
+    std::uint8_t bits;
+    /// Per component: which of the motions at a time it follows; -1: none.
+    std::array<std::int32_t, 6> motions;
+  };
+  std::vector<Held> held;
+  std::int32_t motions = 0;
+
+  /// Loads on bodies, in the order in which a body adds them.
+  struct Loaded {
+    std::int32_t body, load;
+    std::array<double, 3> arm;
+  };
+  std::vector<Loaded> loaded;
+  std::int32_t loads = 0;
+};
+
+/// Steps to be made of one run.
+struct Steps {
+  int count = 0;
+  double dt = 0;                 ///< of each [s]
+  double before = 0;             ///< length of the step before the first; 0: there is none [s]
+  std::vector<double> motions;   ///< per step: prescribed values at its start and end [m, rad]
+  std::vector<double> wrenches;  ///< per step and load: force and moment on each body [N, N m]
+};
+
+/// What the steps since the last question have done, of one run.
+struct Findings {
+  double speed2 = 0, spin2 = 0;  ///< largest squares; perhaps not finite [m^2/s^2, rad^2/s^2]
+};
+/// Works since the last question, of one run, in parts [J].
+struct Works {
+  std::vector<double> beams;   ///< per body: by dashpots of beams of which it is the first
+  std::vector<double> held;    ///< per held body: by boundaries
+  std::vector<double> loaded;  ///< per load on a body
+};
+
+/// Steps several runs at once. Each run's numbers are those that it would have alone, to the last
+/// bit, whatever its tiles.
+class Engine {
+ public:
+  static constexpr std::size_t record = 16;  ///< numbers of a body, as Spatial::record
+
+  Engine() = default;
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+  virtual ~Engine() = default;
+
+  /// Sets, or returns, the records of a run's bodies: body after body.
+  virtual void put(std::size_t run, std::span<const double> records) = 0;
+  virtual void get(std::size_t run, std::span<double> records) = 0;
+  /// Makes steps of each run, which may differ in number; returns perhaps before they are made.
+  virtual void step(std::span<const Steps> steps) = 0;
+  virtual Findings findings(std::size_t run) = 0;
+  virtual Works works(std::size_t run) = 0;
+  virtual std::int32_t tiles() const = 0;
+};
+
+/// \param lattices    one per run
+/// \param tile        most bodies of a tile; 0: by the number of bodies
+std::unique_ptr<Engine> make_loop_engine(std::vector<Lattice> lattices, std::int32_t tile = 0);
+/// \throws Failed if there is no device, InputError if floe is built without CUDA
+std::unique_ptr<Engine> make_cuda_engine(std::vector<Lattice> lattices, std::int32_t tile = 0);
+/// The same without fused operations, for tests: with the bits of make_loop_engine(). Not part of
+/// the library.
+std::unique_ptr<Engine> make_exact_cuda_engine(std::vector<Lattice> lattices,
+                                               std::int32_t tile = 0);
+/// Whether floe is built with CUDA.
+bool has_cuda();
+/// Returns the name of the device that an engine would take; empty: there is none.
+std::string name_of_device();
+
+}  // namespace floe::device

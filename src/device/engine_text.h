@@ -1,0 +1,306 @@
+/// \file
+/// The engine of a back end, over the layer of launch.h. Each back end compiles this text by
+/// itself.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "device/engine.h"
+#include "device/launch.h"
+#include "device/tile_step.h"
+#include "device/tiles.h"
+
+namespace floe::device {
+namespace {
+
+/// Most bodies of a tile: small lattices need many tiles to fill a device, large ones few beams
+/// that two tiles compute.
+inline std::int32_t tile_for(std::int64_t bodies) {
+  constexpr std::int64_t small = 8'000, large = 200'000;
+  return bodies < small ? 32 : bodies < large ? 64 : 128;
+}
+
+template <bool damped, template <class> class Frame>
+class TileEngine final : public Engine {
+  using Step = TileStep<damped, Frame>;
+
+ public:
+  TileEngine(std::vector<Lattice> lattices, std::int32_t tile) : lattices_(std::move(lattices)) {
+    for (const Lattice& lattice : lattices_) {
+      first_body_.push_back(first_body_.back() + lattice.bodies);
+      first_held_.push_back(first_held_.back() + lattice.held.size());
+      first_loaded_.push_back(first_loaded_.back() + lattice.loaded.size());
+    }
+    const auto bodies = static_cast<std::size_t>(first_body_.back());
+    if (tile == 0) tile = tile_for(first_body_.back());
+    constexpr std::size_t usual = 48U << 10;  // of shared memory that any device gives [bytes]
+    tiles_ = make_tiles(lattices_, tile,
+                        static_cast<std::int32_t>(usual / (sizeof(double) * Step::shares)));
+    shared_ = sizeof(double) * Step::shares * static_cast<std::size_t>(tiles_.most_slots);
+
+    first_body_of_tile_ = keep(tiles_.first_body);
+    first_slot_ = keep(tiles_.first_slot);
+    run_ = keep(tiles_.run);
+    i_ = keep(tiles_.i);
+    j_ = keep(tiles_.j);
+    first_end_ = keep(tiles_.first_end);
+    ends_ = keep(tiles_.ends);
+    take_beams();
+    take_bodies(bodies);
+    take_held(bodies);
+    take_loads(bodies);
+    for (auto& records : records_) records = Array<double>(of_record * bodies);
+    if (damped) beam_works_ = Array<double>(bodies);
+    speed2_ = Array<std::uint64_t>(lattices_.size());
+    spin2_ = Array<std::uint64_t>(lattices_.size());
+    runs_ = Array<RunOfTiles>(lattices_.size());
+  }
+
+  void put(std::size_t run, std::span<const double> records) override {
+    queue_.wait();
+    const std::size_t bodies = bodies_of(run);
+    room_.resize(bodies);
+    for (int n = 0; n < of_record; ++n) {
+      for (std::size_t b = 0; b < bodies; ++b)
+        room_[b] = records[b * record + static_cast<std::size_t>(n)];
+      records_[now_].put(std::span<const double>(room_), place(n, run));
+    }
+  }
+  void get(std::size_t run, std::span<double> records) override {
+    queue_.wait();
+    const std::size_t bodies = bodies_of(run);
+    room_.resize(bodies);
+    for (int n = 0; n < of_record; ++n) {
+      records_[now_].get(std::span<double>(room_), place(n, run));
+      for (std::size_t b = 0; b < bodies; ++b)
+        records[b * record + static_cast<std::size_t>(n)] = room_[b];
+    }
+  }
+
+  void step(std::span<const Steps> steps) override {
+    int most = 0;
+    std::vector<RunOfTiles> runs;
+    std::vector<double> motions, wrenches;
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      const Steps& of = steps[r];
+      most = std::max(most, of.count);
+      runs.push_back({of.count, of.dt, of.before, static_cast<std::int64_t>(motions.size()),
+                      lattices_[r].motions, static_cast<std::int64_t>(wrenches.size()),
+                      lattices_[r].loads});
+      motions.insert(motions.end(), of.motions.begin(), of.motions.end());
+      wrenches.insert(wrenches.end(), of.wrenches.begin(), of.wrenches.end());
+    }
+    if (most == 0) return;
+    queue_.wait();
+    const bool moved = give(motions, motions_), loaded = give(wrenches, wrenches_);
+    if (moved || loaded) ++tables_;
+    runs_.put(runs);
+    const Memory memory = all();
+    const auto key = static_cast<std::uint64_t>(most) << 32U | tables_ << 1U | now_;
+    const int parity = static_cast<int>(now_);
+    queue_.run(key, most, static_cast<std::int32_t>(tiles_.run.size()),
+               std::max(32, (tiles_.most_bodies + 31) / 32 * 32), shared_, [&](int k) {
+                 Step work{memory, k};
+                 if (parity == 1) std::swap(work.memory.records[0], work.memory.records[1]);
+                 return work;
+               });
+    now_ = (now_ + static_cast<std::size_t>(most)) % 2;
+  }
+
+  Findings findings(std::size_t run) override {
+    queue_.wait();
+    const auto take = [&](Array<std::uint64_t>& largest) {
+      std::uint64_t bits = 0;
+      const std::uint64_t none = 0;
+      largest.get({&bits, 1}, run);
+      largest.put({&none, 1}, run);
+      return std::bit_cast<double>(bits);
+    };
+    return {take(speed2_), take(spin2_)};
+  }
+
+  Works works(std::size_t run) override {
+    queue_.wait();
+    const auto take = [](Array<double>& works, std::size_t first, std::size_t end) {
+      std::vector<double> values(works.size() == 0 ? 0 : end - first);
+      works.get(values, first);
+      works.put(std::vector<double>(values.size()), first);
+      return values;
+    };
+    const auto body = [&](std::size_t r) { return static_cast<std::size_t>(first_body_[r]); };
+    return {take(beam_works_, body(run), body(run + 1)),
+            take(held_works_, first_held_[run], first_held_[run + 1]),
+            take(load_works_, first_loaded_[run], first_loaded_[run + 1])};
+  }
+
+  std::int32_t tiles() const override { return static_cast<std::int32_t>(tiles_.run.size()); }
+
+ private:
+  template <class T>
+  static Array<T> keep(const std::vector<T>& values) {
+    return Array<T>(std::span<const T>(values));
+  }
+  std::size_t bodies_of(std::size_t run) const {
+    return static_cast<std::size_t>(lattices_[run].bodies);
+  }
+  std::size_t place(int number, std::size_t run) const {
+    return static_cast<std::size_t>(number * static_cast<std::int64_t>(first_body_.back()) +
+                                    first_body_[run]);
+  }
+
+  void take_beams() {
+    const std::size_t slots = tiles_.beam.size();
+    std::vector<const std::array<double, Lattice::of_beam>*> beams;
+    for (const Lattice& lattice : lattices_) {
+      for (const auto& beam : lattice.beams) beams.push_back(&beam);
+    }
+    constexpr auto frame = static_cast<std::size_t>(Step::first);
+    std::vector<double> constants(slots * static_cast<std::size_t>(Step::of_beam));
+    for (std::size_t s = 0; s < slots; ++s) {
+      const auto& of = *beams[static_cast<std::size_t>(tiles_.beam[s])];
+      constexpr std::size_t length = 15;
+      for (std::size_t n = 0; n < frame; ++n) constants[n * slots + s] = of[n];
+      for (std::size_t n = frame; n < static_cast<std::size_t>(Step::of_beam); ++n)
+        constants[n * slots + s] = of[length + n - frame];
+    }
+    constants_ = keep(constants);
+  }
+
+  void take_bodies(std::size_t bodies) {
+    std::vector<double> constants(8 * bodies), weights;
+    std::size_t b = 0;
+    for (const Lattice& lattice : lattices_) {
+      for (const auto& of : lattice.constants) {
+        for (std::size_t n = 0; n < of.size(); ++n) constants[n * bodies + b] = of[n];
+        ++b;
+      }
+    }
+    bodies_ = keep(constants);
+    if (std::all_of(lattices_.begin(), lattices_.end(),
+                    [](const Lattice& l) { return l.weights.empty(); }))
+      return;
+    for (const Lattice& lattice : lattices_) {
+      std::vector<double> of = lattice.weights;
+      of.resize(static_cast<std::size_t>(lattice.bodies));
+      weights.insert(weights.end(), of.begin(), of.end());
+    }
+    weights_ = keep(weights);
+  }
+
+  void take_held(std::size_t bodies) {
+    if (first_held_.back() == 0) return;
+    std::vector<std::int32_t> rows(bodies, -1), motions;
+    std::vector<std::uint8_t> bits;
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      for (const Lattice::Held& held : lattices_[r].held) {
+        rows[static_cast<std::size_t>(first_body_[r] + held.body)] =
+            static_cast<std::int32_t>(bits.size());
+        bits.push_back(held.bits);
+        motions.insert(motions.end(), held.motions.begin(), held.motions.end());
+      }
+    }
+    held_row_ = keep(rows);
+    held_bits_ = keep(bits);
+    held_motions_ = keep(motions);
+    held_works_ = Array<double>(bits.size());
+  }
+
+  void take_loads(std::size_t bodies) {
+    const std::size_t all = first_loaded_.back();
+    if (all == 0) return;
+    std::vector<std::int32_t> first(bodies + 1), load;
+    std::vector<double> arms(3 * all);
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      for (const Lattice::Loaded& one : lattices_[r].loaded) {
+        for (std::size_t n = 0; n < 3; ++n) arms[n * all + load.size()] = one.arm[n];
+        load.push_back(one.load);
+        ++first[static_cast<std::size_t>(first_body_[r] + one.body) + 1];
+      }
+    }
+    for (std::size_t b = 0; b < bodies; ++b) first[b + 1] += first[b];
+    first_load_ = keep(first);
+    load_ = keep(load);
+    arms_ = keep(arms);
+    load_works_ = Array<double>(all);
+  }
+
+  /// Hands over a table, in memory that is made larger where that must be. Whether it was.
+  static bool give(const std::vector<double>& values, Array<double>& memory) {
+    const bool larger = values.size() > memory.size();
+    if (larger) memory = Array<double>(2 * values.size());
+    memory.put(values);
+    return larger;
+  }
+
+  template <class T>
+  static T* or_null(Array<T>& array) {
+    return array.size() == 0 ? nullptr : array.data();
+  }
+  Memory all() {
+    const auto bodies = static_cast<std::int64_t>(first_body_.back());
+    return {first_body_of_tile_.data(),
+            first_slot_.data(),
+            run_.data(),
+            i_.data(),
+            j_.data(),
+            {constants_.data(), static_cast<std::int64_t>(tiles_.beam.size())},
+            first_end_.data(),
+            ends_.data(),
+            {bodies_.data(), bodies},
+            or_null(weights_),
+            {{records_[0].data(), bodies}, {records_[1].data(), bodies}},
+            or_null(beam_works_),
+            or_null(held_row_),
+            held_bits_.data(),
+            held_motions_.data(),
+            held_works_.data(),
+            motions_.data(),
+            or_null(first_load_),
+            load_.data(),
+            {arms_.data(), static_cast<std::int64_t>(first_loaded_.back())},
+            load_works_.data(),
+            wrenches_.data(),
+            runs_.data(),
+            speed2_.data(),
+            spin2_.data()};
+  }
+
+  std::vector<Lattice> lattices_;
+  std::vector<std::int32_t> first_body_{0};
+  std::vector<std::size_t> first_held_{0}, first_loaded_{0};
+  Tiles tiles_;
+  std::size_t shared_ = 0, now_ = 0;
+  std::uint64_t tables_ = 0;  ///< which memory of tables the recorded launches know
+  Queue queue_;
+  Array<std::int32_t> first_body_of_tile_, first_slot_, run_, i_, j_, first_end_, ends_;
+  Array<double> constants_, bodies_, weights_, beam_works_, held_works_, motions_, arms_,
+      load_works_, wrenches_;
+  Array<double> records_[2];  // NOLINT: pairs of memory
+  Array<std::int32_t> held_row_, held_motions_, first_load_, load_;
+  Array<std::uint8_t> held_bits_;
+  Array<std::uint64_t> speed2_, spin2_;
+  Array<RunOfTiles> runs_;
+  std::vector<double> room_;
+};
+
+template <bool damped>
+std::unique_ptr<Engine> make_engine_of(std::vector<Lattice> lattices, std::int32_t tile) {
+  bool flat = true, eccentric = false;
+  for (const Lattice& lattice : lattices)
+    flat = flat && lattice.flat, eccentric = eccentric || lattice.eccentric;
+  if (eccentric)
+    return std::make_unique<TileEngine<damped, EccentricFrame>>(std::move(lattices), tile);
+  if (flat) return std::make_unique<TileEngine<damped, FlatFrame>>(std::move(lattices), tile);
+  return std::make_unique<TileEngine<damped, AnyFrame>>(std::move(lattices), tile);
+}
+std::unique_ptr<Engine> make_engine(std::vector<Lattice> lattices, std::int32_t tile) {
+  const bool damped = std::any_of(lattices.begin(), lattices.end(),
+                                  [](const Lattice& lattice) { return lattice.damped; });
+  return damped ? make_engine_of<true>(std::move(lattices), tile)
+                : make_engine_of<false>(std::move(lattices), tile);
+}
+
+}  // namespace
+}  // namespace floe::device

@@ -1,0 +1,185 @@
+/// \file
+/// The layer under a back end's kernels: memory, and loops over tiles. The same text is compiled by
+/// nvcc for a device, and by any compiler for the processor, where loops stand for threads.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "device/engine.h"
+
+#if defined(__CUDACC__)
+#include <cuda_runtime.h>
+#define FLOE_KERNEL __device__
+#else
+#define FLOE_KERNEL
+#endif
+
+namespace floe::device {
+
+#if defined(__CUDACC__)
+
+inline void check(cudaError_t code, const char* what) {
+  if (code == cudaErrorMemoryAllocation) throw std::bad_alloc();
+  if (code != cudaSuccess)
+    throw Failed(std::string("CUDA: ") + what + ": " + cudaGetErrorString(code));
+}
+
+/// Numbers in the memory of the device.
+template <class T>
+class Array {
+ public:
+  explicit Array(std::size_t size = 0) : size_(size) {
+    if (size > 0) check(cudaMalloc(&data_, size * sizeof(T)), "cudaMalloc");
+    if (size > 0) check(cudaMemset(data_, 0, size * sizeof(T)), "cudaMemset");
+  }
+  explicit Array(std::span<const T> values) : Array(values.size()) { put(values); }
+  Array(const Array&) = delete;
+  Array& operator=(const Array&) = delete;
+  Array(Array&& other) noexcept : data_(other.data_), size_(other.size_) { other.data_ = nullptr; }
+  Array& operator=(Array&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    return *this;
+  }
+  ~Array() { cudaFree(data_); }
+
+  T* data() const { return data_; }
+  std::size_t size() const { return size_; }
+  void put(std::span<const T> values, std::size_t at = 0) {
+    if (values.empty()) return;
+    check(cudaMemcpy(data_ + at, values.data(), values.size_bytes(), cudaMemcpyHostToDevice),
+          "cudaMemcpy");
+  }
+  void get(std::span<T> values, std::size_t at = 0) const {
+    if (values.empty()) return;
+    check(cudaMemcpy(values.data(), data_ + at, values.size_bytes(), cudaMemcpyDeviceToHost),
+          "cudaMemcpy");
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// Raises *address to value, both not negative; not a number counts as more than any. The bits of
+/// such doubles are in the order of the numbers.
+__device__ inline void raise(std::uint64_t* address, double value) {
+  static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
+  atomicMax(reinterpret_cast<unsigned long long*>(address),
+            static_cast<unsigned long long>(__double_as_longlong(value)));
+}
+
+/// One block of threads per tile.
+template <class Work>
+__global__ void run_tile(const Work work) {
+  extern __shared__ double shared[];
+  const auto tile = static_cast<std::int32_t>(blockIdx.x);
+  const auto threads = static_cast<std::int32_t>(blockDim.x);
+  for (auto k = static_cast<std::int32_t>(threadIdx.x); k < work.beams(tile); k += threads)
+    work.beam(tile, k, shared);
+  __syncthreads();
+  for (auto k = static_cast<std::int32_t>(threadIdx.x); k < work.bodies(tile); k += threads)
+    work.body(tile, k, shared);
+}
+
+/// Work that is queued in order.
+class Queue {
+ public:
+  Queue() { check(cudaStreamCreate(&stream_), "cudaStreamCreate"); }
+  Queue(const Queue&) = delete;
+  Queue& operator=(const Queue&) = delete;
+  ~Queue() {
+    for (const auto& [key, graph] : graphs_) cudaGraphExecDestroy(graph);
+    cudaStreamDestroy(stream_);
+  }
+
+  /// Runs work_of(0), ..., work_of(steps - 1) for all tiles, one after the other. The same key
+  /// stands for the same works: their launches are recorded once, as a graph.
+  template <class WorkOf>
+  void run(std::uint64_t key, int steps, std::int32_t tiles, int threads, std::size_t shared,
+           const WorkOf& work_of) {
+    auto found = std::find_if(graphs_.begin(), graphs_.end(),
+                              [&](const auto& entry) { return entry.first == key; });
+    if (found == graphs_.end()) {
+      using Work = decltype(work_of(0));
+      constexpr std::size_t without_asking = 48U << 10;
+      if (shared > without_asking)
+        check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                   static_cast<int>(shared)),
+              "shared memory of a tile");
+      cudaGraph_t graph = nullptr;
+      check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "capture");
+      for (int k = 0; k < steps; ++k)
+        run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work_of(k));
+      check(cudaStreamEndCapture(stream_, &graph), "capture");
+      cudaGraphExec_t ready = nullptr;
+      check(cudaGraphInstantiate(&ready, graph, 0), "cudaGraphInstantiate");
+      cudaGraphDestroy(graph);
+      graphs_.emplace_back(key, ready);
+      found = graphs_.end() - 1;
+    }
+    check(cudaGraphLaunch(found->second, stream_), "cudaGraphLaunch");
+  }
+  void wait() { check(cudaStreamSynchronize(stream_), "a kernel"); }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+  std::vector<std::pair<std::uint64_t, cudaGraphExec_t>> graphs_;
+};
+
+#else  // the processor
+
+template <class T>
+class Array {
+ public:
+  explicit Array(std::size_t size = 0) : values_(size) {}
+  explicit Array(std::span<const T> values) : values_(values.begin(), values.end()) {}
+
+  T* data() { return values_.data(); }
+  std::size_t size() const { return values_.size(); }
+  void put(std::span<const T> values, std::size_t at = 0) {
+    std::copy(values.begin(), values.end(), values_.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  void get(std::span<T> values, std::size_t at = 0) const {
+    std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(at), values.size(), values.begin());
+  }
+
+ private:
+  std::vector<T> values_;
+};
+
+inline void raise(std::uint64_t* address, double value) {
+  *address = std::max(*address, std::bit_cast<std::uint64_t>(value));
+}
+
+class Queue {
+ public:
+  template <class WorkOf>
+  void run(std::uint64_t /*key*/, int steps, std::int32_t tiles, int /*threads*/,
+           std::size_t shared, const WorkOf& work_of) {
+    shared_.resize(shared / sizeof(double));
+    for (int k = 0; k < steps; ++k) {
+      const auto work = work_of(k);
+      for (std::int32_t tile = 0; tile < tiles; ++tile) {
+        for (std::int32_t b = 0; b < work.beams(tile); ++b) work.beam(tile, b, shared_.data());
+        for (std::int32_t b = 0; b < work.bodies(tile); ++b) work.body(tile, b, shared_.data());
+      }
+    }
+  }
+  void wait() {}
+
+ private:
+  std::vector<double> shared_;  ///< of one tile
+};
+
+#endif
+
+}  // namespace floe::device

@@ -1,0 +1,140 @@
+#include "explicit/device_run.h"
+
+#include <optional>
+
+#include "device/device_stepper.h"
+#include "explicit/explicit_run.h"
+#include "explicit/leapfrog.h"
+#include "explicit/step.h"
+#include "stability/stable_step.h"
+
+namespace floe {
+namespace {
+
+/// Steps are queued; nobody looks at them before so many are made, which divides those between two
+/// checks of the velocity limit.
+constexpr std::int64_t most_queued = 50;
+/// Steps between looks at the stable step where no sample is due: each brings the state back.
+constexpr std::int64_t look_every = 1000;
+
+std::unique_ptr<device::Engine> make_engine(Backend backend, const device::Lattice& lattice) {
+  if (backend == Backend::loop) return device::make_loop_engine({lattice});
+  if (device::has_cuda() && device::name_of_device().empty())
+    throw InputError("backend: cuda: this machine has no device that CUDA finds");
+  try {
+    return device::make_cuda_engine({lattice});
+  } catch (const device::Failed& error) {
+    throw RunFailed(error.what());
+  }
+}
+
+/// A run by leapfrog whose state an engine keeps.
+class DeviceRun final : public ExplicitRun<Spatial> {
+ public:
+  DeviceRun(Model<Spatial>& model, const ExplicitOptions& options, Observer<Spatial> observer)
+      : ExplicitRun(ts_leapfrog, model, options, std::move(observer)) {
+    result().stepper = ts_leapfrog;
+    register_leapfrog();
+    check(TSCreate(model.part().comm, ts_.put()));
+    check(TSSetType(ts_, ts_leapfrog));
+    device::DescribedModel described = device::describe(model, name_of(options.backend));
+    auto engine = make_engine(options.backend, described.lattice);
+    stepper_.emplace(model, std::move(described), std::move(engine));
+    step_.emplace(model, state(), wrenches(), work_ledger());
+    const Part& part = model.part();
+    check(VecCreateMPIWithArray(part.comm, Spatial::record, part.owned * Spatial::record,
+                                PETSC_DETERMINE, state().records.data(), solution_.put()));
+    check(TSSetSolution(ts_, solution_));
+    step_->start();
+    read_options();
+  }
+
+  bool prepare() override {
+    if (!restart()) {
+      choose_step();
+      stagger(dt());
+    }
+    set_leapfrog_step(ts_, &make_step_);
+    return announce();
+  }
+
+ private:
+  void stagger(double by) {
+    step_->stagger(by);
+    forces_are_of_other_velocities_ = true;
+  }
+  bool step() {
+    const bool looks = due() || done() % look_every == 0;
+    if (looks && done() > 0) evaluate();
+    if (!sample_if_due()) return false;
+    if (looks && !keep_step_stable()) return false;
+    const double speed2 = forces_are_of_other_velocities_ ? step_here() : queue_step();
+    last_dt_ = dt();
+    return moved(next_time(), speed2) && look_around();
+  }
+  /// The step after velocities have been staggered, which begins with the forces before that.
+  double step_here() {
+    const double speed2 = step_->advance(dt());
+    step_->commit(dt());
+    forces_are_of_other_velocities_ = is_on_engine_ = false;
+    return speed2;
+  }
+  /// Returns the square of the largest speed in the steps that were made; perhaps none [m^2/s^2].
+  double queue_step() {
+    if (!is_on_engine_) stepper_->put(state());
+    is_on_engine_ = true;
+    stepper_->queue(state().time, dt(), last_dt_);
+    is_here_ = false;
+    return (done() + 1) % most_queued == 0 ? stepper_->flush() : 0.0;
+  }
+
+  /// Brings back the state and what forces and boundaries have worked.
+  void bring_state() override {
+    if (is_here_) return;
+    note_speed2(stepper_->flush());
+    stepper_->get(state());
+    step_->take_over(stepper_->take_works(work_ledger().all()), last_dt_);
+    state().velocity_time = state().time - 0.5 * last_dt_;
+    is_here_ = true;
+  }
+  void evaluate() override {
+    bring_state();
+    step_->evaluate();
+  }
+  StableStep find_stable_step() override {
+    bring_state();
+    StableStep stable = stable_step(model(), state());
+    evaluate();
+    return stable;
+  }
+  std::vector<double> works() const override { return step_->works(); }
+  void step_changed(double before) override { stagger(dt() - before); }
+  Energies energies() const override {
+    const auto [kinetic, boundary] = step_->energies(dt());
+    return {kinetic, boundary};
+  }
+  void persist_own(Archive& archive) override {
+    ExplicitRun::persist_own(archive);
+    step_->persist(archive);
+    last_dt_ = step_->last_dt();
+    if (archive.loading()) is_on_engine_ = false;
+  }
+
+  std::optional<device::DeviceStepper> stepper_;
+  std::optional<ExplicitStep<Spatial>> step_;  ///< for looks at the state
+  Handle<Vec> solution_;
+  /// The engine has the state at the last step; the object `state()` has it.
+  bool is_on_engine_ = false, is_here_ = true;
+  bool forces_are_of_other_velocities_ = false;
+  double last_dt_ = 0;  ///< length of the last step, also if it is queued [s]
+  LeapfrogStep make_step_ = [this](double) { return guarded([this] { return step(); }); };
+};
+
+}  // namespace
+
+std::unique_ptr<Run> make_device_run(Model<Spatial>& model, const ExplicitOptions& options,
+                                     Observer<Spatial> observer) {
+  return std::make_unique<DeviceRun>(model, options, std::move(observer));
+}
+
+}  // namespace floe
