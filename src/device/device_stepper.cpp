@@ -11,7 +11,10 @@ namespace floe::device {
 namespace {
 
 /// What the engines have, for messages.
-constexpr auto they_have = "it has beams that do not break, gravity, loads and boundaries";
+constexpr auto they_have =
+    "it has beams that do not break, gravity, loads, boundaries, and buoyancy and drag of bodies "
+    "in "
+    "water without waves";
 
 /// Does work of an engine, whose errors end the run.
 template <class Work>
@@ -77,6 +80,42 @@ void add_loads(const DeviceModel& numbers, const std::vector<std::int32_t>& plac
                    [](const auto& a, const auto& b) { return a.body < b.body; });
 }
 
+/// Appends the shape of a body.
+void add_shape(const Shapes& shapes, std::int32_t body, Lattice::Water& water) {
+  const std::int32_t first = item(shapes.vertex_of, body), end = item(shapes.vertex_of, body + 1);
+  const std::int32_t before = water.first_vertex.back();
+  for (std::int32_t v = first; v < end; ++v) {
+    const Point3& x = item(shapes.vertices, v);
+    water.vertices.push_back({x.x, x.y, x.z});
+  }
+  for (std::int32_t f = item(shapes.face_of, body); f < item(shapes.face_of, body + 1); ++f) {
+    for (std::int32_t c = item(shapes.corner_of, f); c < item(shapes.corner_of, f + 1); ++c)
+      water.corners.push_back(before + item(shapes.corners, c) - first);
+    water.first_corner.push_back(static_cast<std::int32_t>(water.corners.size()));
+  }
+  water.first_vertex.push_back(before + end - first);
+  water.first_face.push_back(static_cast<std::int32_t>(water.first_corner.size()) - 1);
+}
+
+Lattice::Water in_order(const DeviceModel::Water& of, const std::vector<std::int32_t>& order) {
+  Lattice::Water water;
+  water.weight_density = of.weight_density;
+  water.linear = of.linear, water.coefficient = of.coefficient;
+  water.drags = of.drag_work.has_value();
+  water.level_moves = of.buoyancy_work.has_value();
+  water.by_points = of.by_points;
+  water.pace = of.pace;
+  for (const std::int32_t b : order) {
+    water.prisms.push_back(item(of.prisms, b));
+    water.wholes.push_back(item(of.wholes, b));
+    water.extents.push_back(item(of.extents, b));
+    water.most2.push_back(item(of.most2, b));
+    if (water.drags) water.area_per_volume.push_back(item(of.area_per_volume, b));
+    add_shape(*of.shapes, b, water);
+  }
+  return water;
+}
+
 }  // namespace
 
 DescribedModel describe(const Model<Spatial>& model, const std::string& backend) {
@@ -92,7 +131,7 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   DeviceModel& numbers = described.numbers;
   for (const auto& force : model.forces()) {
     const Roles<Spatial> roles = force->roles();
-    if (roles.device == nullptr) refuse("force '" + std::string(force->name()) + "'");
+    if (roles.device == nullptr) refuse("such force '" + std::string(force->name()) + "'");
     roles.device->describe(numbers);
     if (roles.work != nullptr) numbers.next_work += roles.work->works();
   }
@@ -113,6 +152,7 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   add_beams(numbers, place, lattice);
   add_held(model, place, lattice);
   add_loads(numbers, place, lattice);
+  if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
   return described;
 }
 
@@ -126,26 +166,39 @@ DeviceStepper::DeviceStepper(const Model<Spatial>& model, DescribedModel describ
 }
 
 void DeviceStepper::put(const State<Spatial>& state) {
-  for (std::size_t d = 0; d < described_.order.size(); ++d) {
-    std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), Engine::record,
-                &room_[d * Engine::record]);
-  }
+  constexpr std::size_t n = Engine::record;
+  for (std::size_t d = 0; d < described_.order.size(); ++d)
+    std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
   of_engine([&] { engine_->put(0, room_); });
+  if (!keeps_submerged()) return;
+  described_.numbers.water->kept->read(kept_, since_);
+  std::vector<double> ordered(kept_.size());
+  for (std::size_t d = 0; d < described_.order.size(); ++d)
+    std::copy_n(&kept_[static_cast<std::size_t>(described_.order[d]) * of_kept], of_kept,
+                &ordered[d * of_kept]);
+  of_engine([&] { engine_->put_submerged(0, ordered); });
 }
 
 void DeviceStepper::get(State<Spatial>& state) {
+  constexpr std::size_t n = Engine::record;
   of_engine([&] { engine_->get(0, room_); });
-  for (std::size_t d = 0; d < described_.order.size(); ++d) {
-    std::copy_n(&room_[d * Engine::record], Engine::record,
-                state.record(static_cast<std::size_t>(described_.order[d])));
-  }
+  for (std::size_t d = 0; d < described_.order.size(); ++d)
+    std::copy_n(&room_[d * n], n, state.record(static_cast<std::size_t>(described_.order[d])));
   state.fastest = fastest_;
   state.fastest_spin = fastest_spin_;
+  if (!keeps_submerged()) return;
+  std::vector<double> ordered(described_.order.size() * of_kept);
+  of_engine([&] { engine_->get_submerged(0, ordered); });
+  kept_.resize(ordered.size());
+  for (std::size_t d = 0; d < described_.order.size(); ++d)
+    std::copy_n(&ordered[d * of_kept], of_kept,
+                &kept_[static_cast<std::size_t>(described_.order[d]) * of_kept]);
+  described_.numbers.water->kept->write(kept_, since_);
 }
 
 void DeviceStepper::queue(double time, double dt, double before) {
   if (steps_.count == 0) {
-    steps_ = {.count = 0, .dt = dt, .before = before, .motions = {}, .wrenches = {}};
+    steps_ = {.count = 0, .dt = dt, .before = before, .since = static_cast<int>(since_)};
   } else if (dt != steps_.dt) {
     throw std::logic_error("steps of one queue are equal");
   }
@@ -159,6 +212,12 @@ void DeviceStepper::queue(double time, double dt, double before) {
   for (const DeviceModel::Load& load : described_.numbers.loads) {
     const std::array<double, 6> wrench = load.wrench(time);
     steps_.wrenches.insert(steps_.wrenches.end(), wrench.begin(), wrench.end());
+  }
+  if (const auto& water = described_.numbers.water) {
+    const Point3 current = water->current ? water->current(time) : Point3{};
+    for (const double number : {water->level(time), current.x, current.y, current.z})
+      steps_.water.push_back(number);
+    since_ = (since_ + 1) % water->pace;
   }
 }
 
@@ -179,6 +238,10 @@ double DeviceStepper::take_works(std::span<double> works) {
     const DeviceModel::Load& load =
         item(described_.numbers.loads, described_.lattice.loaded[l].load);
     works[load.work] += parts.loaded[l];
+  }
+  if (const auto& water = described_.numbers.water) {
+    for (const double work : parts.drag) works[*water->drag_work] += work;
+    for (const double work : parts.buoyancy) works[*water->buoyancy_work] += work;
   }
   double boundaries = 0;
   for (const double work : parts.held) boundaries += work;

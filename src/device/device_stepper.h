@@ -49,11 +49,17 @@ class DeviceStepper {
   const Engine& engine() const { return *engine_; }
 
  private:
+  static constexpr std::size_t of_kept = 15;  ///< numbers of a submerged part
+  bool keeps_submerged() const {
+    return described_.numbers.water && described_.numbers.water->kept != nullptr;
+  }
+
   const Model<Spatial>& model_;
   DescribedModel described_;
   std::unique_ptr<Engine> engine_;
   Steps steps_;
-  std::vector<double> room_;
+  std::vector<double> room_, kept_;
+  std::int64_t since_ = 0;  ///< steps since all submerged parts were found
   double fastest_ = 0, fastest_spin_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -47,15 +48,32 @@ struct Lattice {
   };
   std::vector<Loaded> loaded;
   std::int32_t loads = 0;
+
+  /// Still water; per body as DeviceModel::Water.
+  struct Water {
+    double weight_density = 0, linear = 0, coefficient = 0;
+    bool drags = false, level_moves = false, by_points = false;
+    int pace = 1;
+    std::vector<std::array<double, 14>> prisms;
+    std::vector<std::array<double, 4>> wholes;
+    std::vector<double> extents, most2, area_per_volume;
+    /// Per body and per face, and one more: where its vertices, faces and corners begin.
+    std::vector<std::int32_t> first_vertex{0}, first_face{0}, first_corner{0};
+    std::vector<std::int32_t> corners;
+    std::vector<std::array<double, 3>> vertices;
+  };
+  std::optional<Water> water;
 };
 
 /// Steps to be made of one run.
 struct Steps {
   int count = 0;
-  double dt = 0;                 ///< of each [s]
-  double before = 0;             ///< length of the step before the first; 0: there is none [s]
-  std::vector<double> motions;   ///< per step: prescribed values at its start and end [m, rad]
-  std::vector<double> wrenches;  ///< per step and load: force and moment on each body [N, N m]
+  double dt = 0;                   ///< of each [s]
+  double before = 0;               ///< length of the step before the first; 0: there is none [s]
+  std::vector<double> motions{};   ///< per step: prescribed values at its start and end [m, rad]
+  std::vector<double> wrenches{};  ///< per step and load: force and moment on each body [N, N m]
+  std::vector<double> water{};     ///< per step: level [m] and current [m/s] of the water
+  int since = 0;                   ///< steps since all submerged parts were found, at a pace
 };
 
 /// What the steps since the last question have done, of one run.
@@ -64,9 +82,10 @@ struct Findings {
 };
 /// Works since the last question, of one run, in parts [J].
 struct Works {
-  std::vector<double> beams;   ///< per body: by dashpots of beams of which it is the first
-  std::vector<double> held;    ///< per held body: by boundaries
-  std::vector<double> loaded;  ///< per load on a body
+  std::vector<double> beams;           ///< per body: by dashpots of beams of which it is the first
+  std::vector<double> held;            ///< per held body: by boundaries
+  std::vector<double> loaded;          ///< per load on a body
+  std::vector<double> drag, buoyancy;  ///< per body; empty: none
 };
 
 /// Steps several runs at once. Each run's numbers are those that it would have alone, to the last
@@ -83,6 +102,10 @@ class Engine {
   /// Sets, or returns, the records of a run's bodies: body after body.
   virtual void put(std::size_t run, std::span<const double> records) = 0;
   virtual void get(std::size_t run, std::span<double> records) = 0;
+  /// Sets, or returns, the submerged parts that a run with a pace keeps: body after body, 15
+  /// numbers as Submersion keeps them.
+  virtual void put_submerged(std::size_t run, std::span<const double> numbers) = 0;
+  virtual void get_submerged(std::size_t run, std::span<double> numbers) = 0;
   /// Makes steps of each run, which may differ in number; returns perhaps before they are made.
   virtual void step(std::span<const Steps> steps) = 0;
   virtual Findings findings(std::size_t run) = 0;

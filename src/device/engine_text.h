@@ -11,6 +11,7 @@
 #include "device/launch.h"
 #include "device/tile_step.h"
 #include "device/tiles.h"
+#include "device/water_step.h"
 
 namespace floe::device {
 namespace {
@@ -51,6 +52,7 @@ class TileEngine final : public Engine {
     take_bodies(bodies);
     take_held(bodies);
     take_loads(bodies);
+    take_water(bodies);
     for (auto& records : records_) records = Array<double>(of_record * bodies);
     if (damped) beam_works_ = Array<double>(bodies);
     speed2_ = Array<std::uint64_t>(lattices_.size());
@@ -60,29 +62,26 @@ class TileEngine final : public Engine {
 
   void put(std::size_t run, std::span<const double> records) override {
     queue_.wait();
-    const std::size_t bodies = bodies_of(run);
-    room_.resize(bodies);
-    for (int n = 0; n < of_record; ++n) {
-      for (std::size_t b = 0; b < bodies; ++b)
-        room_[b] = records[b * record + static_cast<std::size_t>(n)];
-      records_[now_].put(std::span<const double>(room_), place(n, run));
-    }
+    put_numbers(records_[now_], of_record, run, records);
   }
   void get(std::size_t run, std::span<double> records) override {
     queue_.wait();
-    const std::size_t bodies = bodies_of(run);
-    room_.resize(bodies);
-    for (int n = 0; n < of_record; ++n) {
-      records_[now_].get(std::span<double>(room_), place(n, run));
-      for (std::size_t b = 0; b < bodies; ++b)
-        records[b * record + static_cast<std::size_t>(n)] = room_[b];
-    }
+    get_numbers(records_[now_], of_record, run, records);
+  }
+  void put_submerged(std::size_t run, std::span<const double> numbers) override {
+    queue_.wait();
+    put_numbers(expansions_, of_expansion, run, numbers);
+  }
+  void get_submerged(std::size_t run, std::span<double> numbers) override {
+    queue_.wait();
+    get_numbers(expansions_, of_expansion, run, numbers);
   }
 
   void step(std::span<const Steps> steps) override {
     int most = 0;
     std::vector<RunOfTiles> runs;
-    std::vector<double> motions, wrenches;
+    std::vector<double> motions, wrenches, water_motions;
+    std::vector<WaterOfRun> waters;
     for (std::size_t r = 0; r < lattices_.size(); ++r) {
       const Steps& of = steps[r];
       most = std::max(most, of.count);
@@ -91,21 +90,38 @@ class TileEngine final : public Engine {
                       lattices_[r].loads});
       motions.insert(motions.end(), of.motions.begin(), of.motions.end());
       wrenches.insert(wrenches.end(), of.wrenches.begin(), of.wrenches.end());
+      if (!has_water_) continue;
+      const Lattice::Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
+      waters.push_back({w.weight_density, w.linear, w.coefficient, w.drags ? 1 : 0, w.pace,
+                        of.since, w.by_points ? 1 : 0,
+                        static_cast<std::int64_t>(water_motions.size())});
+      water_motions.insert(water_motions.end(), of.water.begin(), of.water.end());
+      if (!lattices_[r].water)
+        water_motions.resize(water_motions.size() + 4 * static_cast<std::size_t>(of.count));
     }
     if (most == 0) return;
     queue_.wait();
-    const bool moved = give(motions, motions_), loaded = give(wrenches, wrenches_);
-    if (moved || loaded) ++tables_;
+    bool grown = give(motions, motions_);
+    grown = give(wrenches, wrenches_) || grown;
+    grown = give(water_motions, water_motions_) || grown;
+    if (grown) ++tables_;
     runs_.put(runs);
+    waters_.put(waters);
     const Memory memory = all();
+    const WaterMemory water = all_of_water();
     const auto key = static_cast<std::uint64_t>(most) << 32U | tables_ << 1U | now_;
     const int parity = static_cast<int>(now_);
-    queue_.run(key, most, static_cast<std::int32_t>(tiles_.run.size()),
-               std::max(32, (tiles_.most_bodies + 31) / 32 * 32), shared_, [&](int k) {
-                 Step work{memory, k};
-                 if (parity == 1) std::swap(work.memory.records[0], work.memory.records[1]);
-                 return work;
-               });
+    const auto tiles = static_cast<std::int32_t>(tiles_.run.size());
+    constexpr int warp = 32;
+    const int threads = std::max(warp, (tiles_.most_bodies + warp - 1) / warp * warp);
+    queue_.run(key, [&](const auto& launch) {
+      Memory of_step = memory;
+      if (parity == 1) std::swap(of_step.records[0], of_step.records[1]);
+      for (int k = 0; k < most; ++k) {
+        if (has_water_) launch(WaterStep{of_step, water, k}, tiles, threads, 0);
+        launch(Step{of_step, k}, tiles, threads, shared_);
+      }
+    });
     now_ = (now_ + static_cast<std::size_t>(most)) % 2;
   }
 
@@ -132,7 +148,9 @@ class TileEngine final : public Engine {
     const auto body = [&](std::size_t r) { return static_cast<std::size_t>(first_body_[r]); };
     return {take(beam_works_, body(run), body(run + 1)),
             take(held_works_, first_held_[run], first_held_[run + 1]),
-            take(load_works_, first_loaded_[run], first_loaded_[run + 1])};
+            take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
+            take(drag_works_, body(run), body(run + 1)),
+            take(buoyancy_works_, body(run), body(run + 1))};
   }
 
   std::int32_t tiles() const override { return static_cast<std::int32_t>(tiles_.run.size()); }
@@ -144,6 +162,26 @@ class TileEngine final : public Engine {
   }
   std::size_t bodies_of(std::size_t run) const {
     return static_cast<std::size_t>(lattices_[run].bodies);
+  }
+  /// Copies numbers of a run's bodies, body after body, into memory that has them number by number.
+  void put_numbers(Array<double>& memory, int count, std::size_t run,
+                   std::span<const double> numbers) {
+    const std::size_t bodies = bodies_of(run), of_body = static_cast<std::size_t>(count);
+    room_.resize(bodies);
+    for (int n = 0; n < count; ++n) {
+      for (std::size_t b = 0; b < bodies; ++b)
+        room_[b] = numbers[b * of_body + static_cast<std::size_t>(n)];
+      memory.put(std::span<const double>(room_), place(n, run));
+    }
+  }
+  void get_numbers(Array<double>& memory, int count, std::size_t run, std::span<double> numbers) {
+    const std::size_t bodies = bodies_of(run), of_body = static_cast<std::size_t>(count);
+    room_.resize(bodies);
+    for (int n = 0; n < count; ++n) {
+      memory.get(std::span<double>(room_), place(n, run));
+      for (std::size_t b = 0; b < bodies; ++b)
+        numbers[b * of_body + static_cast<std::size_t>(n)] = room_[b];
+    }
   }
   std::size_t place(int number, std::size_t run) const {
     return static_cast<std::size_t>(number * static_cast<std::int64_t>(first_body_.back()) +
@@ -226,6 +264,66 @@ class TileEngine final : public Engine {
     load_works_ = Array<double>(all);
   }
 
+  /// What the water needs. Runs without water, beside others with it, have bodies without shape.
+  void take_water(std::size_t bodies) {
+    has_water_ = std::any_of(lattices_.begin(), lattices_.end(),
+                             [](const Lattice& lattice) { return lattice.water.has_value(); });
+    if (!has_water_) return;
+    constexpr std::size_t of_prism = 14, of_whole = 4;
+    std::vector<double> prisms(of_prism * bodies), wholes(of_whole * bodies), extents, most2,
+        area_per_volume, vertices;
+    std::vector<std::int32_t> first_vertex{0}, first_face{0}, first_corner{0}, corners;
+    bool drags = false, level_moves = false, has_pace = false;
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      const auto first = static_cast<std::size_t>(first_body_[r]);
+      const std::size_t count = bodies_of(r);
+      const Lattice::Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
+      drags = drags || w.drags;
+      level_moves = level_moves || w.level_moves;
+      has_pace = has_pace || w.pace > 1;
+      for (std::size_t b = 0; b < w.prisms.size(); ++b) {
+        for (std::size_t n = 0; n < of_prism; ++n) prisms[n * bodies + first + b] = w.prisms[b][n];
+        for (std::size_t n = 0; n < of_whole; ++n) wholes[n * bodies + first + b] = w.wholes[b][n];
+      }
+      const auto append = [&](std::vector<double>& to, std::vector<double> values) {
+        values.resize(count);
+        to.insert(to.end(), values.begin(), values.end());
+      };
+      append(extents, w.extents);
+      append(most2, w.most2);
+      append(area_per_volume, w.area_per_volume);
+      const auto vertices_before = static_cast<std::int32_t>(vertices.size() / 3),
+                 faces_before = static_cast<std::int32_t>(first_corner.size()) - 1,
+                 corners_before = static_cast<std::int32_t>(corners.size());
+      for (std::size_t b = 1; b <= count; ++b) {
+        first_vertex.push_back(vertices_before +
+                               (b < w.first_vertex.size() ? w.first_vertex[b] : 0));
+        first_face.push_back(faces_before + (b < w.first_face.size() ? w.first_face[b] : 0));
+      }
+      for (std::size_t f = 1; f < w.first_corner.size(); ++f)
+        first_corner.push_back(corners_before + w.first_corner[f]);
+      for (const std::int32_t v : w.corners) corners.push_back(vertices_before + v);
+      for (const auto& vertex : w.vertices)
+        vertices.insert(vertices.end(), vertex.begin(), vertex.end());
+    }
+    prisms_ = keep(prisms);
+    wholes_ = keep(wholes);
+    extents_ = keep(extents);
+    most2_ = keep(most2);
+    area_per_volume_ = keep(area_per_volume);
+    first_vertex_ = keep(first_vertex);
+    first_face_ = keep(first_face);
+    first_corner_ = keep(first_corner);
+    corners_ = keep(corners);
+    vertices_ = keep(vertices);
+    waters_ = Array<WaterOfRun>(lattices_.size());
+    constexpr std::size_t of_water = 6;
+    water_forces_ = Array<double>(of_water * bodies);
+    if (drags) drag_works_ = Array<double>(bodies);
+    if (level_moves) buoyancy_works_ = Array<double>(bodies);
+    if (has_pace) expansions_ = Array<double>(of_expansion * bodies);
+  }
+
   /// Hands over a table, in memory that is made larger where that must be. Whether it was.
   static bool give(const std::vector<double>& values, Array<double>& memory) {
     const bool larger = values.size() > memory.size();
@@ -252,6 +350,9 @@ class TileEngine final : public Engine {
             or_null(weights_),
             {{records_[0].data(), bodies}, {records_[1].data(), bodies}},
             or_null(beam_works_),
+            {or_null(water_forces_), bodies},
+            or_null(drag_works_),
+            or_null(buoyancy_works_),
             or_null(held_row_),
             held_bits_.data(),
             held_motions_.data(),
@@ -265,6 +366,23 @@ class TileEngine final : public Engine {
             runs_.data(),
             speed2_.data(),
             spin2_.data()};
+  }
+
+  WaterMemory all_of_water() {
+    const auto bodies = static_cast<std::int64_t>(first_body_.back());
+    return {waters_.data(),
+            water_motions_.data(),
+            {prisms_.data(), bodies},
+            {wholes_.data(), bodies},
+            extents_.data(),
+            most2_.data(),
+            area_per_volume_.data(),
+            first_vertex_.data(),
+            first_face_.data(),
+            first_corner_.data(),
+            corners_.data(),
+            vertices_.data(),
+            {or_null(expansions_), bodies}};
   }
 
   std::vector<Lattice> lattices_;
@@ -282,6 +400,11 @@ class TileEngine final : public Engine {
   Array<std::uint8_t> held_bits_;
   Array<std::uint64_t> speed2_, spin2_;
   Array<RunOfTiles> runs_;
+  bool has_water_ = false;
+  Array<WaterOfRun> waters_;
+  Array<double> water_motions_, prisms_, wholes_, extents_, most2_, area_per_volume_, vertices_,
+      expansions_, water_forces_, drag_works_, buoyancy_works_;
+  Array<std::int32_t> first_vertex_, first_face_, first_corner_, corners_;
   std::vector<double> room_;
 };
 

@@ -11,6 +11,8 @@
 #include <new>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "device/engine.h"
@@ -101,24 +103,25 @@ class Queue {
     cudaStreamDestroy(stream_);
   }
 
-  /// Runs work_of(0), ..., work_of(steps - 1) for all tiles, one after the other. The same key
-  /// stands for the same works: their launches are recorded once, as a graph.
-  template <class WorkOf>
-  void run(std::uint64_t key, int steps, std::int32_t tiles, int threads, std::size_t shared,
-           const WorkOf& work_of) {
+  /// Makes the launches of record(launch), where launch(work, tiles, threads, shared) runs the work
+  /// for all tiles; one after the other. The same key stands for the same launches, which are
+  /// recorded once, as a graph.
+  template <class Record>
+  void run(std::uint64_t key, const Record& record) {
     auto found = std::find_if(graphs_.begin(), graphs_.end(),
                               [&](const auto& entry) { return entry.first == key; });
     if (found == graphs_.end()) {
-      using Work = decltype(work_of(0));
-      constexpr std::size_t without_asking = 48U << 10;
-      if (shared > without_asking)
-        check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                   static_cast<int>(shared)),
-              "shared memory of a tile");
       cudaGraph_t graph = nullptr;
       check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "capture");
-      for (int k = 0; k < steps; ++k)
-        run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work_of(k));
+      record([this](const auto& work, std::int32_t tiles, int threads, std::size_t shared) {
+        using Work = std::decay_t<decltype(work)>;
+        constexpr std::size_t without_asking = 48U << 10;
+        if (shared > without_asking)
+          check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                     static_cast<int>(shared)),
+                "shared memory of a tile");
+        run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
+      });
       check(cudaStreamEndCapture(stream_, &graph), "capture");
       cudaGraphExec_t ready = nullptr;
       check(cudaGraphInstantiate(&ready, graph, 0), "cudaGraphInstantiate");
@@ -162,17 +165,15 @@ inline void raise(std::uint64_t* address, double value) {
 
 class Queue {
  public:
-  template <class WorkOf>
-  void run(std::uint64_t /*key*/, int steps, std::int32_t tiles, int /*threads*/,
-           std::size_t shared, const WorkOf& work_of) {
-    shared_.resize(shared / sizeof(double));
-    for (int k = 0; k < steps; ++k) {
-      const auto work = work_of(k);
+  template <class Record>
+  void run(std::uint64_t /*key*/, const Record& record) {
+    record([this](const auto& work, std::int32_t tiles, int /*threads*/, std::size_t shared) {
+      shared_.resize(std::max(shared_.size(), shared / sizeof(double)));
       for (std::int32_t tile = 0; tile < tiles; ++tile) {
         for (std::int32_t b = 0; b < work.beams(tile); ++b) work.beam(tile, b, shared_.data());
         for (std::int32_t b = 0; b < work.bodies(tile); ++b) work.body(tile, b, shared_.data());
       }
-    }
+    });
   }
   void wait() {}
 

@@ -1,7 +1,7 @@
 /// \file
 /// One step of leapfrog of the bodies of a tile with the beams that touch them: beams, gravity,
-/// loads, boundaries (model.md, "Explicit dynamics"). The physics is that of src/beams/kernel.h and
-/// src/leapfrog/rigid_body_step.h; here are loops and memory only.
+/// loads, boundaries, and what the water has left (model.md, "Explicit dynamics"). The physics is
+/// that of src/beams/kernel.h and src/leapfrog/rigid_body_step.h; here are loops and memory only.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ struct Soa {
   double* numbers;
   std::int64_t size;  ///< of bodies or beams
 
-  FLOE_KERNEL double& at(int number, std::int64_t of) const { return numbers[number * size + of]; }
-  FLOE_KERNEL Vec3<double> vector(int number, std::int64_t of) const {
+  constexpr double& at(int number, std::int64_t of) const { return numbers[number * size + of]; }
+  constexpr Vec3<double> vector(int number, std::int64_t of) const {
     return {at(number, of), at(number + 1, of), at(number + 2, of)};
   }
-  FLOE_KERNEL Quat<double> quaternion(int number, std::int64_t of) const {
+  constexpr Quat<double> quaternion(int number, std::int64_t of) const {
     return {at(number, of), at(number + 1, of), at(number + 2, of), at(number + 3, of)};
   }
 };
@@ -53,6 +53,10 @@ struct Memory {
   const double* weights;  ///< null: none
   Soa records[2];         ///< step k reads those of k % 2 and writes the others
   double* beam_works;     ///< per body [J]; null: beams have no dashpots
+  /// Of the water on each body: drag along x, y, z, buoyancy, and its moments about x and y; null
+  /// numbers: none [N, N m].
+  Soa water;
+  double *drag_works, *buoyancy_works;  ///< per body [J]; null: no drag; still water
   // Held bodies.
   const std::int32_t* held_row;  ///< per body; null: none is held
   const std::uint8_t* held_bits;
@@ -170,6 +174,12 @@ struct TileStep {
     Vec3<double> force{0, 0, 0}, moment{0, 0, 0};
     sum_beams(tile, b, shared, before > 0 ? dt : 0.25 * dt, force, moment);
     if (memory.weights != nullptr) force.z -= memory.weights[b];
+    if (memory.water.numbers != nullptr) {
+      force = force + memory.water.vector(0, b);
+      force.z += memory.water.at(3, b);
+      moment.x += memory.water.at(4, b);
+      moment.y += memory.water.at(5, b);
+    }
     add_loads(run, b, old, force, moment);
 
     const BodyConstants<double> c{memory.bodies.at(0, b), memory.bodies.vector(1, b),
@@ -178,6 +188,7 @@ struct TileStep {
     leap(c, now, force, moment, dt);
     hold(run, b, c, old, moment, now);
     add_works_of_loads(run, b, old, now, dt, before);
+    add_works_of_water(b, old, now, dt, before);
     put(to, u_at, b, now.u);
     to.at(q_at, b) = now.q.w;
     put(to, q_at + 1, b, {now.q.x, now.q.y, now.q.z});
@@ -245,6 +256,22 @@ struct TileStep {
       const Vec3<double> moment = Vec3<double>{w[3], w[4], w[5]} + cross(arm, f);
       memory.load_works[l] += 0.5 * (before * (dot(f, old.v) + dot(moment, old.w)) +
                                      dt * (dot(f, now.v) + dot(moment, now.w)));
+    }
+  }
+
+  FLOE_KERNEL void add_works_of_water(std::int64_t b, const BodyMotion<double>& old,
+                                      const BodyMotion<double>& now, double dt,
+                                      double before) const {
+    if (memory.drag_works != nullptr) {
+      const Vec3<double> drag = memory.water.vector(0, b);
+      memory.drag_works[b] += 0.5 * (before * dot(drag, old.v) + dt * dot(drag, now.v));
+    }
+    if (memory.buoyancy_works != nullptr) {
+      const double f = memory.water.at(3, b), x = memory.water.at(4, b), y = memory.water.at(5, b);
+      const auto power = [&](const BodyMotion<double>& m) {
+        return f * m.v.z + x * m.w.x + y * m.w.y;
+      };
+      memory.buoyancy_works[b] += 0.5 * (before * power(old) + dt * power(now));
     }
   }
 

@@ -116,22 +116,28 @@ Submerged Immersion::below(const State<Spatial>& state, std::int32_t body,
                 (centroid(state, body).z - plane.level) / plane.steepness());
 }
 
-/// The part of a body below z = 0.
-/// \param rotation  from rest, of unit length
-/// \param z         height of its centroid [m]
-Submerged Immersion::placed(std::int32_t body, const Quat<double>& rotation, double z) const {
-  const Prism<double> b = prism(static_cast<std::size_t>(body));
-  const PrismBelow<double> p = prism_below(b, rotation, z);
-  if (!sides_only(b, p.axes, z)) return clipped(body, p.axes, z);
+/// A body for below_water(), with its vertices placed once.
+struct Immersion::Placed {
+  const Immersion& all;
+  std::int32_t body;
 
-  const Waterplane<double> w = waterplane_of(b, p);
-  Submerged s;
-  s.volume = p.volume;
-  s.moment = p.moment;
-  s.waterplane = w.area;
-  s.wx = w.x, s.wy = w.y;
-  s.wxx = w.xx, s.wxy = w.xy, s.wyy = w.yy;
-  return s;
+  Prism<double> prism() const { return all.prism(static_cast<std::size_t>(body)); }
+  double extent() const { return all.extent(body); }
+  Submerged whole(const Triad<double>& axes) const {
+    const VolumeProperties& of = all.all_of_body(body);
+    Submerged s;
+    s.volume = of.volume;
+    s.moment = of.volume * axes.to_world(of.centroid);
+    return s;
+  }
+  PlacedFaces placed(const Triad<double>& axes) const {
+    all.place_vertices(body, axes);
+    return {all.part_.shapes, body, all.placed_};
+  }
+};
+
+Submerged Immersion::placed(std::int32_t body, const Quat<double>& rotation, double z) const {
+  return below_water(Placed{*this, body}, rotation, z, wet_);
 }
 
 void Immersion::replace(const State<Spatial>& state, std::size_t block, std::size_t lane,
@@ -181,35 +187,6 @@ Submerged Immersion::by_clipping(const State<Spatial>& state, std::int32_t body)
   const Quat<double> axes = product(of_unit_length(rotation(state, b)), prism(b).axes);
   place_vertices(body, triad(axes));
   return submerged(part_.shapes, body, placed_, -height(state, body));
-}
-
-Submerged Immersion::whole(std::int32_t body, const Triad<double>& axes) const {
-  const VolumeProperties& all = item(whole_, body);
-  Submerged s;
-  s.volume = all.volume;
-  s.moment = all.volume * axes.to_world(all.centroid);
-  return s;
-}
-
-/// The part of a body below z = 0; only a body that the surface may cut is clipped.
-Submerged Immersion::clipped(std::int32_t body, const Triad<double>& axes, double z) const {
-  const auto b = static_cast<std::size_t>(body);
-  if (z >= extent_[b]) return {};
-  if (z <= -extent_[b]) return whole(body, axes);
-  if (const Prism<double> p = prism(b); p.radius2 < std::numeric_limits<double>::infinity()) {
-    // Its end faces lie within discs of the plan's circumradius.
-    const double middle = z + 0.5 * (p.top + p.bottom) * axes.e3.z;
-    const double reach = 0.5 * (p.top - p.bottom) * std::abs(axes.e3.z) +
-                         std::sqrt(p.radius2 * (axes.e1.z * axes.e1.z + axes.e2.z * axes.e2.z));
-    if (middle > reach) return {};
-    if (middle < -reach && wet_ == Wet::by_points) return whole(body, axes);
-  }
-  place_vertices(body, axes);
-  bool any_below = false, any_above = false;
-  for (const Point3& p : placed_) (p.z < -z ? any_below : any_above) = true;
-  if (!any_below) return {};
-  if (!any_above && wet_ == Wet::by_points) return whole(body, axes);
-  return submerged(part_.shapes, body, placed_, -z);
 }
 
 void Immersion::place_vertices(std::int32_t body, const Triad<double>& axes) const {

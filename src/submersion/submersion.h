@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "forces/force.h"
+#include "submersion/follow.h"
 #include "submersion/immersion.h"
 
 namespace floe {
@@ -23,12 +24,14 @@ const Part& require_shapes(const Part& part, std::string_view force);
 /// find what they need by immersion().
 ///
 /// With a pace k > 1 every k-th step finds volume V, moment m and waterplane W of each body. In
-/// between they follow to first order from how far the body has shifted (u_z) and turned (t) since,
-/// by Reynolds' theorem (buoyancy.cpp, add_tangent):
-///   V += -int_W (u_z + t_x r_y - t_y r_x) dA,   m += t x m - int_W r (u_z + t_x r_y - t_y r_x) dA.
-/// A body that has moved by more than largest_move of its thickness is looked at anew at once, so
-/// the error is at most of the second order in that. Steps only count, so a step may change.
-class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>, public Persists {
+/// between they follow to first order from how far the body has shifted and turned since
+/// (follow.h). A body that has moved by more than largest_move of its thickness is looked at anew
+/// at once, so the error is at most of the second order in that. Steps only count, so a step may
+/// change.
+class Submersion final : public PreparesSteps<Spatial>,
+                         public Commits<Spatial>,
+                         public Persists,
+                         public DeviceModel::KeptParts {
  public:
   /// \param part    with shapes; must outlive this object
   /// \param pace    number of steps
@@ -46,6 +49,10 @@ class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>,
   /// Counts steps.
   void commit(const State<Spatial>&, double) override { since_ = (since_ + 1) % pace_; }
   void persist(Archive& archive) override;
+  void read(std::vector<double>& numbers, std::int64_t& steps) const override;
+  void write(std::span<const double> numbers, std::int64_t steps) override;
+  /// Adds what a back end needs to find submerged parts, unless it is there.
+  DeviceModel::Water& describe(DeviceModel& model);
 
   /// Whether an evaluation of a step is under way, with a pace: at_pace() finds submerged parts.
   bool is_paced() const { return open_ && has_pace(); }
@@ -75,26 +82,21 @@ class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>,
   double volume_of(std::size_t body) const { return volumes_[body / lanes][body % lanes]; }
 
  private:
-  /// Places of the bodies of a block when the submerged parts were found, and these.
-  struct Expansion {
-    Lanes z;
-    Quat<Lanes> q;
-    Immersion::Cut cut;
-  };
   static constexpr std::size_t numbers = 15;  ///< of a body in an Expansion
-  static std::array<Lanes*, numbers> numbers_of(Expansion& e);
+  static std::array<Lanes*, numbers> numbers_of(Expansion<Lanes>& e);
+  void set_numbers(std::span<const double> rows);
   struct Size {
     Lanes extent2;  ///< square of the distance of the farthest vertex [m^2]
     Lanes most2;    ///< half the square of the largest move [m^2]
   };
-  struct Followed {
+  struct FollowedBlock {
     Immersion::Lane now;
     Lanes apart;  ///< > 0 where a body has moved too far to be followed
   };
   Immersion::Lane find(const State<Spatial>& state, std::size_t block, const BlockMotion& m);
   Immersion::Lane follow(const State<Spatial>& state, std::size_t block, const BlockMotion& m);
   Immersion::Lane find_some(const State<Spatial>& state, std::size_t block, const BlockMotion& m,
-                            const Followed& followed);
+                            const FollowedBlock& followed);
 
   const Part& part_;
   Immersion immersion_;
@@ -104,30 +106,18 @@ class Submersion final : public PreparesSteps<Spatial>, public Commits<Spatial>,
   std::int64_t since_ = 0;         ///< steps since all were found
   std::vector<Lanes> volumes_;     ///< of the last evaluation [m^3]
   std::vector<std::uint8_t> new_;  ///< per block, a bit per lane
-  std::vector<Expansion> expansions_;
+  std::vector<Expansion<Lanes>> expansions_;
   std::vector<Size> sizes_;
 };
 
 inline Immersion::Lane Submersion::follow(const State<Spatial>& state, std::size_t block,
                                           const BlockMotion& m) {
-  const Expansion& e = expansions_[block];
-  const Lanes shift = m.u.z - e.z;
-  // Twice the vector part of q q_1* = 1 + (q - q_1) q_1*: exactly 0 for a body that has not turned.
-  const Quat<Lanes> d{m.q.w - e.q.w, m.q.x - e.q.x, m.q.y - e.q.y, m.q.z - e.q.z};
-  const Vec3<Lanes> v{d.x, d.y, d.z}, v1{e.q.x, e.q.y, e.q.z};
-  const Vec3<Lanes> turn = 2.0 * (e.q.w * v - d.w * v1 + cross(v1, v));
-  const Waterplane<Lanes>& w = e.cut.waterplane;
-  const Vec3<Lanes>& m1 = e.cut.below.moment;
-  Immersion::Lane now = e.cut.below;
-  now.volume -= w.area * shift + w.y * turn.x - w.x * turn.y;
+  const Followed<Lanes> f = followed(expansions_[block], m.u.z, m.q);
+  Immersion::Lane now{f.volume, f.moment};
   where(now.volume < 0.0, now.volume) = 0.0;
-  now.moment.x =
-      m1.x + Lanes(turn.y * m1.z - turn.z * m1.y) - (w.x * shift + w.xy * turn.x - w.xx * turn.y);
-  now.moment.y =
-      m1.y + Lanes(turn.z * m1.x - turn.x * m1.z) - (w.y * shift + w.yy * turn.x - w.xy * turn.y);
   new_[block] = 0;
   // (a + b)^2 <= 2 (a^2 + b^2)
-  const Lanes apart = shift * shift + sizes_[block].extent2 * dot(turn, turn) - sizes_[block].most2;
+  const Lanes apart = f.shift * f.shift + sizes_[block].extent2 * f.turn2 - sizes_[block].most2;
   if (none_of(apart > 0.0)) [[likely]]
     return now;
   return find_some(state, block, m, {now, apart});

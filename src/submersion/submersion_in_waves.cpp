@@ -10,7 +10,7 @@ namespace floe {
 
 SubmersionInWaves::SubmersionInWaves(const Part& part, Waves waves, int pace, bool shared)
     : part_(part),
-      immersion_(part, pace > 1 ? Immersion::Wet::by_points : Immersion::Wet::by_sphere),
+      immersion_(part, pace > 1 ? Wet::by_points : Wet::by_sphere),
       waves_(std::move(waves)),
       pace_(pace),
       shared_(shared) {

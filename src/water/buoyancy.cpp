@@ -40,7 +40,8 @@ class Buoyancy final : public Force<Spatial>,
                        public HasTangent<Spatial>,
                        public DoesWork<Spatial>,
                        public LimitsStep<Spatial>,
-                       public BearsLoad<Spatial> {
+                       public BearsLoad<Spatial>,
+                       public OnDevice {
  public:
   Buoyancy(std::shared_ptr<Submersion> submersion, double weight_density)
       : part_(submersion->part()),
@@ -58,7 +59,14 @@ class Buoyancy final : public Force<Spatial>,
     if (immersion_.has_level()) roles.work = this;
     if (submersion_->has_pace())
       roles.commits = submersion_.get(), roles.persists = submersion_.get();
+    roles.device = this;
     return roles;
+  }
+
+  void describe(DeviceModel& model) const override {
+    DeviceModel::Water& water = submersion_->describe(model);
+    water.weight_density = weight_;
+    if (immersion_.has_level()) water.buoyancy_work = model.next_work;
   }
 
   /// Bodies that are clipped: 290 ns each time (docs/decisions/53), every k-th step. All others

@@ -8,6 +8,7 @@
 
 #include "floe/base/petsc.h"
 #include "submersion/immersion.h"
+#include "water/drag_law.h"
 
 namespace floe {
 namespace {
@@ -40,6 +41,12 @@ class WettedBodies<Spatial> {
       area_per_volume_[k / lanes].values[k % lanes] =
           immersion_.volume(body) > 0 ? immersion_.plan_area(body) / immersion_.volume(body) : 0;
     }
+  }
+  DeviceModel::Water& describe(DeviceModel& model) const {
+    DeviceModel::Water& water = submersion_->describe(model);
+    for (std::size_t b = 0; b < water.prisms.size(); ++b)
+      water.area_per_volume.push_back(per_volume(b));
+    return water;
   }
   std::size_t blocks() const { return immersion_.blocks(); }
   MovingBlock block(const State<Spatial>& state, std::size_t block) const {
@@ -103,7 +110,8 @@ class Drag final : public Force<Space>,
                    public HasTangent<Space>,
                    public Damps<Space>,
                    public DoesWork<Space>,
-                   public LimitsStep<Space> {
+                   public LimitsStep<Space>,
+                   public OnDevice {
  public:
   Drag(const Part& part, WettedBodies<Space> bodies, const DragOptions& options)
       : part_(part),
@@ -116,7 +124,16 @@ class Drag final : public Force<Space>,
 
   std::string_view name() const override { return "drag"; }
   Roles<Space> roles() override {
-    return {.tangent = this, .damping = this, .work = this, .step = this};
+    return {.tangent = this, .damping = this, .work = this, .step = this, .device = this};
+  }
+  void describe(DeviceModel& model) const override {
+    if constexpr (std::is_same_v<Space, Spatial>) {
+      DeviceModel::Water& water = bodies_.describe(model);
+      water.drag_work = model.next_work;
+      water.linear = linear_;
+      water.coefficient = coefficient_;
+      water.current = [this](double time) { return water_.velocity(time); };
+    }
   }
 
   void add(const State<Space>& state, Wrenches<Space>& wrenches) override {
@@ -201,17 +218,13 @@ class Drag final : public Force<Space>,
   template <bool quadratic>
   [[gnu::flatten]] double add(const State<Space>& state, Wrenches<Space>& wrenches,
                               std::array<double, 4>* forces) const {
-    using std::sqrt;
     const Vec3<double> water = water_.velocity(state.time);
     const Vec3<Lanes> current{water.x, water.y, water.z};
     double sum = 0;
     for (std::size_t block = 0; block < bodies_.blocks(); ++block) {
       const MovingBlock m = bodies_.block(state, block);
       const Vec3<Lanes> v = m.v - current;
-      Lanes factor(linear_);
-      if constexpr (quadratic) factor += coefficient_ * sqrt(dot(v, v));
-      const Lanes drag = -(factor * m.area);
-      const Vec3<Lanes> force = drag * v;
+      const Vec3<Lanes> force = drag_force<quadratic>(linear_, coefficient_, m.area, v);
       const Lanes power = dot(force, m.v);
       std::array<Row, lanes> rows;
       scatter_four({force.x, force.y, force.z, Lanes(0.0)}, rows);

@@ -223,7 +223,7 @@ TEST_F(SharedWater, ABodyThatHasMovedFarIsLookedAtAtOnce) {
 
 /// At a pace wholly wet bodies are not clipped: their volume has the same bits everywhere.
 TEST_F(SharedWater, WetAndDryBodiesAreNotClipped) {
-  const Immersion immersion(part, Immersion::Wet::by_points);
+  const Immersion immersion(part, Wet::by_points);
   test::Random random(9);
   int wet = 0, dry = 0;
   for (int trial = 0; trial < 100; ++trial) {
