@@ -34,14 +34,15 @@ void say(const std::string& what, bool good, const char* format, double value) {
   failures += good ? 0 : 1;
 }
 
-/// A damped or undamped sheet under its weight and a load, held at one edge, pulled at the other.
+/// A damped or undamped sheet under its weight and a load, held at one edge, pulled at the other;
+/// or it floats in a current instead of being held.
 struct Sheet {
   Scene scene;
   std::unique_ptr<test::Dynamics> run;
   device::DescribedModel described;
   double dt = 1e-4;
 
-  Sheet(double bodies, double damping) {
+  Sheet(double bodies, double damping, bool floats = false, int pace = 1) {
     const double side = std::sqrt(bodies * std::sqrt(3.0) / 2);
     scene.forces.beam = scene.forces.gravity = true;
     scene.beam.damping_ratio = damping;
@@ -50,19 +51,25 @@ struct Sheet {
     right.name = right.set = "right", right.fixed = {true, false, false, false, true, false};
     right.velocity = Point3{0.05, 0, 0}, right.angular_velocity = {0, 0.01, 0};
     right.ramp.seconds = 0.01;
-    scene.boundaries = {left, right};
+    if (!floats) scene.boundaries = {left, right};
+    scene.forces.buoyancy = scene.forces.drag = floats;
+    scene.drag.coefficient = 1;
+    scene.drag.current = {0.3, 0.1, 0};
+    scene.water_pace = pace;
     Load load;
     load.name = load.set = "all", load.force = {1e3, 2e3, -1e3}, load.ramp.seconds = 0.01;
     scene.loads = {load};
     SheetPlan plan;
     plan.length = plan.width = side, plan.element_size = 1, plan.iterations = 5;
-    floe::Lattice lattice = make_sheet(tessellate(plan, MPI_COMM_SELF), SheetSection{});
+    SheetSection section;
+    if (floats) section.mid_plane = section.thickness * (0.5 - section.ice.density / 1010);
+    floe::Lattice lattice = make_sheet(tessellate(plan, MPI_COMM_SELF), section);
     auto& all = lattice.sets["all"];
     for (std::int32_t b = 0; b < lattice.bodies.size(); ++b) all.push_back(b);
     run = std::make_unique<test::Dynamics>(scene, lattice);
     described = device::describe(run->model(), "cuda");
   }
-  Sheet(const Sheet&) = delete;
+  Sheet(Sheet&&) = default;
 
   std::vector<double> records() const {
     std::vector<double> all;
@@ -73,7 +80,8 @@ struct Sheet {
     return all;
   }
   Steps steps(int first, int count) const {
-    Steps s{count, dt, first == 0 ? 0.0 : dt, {}, {}};
+    Steps s{.count = count, .dt = dt, .before = first == 0 ? 0.0 : dt};
+    s.since = first % (described.numbers.water ? described.numbers.water->pace : 1);
     for (int n = first; n < first + count; ++n) {
       for (const double at : {n * dt, n * dt + dt}) {
         for (const PlacedBoundary& placed : run->model().boundaries()) {
@@ -85,6 +93,7 @@ struct Sheet {
         const auto wrench = load.wrench(n * dt);
         s.wrenches.insert(s.wrenches.end(), wrench.begin(), wrench.end());
       }
+      if (described.numbers.water) s.water.insert(s.water.end(), {0, 0.3, 0.1, 0});
     }
     return s;
   }
@@ -110,10 +119,15 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return difference / largest;
 }
 
-void compare(double bodies, double damping) {
-  const Sheet sheet(bodies, damping);
-  const std::string name = std::to_string(sheet.described.lattice.bodies) + " bodies, " +
-                           (damping > 0 ? "damped" : "undamped");
+std::string name_of(const Sheet& sheet) {
+  const auto& water = sheet.described.lattice.water;
+  return std::to_string(sheet.described.lattice.bodies) + " bodies, " +
+         (sheet.described.lattice.damped ? "damped" : "undamped") +
+         (water ? ", floating, pace " + std::to_string(water->pace) : "");
+}
+
+void compare(const Sheet& sheet) {
+  const std::string name = name_of(sheet);
   const auto loop = device::make_loop_engine({sheet.described.lattice});
   const auto exact = device::make_exact_cuda_engine({sheet.described.lattice});
   const auto fused = device::make_cuda_engine({sheet.described.lattice});
@@ -123,8 +137,8 @@ void compare(double bodies, double damping) {
   for (std::size_t k = 0; k < a.size(); ++k) differing += a[k] == b[k] ? 0 : 1;
   say(name + ": numbers that differ from loop after 100 steps", differing == 0, "%.0f", differing);
   const device::Works works = exact->works(0), others = loop->works(0);
-  const bool same =
-      works.beams == others.beams && works.held == others.held && works.loaded == others.loaded;
+  const bool same = works.beams == others.beams && works.held == others.held &&
+                    works.loaded == others.loaded && works.drag == others.drag;
   say(name + ": works like those of loop", same, "%.0f", same ? 1 : 0);
   const double fusion = largest_difference(a, c);
   say(name + ": largest difference, fused", fusion < 1e-11, "%.1e", fusion);
@@ -180,8 +194,7 @@ double time_of(Engine& engine, const std::vector<Steps>& steps) {
 }
 
 /// \param copies  of the sheet in one launch
-void time_steps(double bodies, double damping, std::size_t copies, double allowed) {
-  Sheet sheet(bodies, damping);
+void time_steps(Sheet sheet, std::size_t copies, double allowed) {
   const std::vector<Lattice> lattices(copies, sheet.described.lattice);
   const auto engine = device::make_cuda_engine(lattices);
   const std::vector<double> records = sheet.records();
@@ -191,9 +204,8 @@ void time_steps(double bodies, double damping, std::size_t copies, double allowe
   sheet.run->set_step(sheet.dt);
   const double cpu = 1e6 * seconds_of([&] { sheet.run->steps(20); }) / 20;
   const auto all = static_cast<double>(copies);
-  const std::string name = std::to_string(sheet.described.lattice.bodies) + " bodies x " +
-                           std::to_string(copies) + (damping > 0 ? ", damped" : ", undamped");
-  say(name + ": us per step", here <= allowed, "%.1f", here);
+  say(std::to_string(copies) + " x " + name_of(sheet) + ": us per step", here <= allowed, "%.1f",
+      here);
   std::printf("%62s one core of the processor: %.0f us, %.0f times that\n", "", all * cpu,
               all * cpu / here);
 }
@@ -212,16 +224,22 @@ int main(int argc, char** argv) {
   const Mpi mpi(argc, argv);
   const Session session(argv[0]);
   for (const double damping : {0.0, 0.1}) {
-    compare(1460, damping);
-    compare(20'000, damping);
+    compare(Sheet(1460, damping));
+    compare(Sheet(20'000, damping));
   }
+  compare(Sheet(1460, 0.1, true));
+  compare(Sheet(1460, 0.1, true, 10));
   compare_together();
   constexpr double anything = 1e9;
   for (const double damping : {0.0, 0.1}) {
-    time_steps(1460, damping, 1, anything);
-    time_steps(29'561, damping, 1, 10);
-    time_steps(29'561, damping, 34, 300);
-    time_steps(1460, damping, 50, anything);
+    time_steps(Sheet(1460, damping), 1, anything);
+    time_steps(Sheet(29'561, damping), 1, 10);
+    time_steps(Sheet(29'561, damping), 34, 300);
+    time_steps(Sheet(1460, damping), 50, anything);
+  }
+  for (const int pace : {1, 10}) {
+    time_steps(Sheet(29'561, 0.1, true, pace), 1, anything);
+    time_steps(Sheet(29'561, 0.1, true, pace), 34, anything);
   }
   std::printf(failures == 0 ? "all is well\n" : "%d things are not well\n", failures);
   return failures == 0 ? 0 : 1;
