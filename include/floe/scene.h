@@ -173,8 +173,8 @@ struct Scene {
   FractureOptions fracture;
   Calibrate calibrate = Calibrate::none;
   double gravity = 9.81;  ///< [m/s^2]
-  Backend backend = Backend::cpu;
   double water_density = 1010;  ///< [kg/m^3]
+  Backend backend = Backend::cpu;
   int water_pace = 1;           ///< the submerged parts are found in every step of this number
   DragOptions drag;
   WaveOptions waves;

@@ -29,6 +29,7 @@
 
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "beams/stiffness.h"
 #include "floe/base/rotation.h"
@@ -57,17 +58,8 @@ template <class C>
 struct EccentricFrame : AnyFrame<C> {
   Vec3<C> offset_i, offset_j;  ///< from the centroids, at rest, world axes [m]
 };
-/// The frame that holds, with doubles, what lanes of beams of a frame are computed by one by one.
 template <template <class> class Frame>
-struct ScalarFrame {
-  template <class C>
-  using Type = AnyFrame<C>;
-};
-template <>
-struct ScalarFrame<EccentricFrame> {
-  template <class C>
-  using Type = EccentricFrame<C>;
-};
+inline constexpr bool is_eccentric_frame = std::is_same_v<Frame<double>, EccentricFrame<double>>;
 /// A triad with e3 along z and e1 = (c, s, 0), as every beam of a sheet has. It has fewer numbers
 /// to load and to multiply.
 template <class C>

@@ -21,6 +21,12 @@ namespace floe {
 template <template <class> class Frame>
 inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
 
+/// Constants with doubles of a beam in lanes with this frame.
+template <template <class> class Frame>
+using ScalarConstants =
+    std::conditional_t<is_eccentric_frame<Frame>, BeamConstants<double, EccentricFrame>,
+                       BeamConstants<double, AnyFrame>>;
+
 /// Copies the numbers of a lane from another block.
 template <class Values>
 void copy_lane(Values& to, std::size_t lane, const Values& from, std::size_t other) {
@@ -31,7 +37,7 @@ void copy_lane(Values& to, std::size_t lane, const Values& from, std::size_t oth
 template <template <class> class Frame>
 struct alignas(64) BeamBlock {
   static constexpr std::size_t first = frame_size<Frame>;
-  using Scalar = BeamConstants<double, ScalarFrame<Frame>::template Type>;
+  using Scalar = ScalarConstants<Frame>;
   std::array<std::array<double, lanes>, first + 7> values;
   std::array<std::int32_t, lanes> i, j;  ///< local bodies
 
@@ -72,7 +78,7 @@ struct alignas(64) BeamBlock {
 
  private:
   static constexpr bool is_flat = std::is_same_v<Frame<double>, FlatFrame<double>>;
-  static constexpr bool is_eccentric = std::is_same_v<Frame<double>, EccentricFrame<double>>;
+  static constexpr bool is_eccentric = is_eccentric_frame<Frame>;
 
   template <class C>
   static Frame<C> frame(auto at) {

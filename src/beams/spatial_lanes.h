@@ -11,7 +11,9 @@ namespace floe {
 
 /// A spatial beam on body records, and in lanes.
 template <Kinematics kinematics, template <class> class Frame>
-struct SpatialLanes : SpatialBeam<kinematics, ScalarFrame<Frame>::template Type> {
+struct SpatialLanes
+    : std::conditional_t<is_eccentric_frame<Frame>, SpatialBeam<kinematics, EccentricFrame>,
+                         SpatialBeam<kinematics, AnyFrame>> {
   using Block = BeamBlock<Frame>;
   using DashpotBlock = floe::DashpotBlock;
   template <bool damped>

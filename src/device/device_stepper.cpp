@@ -81,7 +81,7 @@ void add_loads(const DeviceModel& numbers, const std::vector<std::int32_t>& plac
 }
 
 /// Appends the shape of a body.
-void add_shape(const Shapes& shapes, std::int32_t body, Lattice::Water& water) {
+void add_shape(const Shapes& shapes, std::int32_t body, Water& water) {
   const std::int32_t first = item(shapes.vertex_of, body), end = item(shapes.vertex_of, body + 1);
   const std::int32_t before = water.first_vertex.back();
   for (std::int32_t v = first; v < end; ++v) {
@@ -97,8 +97,8 @@ void add_shape(const Shapes& shapes, std::int32_t body, Lattice::Water& water) {
   water.first_face.push_back(static_cast<std::int32_t>(water.first_corner.size()) - 1);
 }
 
-Lattice::Water in_order(const DeviceModel::Water& of, const std::vector<std::int32_t>& order) {
-  Lattice::Water water;
+Water in_order(const DeviceWater& of, const std::vector<std::int32_t>& order) {
+  Water water;
   water.weight_density = of.weight_density;
   water.linear = of.linear, water.coefficient = of.coefficient;
   water.drags = of.drag_work.has_value();
@@ -170,8 +170,9 @@ void DeviceStepper::put(const State<Spatial>& state) {
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
   of_engine([&] { engine_->put(0, room_); });
-  if (!keeps_submerged()) return;
-  described_.numbers.water->kept->read(kept_, since_);
+  const KeptParts* kept = kept_parts();
+  if (kept == nullptr) return;
+  kept->read(kept_, since_);
   std::vector<double> ordered(kept_.size());
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(&kept_[static_cast<std::size_t>(described_.order[d]) * of_kept], of_kept,
@@ -186,14 +187,15 @@ void DeviceStepper::get(State<Spatial>& state) {
     std::copy_n(&room_[d * n], n, state.record(static_cast<std::size_t>(described_.order[d])));
   state.fastest = fastest_;
   state.fastest_spin = fastest_spin_;
-  if (!keeps_submerged()) return;
+  KeptParts* kept = kept_parts();
+  if (kept == nullptr) return;
   std::vector<double> ordered(described_.order.size() * of_kept);
   of_engine([&] { engine_->get_submerged(0, ordered); });
   kept_.resize(ordered.size());
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(&ordered[d * of_kept], of_kept,
                 &kept_[static_cast<std::size_t>(described_.order[d]) * of_kept]);
-  described_.numbers.water->kept->write(kept_, since_);
+  kept->write(kept_, since_);
 }
 
 void DeviceStepper::queue(double time, double dt, double before) {
@@ -240,8 +242,8 @@ double DeviceStepper::take_works(std::span<double> works) {
     works[load.work] += parts.loaded[l];
   }
   if (const auto& water = described_.numbers.water) {
-    for (const double work : parts.drag) works[*water->drag_work] += work;
-    for (const double work : parts.buoyancy) works[*water->buoyancy_work] += work;
+    for (const double work : parts.drag) works[water->drag_work.value_or(0)] += work;
+    for (const double work : parts.buoyancy) works[water->buoyancy_work.value_or(0)] += work;
   }
   double boundaries = 0;
   for (const double work : parts.held) boundaries += work;

@@ -50,8 +50,10 @@ class DeviceStepper {
 
  private:
   static constexpr std::size_t of_kept = 15;  ///< numbers of a submerged part
-  bool keeps_submerged() const {
-    return described_.numbers.water && described_.numbers.water->kept != nullptr;
+  /// What keeps submerged parts on the processor; null: nothing does.
+  KeptParts* kept_parts() const {
+    const auto& water = described_.numbers.water;
+    return water ? water->kept : nullptr;
   }
 
   const Model<Spatial>& model_;

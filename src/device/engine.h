@@ -18,6 +18,20 @@ struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Still water; per body as DeviceWater.
+struct Water {
+  double weight_density = 0, linear = 0, coefficient = 0;
+  bool drags = false, level_moves = false, by_points = false;
+  int pace = 1;
+  std::vector<std::array<double, 14>> prisms;
+  std::vector<std::array<double, 4>> wholes;
+  std::vector<double> extents, most2, area_per_volume;
+  /// Per body and per face, and one more: where its vertices, faces and corners begin.
+  std::vector<std::int32_t> first_vertex{0}, first_face{0}, first_corner{0};
+  std::vector<std::int32_t> corners;
+  std::vector<std::array<double, 3>> vertices;
+};
+
 /// One run's lattice for an engine. Bodies are in the engine's order, in which those of a tile
 /// follow each other.
 struct Lattice {
@@ -49,19 +63,6 @@ struct Lattice {
   std::vector<Loaded> loaded;
   std::int32_t loads = 0;
 
-  /// Still water; per body as DeviceModel::Water.
-  struct Water {
-    double weight_density = 0, linear = 0, coefficient = 0;
-    bool drags = false, level_moves = false, by_points = false;
-    int pace = 1;
-    std::vector<std::array<double, 14>> prisms;
-    std::vector<std::array<double, 4>> wholes;
-    std::vector<double> extents, most2, area_per_volume;
-    /// Per body and per face, and one more: where its vertices, faces and corners begin.
-    std::vector<std::int32_t> first_vertex{0}, first_face{0}, first_corner{0};
-    std::vector<std::int32_t> corners;
-    std::vector<std::array<double, 3>> vertices;
-  };
   std::optional<Water> water;
 };
 

@@ -91,7 +91,7 @@ class TileEngine final : public Engine {
       motions.insert(motions.end(), of.motions.begin(), of.motions.end());
       wrenches.insert(wrenches.end(), of.wrenches.begin(), of.wrenches.end());
       if (!has_water_) continue;
-      const Lattice::Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
+      const Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
       waters.push_back({w.weight_density, w.linear, w.coefficient, w.drags ? 1 : 0, w.pace,
                         of.since, w.by_points ? 1 : 0,
                         static_cast<std::int64_t>(water_motions.size())});
@@ -277,7 +277,7 @@ class TileEngine final : public Engine {
     for (std::size_t r = 0; r < lattices_.size(); ++r) {
       const auto first = static_cast<std::size_t>(first_body_[r]);
       const std::size_t count = bodies_of(r);
-      const Lattice::Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
+      const Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
       drags = drags || w.drags;
       level_moves = level_moves || w.level_moves;
       has_pace = has_pace || w.pace > 1;

@@ -4,6 +4,7 @@
 namespace floe::device {
 
 std::unique_ptr<Engine> make_loop_engine(std::vector<Lattice> lattices, std::int32_t tile) {
+  // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDeleteLeaks): the pointer goes to the caller
   return make_engine(std::move(lattices), tile);
 }
 

@@ -4,6 +4,7 @@
 
 namespace floe::device {
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): as cuda.cu takes them
 std::unique_ptr<Engine> make_cuda_engine(std::vector<Lattice> /*lattices*/, std::int32_t /*tile*/) {
   throw InputError(
       "backend: cuda: this floe is built without it (cmake -DFLOE_CUDA=ON, which needs CUDA 12 or "

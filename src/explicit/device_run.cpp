@@ -1,6 +1,6 @@
 #include "explicit/device_run.h"
 
-#include <optional>
+#include <memory>
 
 #include "device/device_stepper.h"
 #include "explicit/explicit_run.h"
@@ -39,8 +39,9 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     check(TSSetType(ts_, ts_leapfrog));
     device::DescribedModel described = device::describe(model, name_of(options.backend));
     auto engine = make_engine(options.backend, described.lattice);
-    stepper_.emplace(model, std::move(described), std::move(engine));
-    step_.emplace(model, state(), wrenches(), work_ledger());
+    stepper_ =
+        std::make_unique<device::DeviceStepper>(model, std::move(described), std::move(engine));
+    step_ = std::make_unique<ExplicitStep<Spatial>>(model, state(), wrenches(), work_ledger());
     const Part& part = model.part();
     check(VecCreateMPIWithArray(part.comm, Spatial::record, part.owned * Spatial::record,
                                 PETSC_DETERMINE, state().records.data(), solution_.put()));
@@ -120,8 +121,8 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     if (archive.loading()) is_on_engine_ = false;
   }
 
-  std::optional<device::DeviceStepper> stepper_;
-  std::optional<ExplicitStep<Spatial>> step_;  ///< for looks at the state
+  std::unique_ptr<device::DeviceStepper> stepper_;
+  std::unique_ptr<ExplicitStep<Spatial>> step_;  ///< for looks at the state
   Handle<Vec> solution_;
   /// The engine has the state at the last step; the object `state()` has it.
   bool is_on_engine_ = false, is_here_ = true;

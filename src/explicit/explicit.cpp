@@ -1,7 +1,7 @@
 #include "explicit/explicit.h"
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 
 #include "explicit/device_run.h"
 #include "explicit/explicit_run.h"
@@ -79,7 +79,8 @@ class LeapfrogRun final : public ExplicitRun<Space> {
   void follow_model() override {
     Model<Space>& model = this->model();
     const Part& part = model.part();
-    step_.emplace(model, this->state(), this->wrenches(), this->work_ledger());
+    step_ = std::make_unique<ExplicitStep<Space>>(model, this->state(), this->wrenches(),
+                                                  this->work_ledger());
     check(VecCreateMPIWithArray(part.comm, Space::record, part.owned * Space::record,
                                 PETSC_DETERMINE, this->state().records.data(), solution_.put()));
     check(TSSetSolution(this->ts_, solution_));
@@ -95,7 +96,7 @@ class LeapfrogRun final : public ExplicitRun<Space> {
     step_->persist(archive);
   }
 
-  std::optional<ExplicitStep<Space>> step_;
+  std::unique_ptr<ExplicitStep<Space>> step_;
   Handle<Vec> solution_;
   LeapfrogStep make_step_ = [this](double) { return this->guarded([this] { return step(); }); };
 };

@@ -14,6 +14,35 @@
 
 namespace floe {
 
+/// Findings about submerged parts that steps keep: Submersion, with a pace.
+class KeptParts {
+ public:
+  /// Numbers of each body after each other, and steps since all were found.
+  virtual void read(std::vector<double>& numbers, std::int64_t& steps) const = 0;
+  virtual void write(std::span<const double> numbers, std::int64_t steps) = 0;
+
+ protected:
+  ~KeptParts() = default;
+};
+/// Still water on the bodies.
+struct DeviceWater {
+  double weight_density = 0;  ///< rho g [N/m^3]; 0: no buoyancy
+  std::optional<std::size_t> buoyancy_work, drag_work;
+  double linear = 0, coefficient = 0;          ///< of drag: c [N s/m^3], rho C_d/2 [N s^2/m^4]
+  std::function<double(double time)> level;    ///< [m]
+  std::function<Point3(double time)> current;  ///< empty: no drag [m/s]
+  int pace = 1;
+  bool by_points = false;  ///< Wet
+  KeptParts* kept = nullptr;
+  // Per body:
+  std::vector<std::array<double, 14>> prisms;  ///< numbers of Prism
+  std::vector<double> extents;                 ///< [m]
+  std::vector<double> most2;  ///< half the square of the largest move at a pace [m^2]
+  std::vector<std::array<double, 4>> wholes;  ///< volume [m^3] and centroid [m]
+  std::vector<double> area_per_volume;        ///< plan area over volume [1/m]; of drag
+  const Shapes* shapes = nullptr;
+};
+
 /// The numbers of forces, for a back end that keeps the state in memory of its own and steps it
 /// there (src/device). Bodies are those of a part that is the whole lattice.
 struct DeviceModel {
@@ -34,41 +63,12 @@ struct DeviceModel {
     std::function<std::array<double, 6>(double time)> wrench;
   };
 
-  /// Findings about submerged parts that steps keep: Submersion, with a pace.
-  class KeptParts {
-   public:
-    /// Numbers of each body after each other, and steps since all were found.
-    virtual void read(std::vector<double>& numbers, std::int64_t& steps) const = 0;
-    virtual void write(std::span<const double> numbers, std::int64_t steps) = 0;
-
-   protected:
-    ~KeptParts() = default;
-  };
-  /// Still water on the bodies.
-  struct Water {
-    double weight_density = 0;  ///< rho g [N/m^3]; 0: no buoyancy
-    std::optional<std::size_t> buoyancy_work, drag_work;
-    double linear = 0, coefficient = 0;          ///< of drag: c [N s/m^3], rho C_d/2 [N s^2/m^4]
-    std::function<double(double time)> level;    ///< [m]
-    std::function<Point3(double time)> current;  ///< empty: no drag [m/s]
-    int pace = 1;
-    bool by_points = false;  ///< Wet
-    KeptParts* kept = nullptr;
-    // Per body:
-    std::vector<std::array<double, 14>> prisms;  ///< numbers of Prism
-    std::vector<double> extents;                 ///< [m]
-    std::vector<double> most2;  ///< half the square of the largest move at a pace [m^2]
-    std::vector<std::array<double, 4>> wholes;  ///< volume [m^3] and centroid [m]
-    std::vector<double> area_per_volume;        ///< plan area over volume [1/m]; of drag
-    const Shapes* shapes = nullptr;
-  };
-
   std::vector<Beam> beams;      ///< in the order in which bodies sum them
   std::size_t beam_work = 0;    ///< index of the dashpots' work among those of all forces
   bool damped = false;          ///< beams have dashpots
   std::vector<double> weights;  ///< per body: along -z [N]; empty: none
   std::vector<Load> loads;
-  std::optional<Water> water;
+  std::optional<DeviceWater> water;
 
   /// Index of the first work of the force that is asked.
   std::size_t next_work = 0;

@@ -113,9 +113,9 @@ void Submersion::set_numbers(std::span<const double> rows) {
   }
 }
 
-DeviceModel::Water& Submersion::describe(DeviceModel& model) {
+DeviceWater& Submersion::describe(DeviceModel& model) {
   if (model.water) return *model.water;
-  DeviceModel::Water& water = model.water.emplace();
+  DeviceWater& water = model.water.emplace();
   water.level = [this](double time) { return immersion_.level(time); };
   water.pace = pace_;
   water.by_points = immersion_.wet() == Wet::by_points;

@@ -31,7 +31,7 @@ const Part& require_shapes(const Part& part, std::string_view force);
 class Submersion final : public PreparesSteps<Spatial>,
                          public Commits<Spatial>,
                          public Persists,
-                         public DeviceModel::KeptParts {
+                         public KeptParts {
  public:
   /// \param part    with shapes; must outlive this object
   /// \param pace    number of steps
@@ -52,7 +52,7 @@ class Submersion final : public PreparesSteps<Spatial>,
   void read(std::vector<double>& numbers, std::int64_t& steps) const override;
   void write(std::span<const double> numbers, std::int64_t steps) override;
   /// Adds what a back end needs to find submerged parts, unless it is there.
-  DeviceModel::Water& describe(DeviceModel& model);
+  DeviceWater& describe(DeviceModel& model);
 
   /// Whether an evaluation of a step is under way, with a pace: at_pace() finds submerged parts.
   bool is_paced() const { return open_ && has_pace(); }

@@ -64,7 +64,7 @@ class Buoyancy final : public Force<Spatial>,
   }
 
   void describe(DeviceModel& model) const override {
-    DeviceModel::Water& water = submersion_->describe(model);
+    DeviceWater& water = submersion_->describe(model);
     water.weight_density = weight_;
     if (immersion_.has_level()) water.buoyancy_work = model.next_work;
   }

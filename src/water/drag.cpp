@@ -42,8 +42,8 @@ class WettedBodies<Spatial> {
           immersion_.volume(body) > 0 ? immersion_.plan_area(body) / immersion_.volume(body) : 0;
     }
   }
-  DeviceModel::Water& describe(DeviceModel& model) const {
-    DeviceModel::Water& water = submersion_->describe(model);
+  DeviceWater& describe(DeviceModel& model) const {
+    DeviceWater& water = submersion_->describe(model);
     for (std::size_t b = 0; b < water.prisms.size(); ++b)
       water.area_per_volume.push_back(per_volume(b));
     return water;
@@ -128,7 +128,7 @@ class Drag final : public Force<Space>,
   }
   void describe(DeviceModel& model) const override {
     if constexpr (std::is_same_v<Space, Spatial>) {
-      DeviceModel::Water& water = bodies_.describe(model);
+      DeviceWater& water = bodies_.describe(model);
       water.drag_work = model.next_work;
       water.linear = linear_;
       water.coefficient = coefficient_;
