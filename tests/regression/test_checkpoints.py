@@ -55,7 +55,8 @@ class Damaged(CheckpointTest):
     def test_flipped_bits(self):
         chance = random.Random(14)
         places = [chance.randrange(8 * len(self.good)) for _ in range(2000 if FULL else 30)]
-        places += [chance.randrange(8 * 60) for _ in range(20 if FULL else 10)]  # what the seal says
+        # what the seal says
+        places += [chance.randrange(8 * 60) for _ in range(20 if FULL else 10)]
         for place in places:
             with self.subTest(place):
                 bad = bytearray(self.good)
