@@ -87,6 +87,11 @@ def packages():
         sys.exit(2)
 
 
+def draws():
+    """Of a tool that draws into files: matplotlib, imported later, opens no window."""
+    os.environ["MPLBACKEND"] = "Agg"
+
+
 # What matplotlib writes.
 PICTURES = ("eps", "jpeg", "jpg", "pdf", "png", "ps", "svg", "tif", "tiff", "webp")
 
@@ -140,6 +145,9 @@ def run(main):
     and so is Ctrl-C."""
     try:
         sys.exit(main())
+    except ModuleNotFoundError as error:  # imported where it is used
+        print(f"floe {name()}: {missing(error)}", file=sys.stderr)
+        sys.exit(2)
     except BrokenPipeError:  # its reader, as head, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)

@@ -15,7 +15,8 @@ sys.path.insert(0, str(REPOSITORY / "python"))
 from floe import lattice as fl  # noqa: E402
 from floe.make import ridge as ridges  # noqa: E402
 
-SMALL = ("--block", "0.5", "0.4", "0.25", "--length", "1.6", "--contact", "4e7")
+SMALL = ("--block", "0.5", "0.4", "0.25", "--length", "1.6", "--contact", "1e7")
+KEEL = 1.2 if launch.FULL else 1.0
 SHEET = """forces: [beam, gravity, buoyancy]
 sheet: {length: 6, width: 1.6, thickness: 0.2, element_size: 0.6, iterations: 20}
 """
@@ -23,7 +24,7 @@ AFLOAT = """integrator: explicit
 forces: [%sgravity, buoyancy, drag, contact]
 lattice_file: %s
 water: {drag_linear: 300}
-contact: {young: 4e7, friction: 1}
+contact: {young: 1e7, friction: 1}
 obstacle:
   names: [south, north]
   south: {shape: halfspace, point: [0, -0.8, 0], normal: [0, 1, 0], friction: 0}
@@ -54,7 +55,7 @@ class MakeRidge(FolderTest):
         return done.stdout
 
     def test_loose_and_frozen(self):
-        said = self.make("loose.h5", "--sail", 0.4, "--keel", 1.2, *SMALL)
+        said = self.make("loose.h5", "--sail", 0.4, "--keel", KEEL, *SMALL)
         self.assertIn("asked: 0.4), keel", said)
         loose = self.arrays("loose.h5")
         ridge = fl.read(self.folder / "loose.h5")
@@ -62,15 +63,15 @@ class MakeRidge(FolderTest):
         self.assertEqual(set.union(*sets), set(range(len(ridge.mass))))
         self.assertFalse(sets[0] & sets[1])
         corners, body = ridges.placed(ridge)
-        self.assertAlmostEqual(-corners[:, 2].min() / 1.2, 1, delta=0.35)
+        self.assertAlmostEqual(-corners[:, 2].min() / KEEL, 1, delta=0.35)
         self.assertGreater(corners[:, 2].max(), 0.1)
         # At the water's level it is as wide as its flanks say.
         near = np.abs(ridge.position[:, 2]) < 0.3
-        self.assertAlmostEqual(np.ptp(ridge.position[near, 0]) / (2 * 1.2 / np.tan(np.radians(33))),
-                               1, delta=0.35)
+        wide = 2 * KEEL / np.tan(np.radians(33))
+        self.assertAlmostEqual(np.ptp(ridge.position[near, 0]) / wide, 1, delta=0.35)
         # All ice is between the walls, and there is as much as a keel of rubble takes.
         self.assertLess(np.abs(corners[:, 1]).max(), 0.8 + 0.05)
-        section = 1.2**2 / np.tan(np.radians(33)) + 0.4**2 / np.tan(np.radians(26))
+        section = KEEL**2 / np.tan(np.radians(33)) + 0.4**2 / np.tan(np.radians(26))
         self.assertAlmostEqual(ridge.mass.sum() / 920 / (1.6 * section), 0.55, delta=0.2)
         porosity = float(said.split("porosity of the keel ")[1].split()[0].rstrip(";"))
         self.assertAlmostEqual(porosity, 0.45, delta=0.2)
@@ -81,7 +82,7 @@ class MakeRidge(FolderTest):
         self.assertLess(abs(np.average(move[:, 2], weights=ridge.mass)), 0.02)
         self.assertLess(np.abs(move).max(), 0.25)
 
-        said = self.make("frozen.h5", "--sail", 0.4, "--keel", 1.2, *SMALL, "--frozen", 0.5)
+        said = self.make("frozen.h5", "--sail", 0.4, "--keel", KEEL, *SMALL, "--frozen", 0.5)
         frozen = self.arrays("frozen.h5")
         for key, values in loose.items():  # the same seed
             np.testing.assert_array_equal(frozen[key], values, key)
@@ -99,7 +100,7 @@ class MakeRidge(FolderTest):
 
     def test_under_a_sheet(self):
         self.run_scene(SHEET)
-        said = self.make("ridge.h5", "--sail", 0.5, "--keel", 1, *SMALL, "--frozen", 0.4,
+        said = self.make("ridge.h5", "--sail", 0.4, "--keel", 0.8, *SMALL, "--frozen", 0.4,
                          "--sheet", "out/scene/lattice.h5")
         self.assertIn("ridge.h5: ", said)
         ridge, sheet = self.arrays("ridge.h5"), self.arrays("out/scene/lattice.h5")

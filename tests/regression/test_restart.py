@@ -3,7 +3,7 @@
 
 By the STOP file, by SIGTERM, by kill -9 at random moments, bit for bit; what a restart refuses, and
 what a full disk does. On several ranks: test_restart_ranks.py. FLOE_FULL=1 kills 20 times instead
-of 4.
+of 3.
 """
 import csv
 import json
@@ -127,7 +127,7 @@ class RestartTest(FolderTest):
     def straight_and_resumed(self, *options, dir="b", ranks=1, straight_ranks=None):
         """Two folders: a straight run, and that of an endless run that was interrupted and goes on
         to the same step."""
-        end = ("-ts_max_steps", str(2 * self.steps_of(dir)))
+        end = ("-ts_max_steps", str(3 * self.steps_of(dir) // 2))
         straight = self.run_whole(*options, *ENDLESS, *end, dir="straight_" + dir,
                                   ranks=straight_ranks or ranks)
         return straight, self.go_on(*options, *ENDLESS, *end, dir=dir, ranks=ranks)
@@ -486,7 +486,7 @@ class Killing(RestartTest):
                    "0.004", *ENDLESS]
         chance = random.Random(ranks)
         folder, resume = self.folder / "b", []
-        for kill in range(20 if FULL else 4):
+        for kill in range(20 if FULL else 3):
             before = rows_of(folder)
             process = self.begin(*options, *resume, dir="b", ranks=ranks)
             if kill > 0:  # else there may be none yet, and the run begins again

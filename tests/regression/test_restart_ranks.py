@@ -3,7 +3,7 @@
 
 Beside test_restart.py, because a run on two ranks wants both cores: at every step one rank waits
 for the other.
-FLOE_FULL=1 kills 20 times instead of 4.
+FLOE_FULL=1 kills 20 times instead of 3.
 """
 import unittest
 

@@ -55,7 +55,7 @@ class Values(unittest.TestCase):
 
     def check(self, ranks):
         for scene, option, value, allowed in CASES:
-            if ranks > 1 and not in_short_form(option, 2):
+            if ranks > 1 and not in_short_form(option, 4):
                 continue
             with self.subTest(option=option, value=value):
                 code, lines, made = self.run_with(scene, ["-" + option, value], {}, ranks)
@@ -77,7 +77,7 @@ class Values(unittest.TestCase):
 
     def test_what_petsc_finds(self):
         for option, value in OF_PETSC:
-            for ranks in (1, 2) if in_short_form(option, 2) else (1,):
+            for ranks in (1, 2) if in_short_form(option, 4) else (1,):
                 with self.subTest(option=option, value=value, ranks=ranks):
                     said = self.refused(option, value, ["-" + option, value], ranks)
                     self.assertIn(f"{option} {value}: PETSc cannot take it: ", said)

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Structures: obstacles with a mass, which contacts, supports, loads and water move."""
+import math
 import re
 import subprocess
 import sys
@@ -289,7 +290,7 @@ def peak_of_one_degree(speed, contact, end=14.0, dt=2e-4):
     for step in range(round(end / dt)):
         pressed = speed * step * dt - 0.001 - x
         force = contact * (pressed - crushed)
-        limit = 1000 * (1 + np.exp(-max(speed - u, 0) / 0.05))
+        limit = 1000 * (1 + math.exp(-max(speed - u, 0) / 0.05))
         if force > limit:
             force, crushed = limit, pressed - limit / contact
         u += dt * (max(force, 0.0) - damping * u - stiffness * x) / mass
@@ -303,13 +304,13 @@ class LockIn(StructureTest):
     def test_against_one_degree_of_freedom(self):
         """Peak speed over ice speed: 2 % of an integration of the one equation, 10 % of published
         numbers, out of lock where it is fast, and never in with a constant limit. In the short form
-        at three of six speeds."""
+        at two of six speeds."""
         fl.blocks(np.array([[20.0, 3, 0.1]]), np.array([[-10.0, 0, 0]])).write(
             self.folder / "slab.h5")
         contact = 0.01 * 6.36e8 / (0.5 * 6 ** (1 / 3))  # A E_c/L [N/m]
         fast = "plastic_fast: 0.5, plastic_speed: 0.05,"
         speeds = ((0.01, 3.35), (0.03, 1.87), (0.06, 1.5), (0.1, 1.27), (0.15, 1.21), (0.25, 0))
-        for speed, published in speeds if FULL else speeds[1::2]:
+        for speed, published in speeds if FULL else speeds[3::2]:
             scene = LOCK.replace("FAST", fast)
             if published == 0:  # what it begins with dies away slowly
                 scene = scene.replace("end: 14", "end: 30")

@@ -191,7 +191,7 @@ TEST(Overlap, RandomPolyhedraAgreeWithExactNumbers) {
   test::Random random(7);
   Clippers clippers;
   Largest largest;
-  const int count = test::full_form() ? 90000 : 1400;
+  const int count = test::full_form() ? 90000 : 700;
   for (int k = 0; k < count; ++k) {
     Pair pair;
     for (int body = 0; body < 2; ++body)
@@ -216,7 +216,7 @@ TEST(Overlap, DegeneratePositionsAgreeWithExactNumbers) {
   test::Random random(8);
   Clippers clippers;
   Largest largest;
-  const int count = test::full_form() ? 10000 : 600;
+  const int count = test::full_form() ? 10000 : 300;
   const std::array<double, 6> nearly{0, 1e-16, 1e-14, 1e-12, 1e-9, 1e-6};
   for (int k = 0; k < count; ++k) {
     Pair pair;

@@ -108,10 +108,10 @@ Statistics statistics(const std::vector<double>& values) {
 /// a quarter.) The nominal stress takes the whole length for the lever, though the tip's row is
 /// pushed at its centroids, and neglects the water: by the moment at the root the strength is less,
 /// since the corners of the root concentrate stress.
-TEST(Cantilever, TenMeshesHaveTheStrengthOfAStrip) {
-  constexpr int seeds = 10;
+TEST(Cantilever, MeshesHaveTheStrengthOfAStrip) {
+  const int seeds = test::full_form() ? 10 : 5;
   std::vector<double> nominal, of_root, strips, unfitted;
-  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
     Scene scene = cantilever(0.5, seed);
     const Strengths fitted = strengths(scene);
     nominal.push_back(fitted.nominal), of_root.push_back(fitted.of_root);

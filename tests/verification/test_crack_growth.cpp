@@ -119,7 +119,7 @@ TEST(CrackGrowth, ANotchedSheetBearsGriffithsLoadOnAnyMesh) {
     double element;
     int seeds;
   };
-  std::vector<Meshes> all{{2, 24}};
+  std::vector<Meshes> all{{2, test::full_form() ? 24 : 12}};
   if (test::full_form()) all.insert(all.end(), {{1, 12}, {0.5, 6}});
   for (const auto& [element, seeds] : all)
     test::verify({.section = "Fracture",
@@ -137,6 +137,7 @@ TEST(CrackGrowth, ANotchedSheetBearsGriffithsLoadOnAnyMesh) {
 /// closed here.
 TEST(CrackGrowth, CutsAlongThePullAndHolesWeakenNothing) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    if (seed == 3 && !test::full_form()) continue;
     Scene along = whole(2, seed, 2.5e-3), hole = along;
     saw(along, {-5, 0}, {5, 0});
     const std::array<Point2, 5> corners{{{-2, -2}, {2, -2}, {2, 2}, {-2, 2}, {-2, -2}}};

@@ -60,7 +60,7 @@ TEST(Implicit, IsOfOrderTwoAtLargeRotations) {
     const double bent = angle(product(conjugate(rotation(fine, 0)), rotation(fine, 2)));
     const int levels = full_form() ? 3 : 2;
     for (const double rho : radii) {
-      if (damping > 0 && rho != 0.5 && !full_form()) continue;
+      if ((rho == 0.8 || (damping > 0 && rho != 0.5)) && !full_form()) continue;
       const PetscOption option = radius(rho);
       const int coarse = rho == 0 ? 1000 : 500;
       std::vector<double> error;
@@ -173,6 +173,7 @@ TEST(ImplicitEnergy, BalanceClosesWithTheStepAtLargeRotations) {
   Scene scene = beams_only(0.8, 0.05);
   const Lattice lattice = flying_bar(6, 12);
   for (const double rho : radii) {
+    if (rho == 0.8 && !full_form()) continue;
     const PetscOption option = radius(rho);
     std::array<double, 2> error{}, lost{};
     double energy = 0;

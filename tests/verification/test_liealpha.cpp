@@ -59,8 +59,9 @@ Vector end_of(System system, int steps, double end) {
 TEST(LieAlpha, IsOfOrderTwoOnAnOscillator) {
   const double end = 3;
   for (const double rho : radii) {
+    if (rho == 0.8 && !full_form()) continue;
     const PetscOption option = radius(rho);
-    const Vector fine = end_of(oscillator(), 12800, end);
+    const Vector fine = end_of(oscillator(), full_form() ? 12800 : 6400, end);
     std::array<double, 3> error{};
     for (std::size_t k = 0; k < 3; ++k)
       error[k] = (end_of(oscillator(), 100 << k, end) - fine).lpNorm<Eigen::Infinity>();
@@ -198,8 +199,9 @@ TEST(LieAlpha, IsOfOrderTwoOnATumblingBody) {
     return all;
   };
   for (const double rho : radii) {
+    if (rho == 0.8 && !full_form()) continue;
     const PetscOption option = radius(rho);
-    const Vector fine = at_end(12800);
+    const Vector fine = at_end(full_form() ? 12800 : 6400);
     std::array<double, 3> error{};
     for (std::size_t k = 0; k < 3; ++k)
       error[k] = (at_end(200 << k) - fine).lpNorm<Eigen::Infinity>();

@@ -133,6 +133,8 @@ TEST(RkStability, StepsAreStableUpToWhereAPerturbationBeginsToGrow) {
                                    Damping{0.1, DampingModes::all, "zeta = 0.1 all"},
                                    Damping{1, DampingModes::axial, "zeta = 1 axial"},
                                    Damping{1, DampingModes::all, "zeta = 1 all"}}) {
+      // In the short form only the first case has those between none and most.
+      if (!full_form() && &type != &cases[0].type && damping.ratio == 0.1) continue;
       const Scene scene = beams_only(Shear::one_point, damping.ratio, damping.modes);
       Dynamics at_rest(scene, sheet.lattice);
       const StabilityPolynomial polynomial = polynomial_of(type);

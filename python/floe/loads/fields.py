@@ -5,7 +5,7 @@ Shapes are those of the bodies at rest in their places of the frame: what a body
 not taken off, so areas of contact are upper, pressures lower bounds once ice has crushed.
 """
 import numpy as np
-from scipy import stats
+import scipy  # whose modules come when they are used
 
 from floe.errors import InputError
 from floe.results import breakage, tables
@@ -144,7 +144,7 @@ def power_law(pairs):
     area, pressure = np.log(np.array(pairs)).T
     if np.ptp(area) == 0:
         return None
-    line = stats.linregress(area, pressure)
+    line = scipy.stats.linregress(area, pressure)
     return {"c": float(np.exp(line.intercept)), "m": float(-line.slope),
             "scatter": float(np.std(pressure - line.intercept - line.slope * area))}
 

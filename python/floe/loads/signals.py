@@ -8,7 +8,7 @@ import dataclasses
 import math
 
 import numpy as np
-from scipy import signal, stats
+import scipy
 
 
 def interval_means(time, mean):
@@ -108,8 +108,9 @@ class Filter:
             # Human Movement, section 3.4.4.2, on the bilinear transform's axis of frequencies.
             widened = math.tan(math.pi * self.frequency * dt) / (math.sqrt(2) - 1)**(
                 1 / (2 * self.order))
-            sections = signal.butter(self.order, 2 * math.atan(widened) / math.pi, output="sos")
-            return signal.sosfiltfilt(sections, values, axis=-1,
+            sections = scipy.signal.butter(self.order, 2 * math.atan(widened) / math.pi,
+                                           output="sos")
+            return scipy.signal.sosfiltfilt(sections, values, axis=-1,
                                       padlen=min(values.shape[-1] - 1, int(3 / self.frequency / dt)
                                                  ))
         return spring_force(values, dt, self.frequency, self.ratio)
@@ -119,10 +120,11 @@ def spring_force(values, dt, frequency, ratio):
     """k u of m u'' + 2 zeta sqrt(k m) u' + k u = F from rest, F linear between its values: exact by
     the matrix exponential (scipy's first-order hold)."""
     w = 2 * math.pi * frequency
-    system = signal.StateSpace([[0, 1], [-w * w, -2 * ratio * w]], [[0], [w * w]], [[1, 0]], [[0]])
-    numerator, denominator = signal.ss2tf(*signal.cont2discrete(
+    system = scipy.signal.StateSpace([[0, 1], [-w * w, -2 * ratio * w]], [[0], [w * w]], [[1, 0]],
+                                     [[0]])
+    numerator, denominator = scipy.signal.ss2tf(*scipy.signal.cont2discrete(
         (system.A, system.B, system.C, system.D), dt, "foh")[:4])
-    return signal.lfilter(numerator[0], denominator, values, axis=-1)
+    return scipy.signal.lfilter(numerator[0], denominator, values, axis=-1)
 
 
 def block_maxima(values, dt, length, lost=0):
@@ -183,7 +185,8 @@ def trend(records, dt, least=4):
     if np.ptp(spread) == 0:
         return None
     # of what is left without a straight line, since a trend would count as correlation
-    scale = float(np.mean([correlation_time(signal.detrend(record), dt) for record in records]))
+    scale = float(np.mean([correlation_time(scipy.signal.detrend(record), dt)
+                           for record in records]))
     size = max(round(4 * scale / dt), math.ceil(length / 20), 1)
     count = length // size
     if count < least:
@@ -194,10 +197,10 @@ def trend(records, dt, least=4):
     rises = means[:, j] - means[:, i]
     slope = float(np.median(rises / ((j - i) * size * dt)))
     if len(records) == 1:
-        p = float(stats.kendalltau(np.arange(count), means[0]).pvalue)
+        p = float(scipy.stats.kendalltau(np.arange(count), means[0]).pvalue)
     else:
         s, variance = np.sign(rises).sum(), len(records) * count * (count - 1) * (2 * count + 5)
-        p = float(2 * stats.norm.sf(max(abs(s) - 1, 0) / math.sqrt(variance / 18)))
+        p = float(2 * scipy.stats.norm.sf(max(abs(s) - 1, 0) / math.sqrt(variance / 18)))
     return {"blocks": count, "block": size * dt,
             "slope": slope / abs(means.mean()) if means.mean() else math.nan, "p": min(1.0, p)}
 
@@ -208,5 +211,5 @@ def spectrum(records, dt, segment=None):
     shortest record). The integral is the variance about the windows' means."""
     length = min(map(len, records))
     size = min(length, max(8, round(segment / dt) if segment else length // 4))
-    each = [signal.welch(record, 1 / dt, nperseg=size) for record in records]
+    each = [scipy.signal.welch(record, 1 / dt, nperseg=size) for record in records]
     return each[0][0], np.mean([density for _, density in each], axis=0)

@@ -9,7 +9,7 @@ import dataclasses
 from pathlib import Path
 
 import numpy as np
-from scipy import stats
+import scipy
 
 from floe.errors import InputError, reading
 from floe.loads import extremes, signals
@@ -193,7 +193,7 @@ def mean_of_runs(raw, level):
     means = np.array([record.mean() for record in raw])
     band = None
     if len(means) > 1:
-        half = stats.t.ppf(0.5 + level / 2, len(means) - 1) * stats.sem(means)
+        half = scipy.stats.t.ppf(0.5 + level / 2, len(means) - 1) * scipy.stats.sem(means)
         band = [means.mean() - half, means.mean() + half]
     return {"mean": means.mean(), "mean_band": band,
             "deviation": float(np.mean([record.std() for record in raw])),

@@ -8,7 +8,7 @@ is that of the unstretched line in water. Units: m, N.
 import dataclasses
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,8 +83,8 @@ class Catenary:
         high = self.weight
         while self.reach(pull, high)[1] < self.height:
             high *= 2
-        return brentq(lambda lift: self.reach(pull, lift)[1] - self.height, 0.0, high, xtol=1e-300,
-                      rtol=1e-15)
+        return scipy.optimize.brentq(lambda lift: self.reach(pull, lift)[1] - self.height, 0.0,
+                                     high, xtol=1e-300, rtol=1e-15)
 
     def distance(self, pull):
         """Horizontal distance of its ends under a horizontal force [m]; of the slack line at 0."""
@@ -99,7 +99,8 @@ class Catenary:
         high = self.weight
         while value(high) < wanted:
             high *= 2
-        return brentq(lambda pull: value(pull) - wanted, 0.0, high, xtol=1e-300, rtol=1e-15)
+        return scipy.optimize.brentq(lambda pull: value(pull) - wanted, 0.0, high, xtol=1e-300,
+                                     rtol=1e-15)
 
     def pull_at(self, distance):
         """Horizontal force at a horizontal distance of its ends [N]; 0 where it is slack."""

@@ -8,7 +8,7 @@ import json
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 from shapely import affinity
 from shapely.geometry import LineString, Point, Polygon, box, shape
 from shapely.geometry.polygon import orient
@@ -348,7 +348,7 @@ def shrunk(polygon, share):
                    key=lambda part: part.area, default=Polygon())
     wanted = share * polygon.area
     end = np.sqrt(polygon.area / np.pi)  # no circle inside is larger
-    margin = brentq(lambda m: largest(m).area - wanted, 0, end, xtol=1e-9 * end)
+    margin = scipy.optimize.brentq(lambda m: largest(m).area - wanted, 0, end, xtol=1e-9 * end)
     return largest(margin)
 
 

@@ -8,7 +8,7 @@ to zero by FIRE (Bitzek, Koskinen, Gaehler, Moseler & Gumbsch (2006), Phys. Rev.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 ANGLES = 720  # of the tables of support functions; between them they are linear
 STEP = 2 * np.pi / ANGLES
@@ -84,7 +84,8 @@ def near_pairs(x, reach):
     each."""
     level = np.floor(np.log(reach / reach.min()) / np.log(2)).astype(int)
     classes = [np.flatnonzero(level == k) for k in np.unique(level)]
-    trees = [(cKDTree(x[members]), members, reach[members].max()) for members in classes]
+    trees = [(scipy.spatial.cKDTree(x[members]), members, reach[members].max())
+             for members in classes]
     found = []
     for k, (tree, members, most) in enumerate(trees):
         pairs = tree.query_pairs(2 * most, output_type="ndarray")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from floe import lattice as fl
 from floe import program
@@ -274,7 +274,8 @@ def porosity(ridge, lattice, sides, part):
         return np.nan
     reach = np.linalg.norm(sides, axis=1).max() / 2
     full = np.zeros(len(points), bool)
-    for found, b in zip(cKDTree(points).query_ball_point(centre, reach), range(len(centre))):
+    near = scipy.spatial.cKDTree(points).query_ball_point(centre, reach)
+    for found, b in zip(near, range(len(centre))):
         local = np.abs((points[found] - centre[b]) @ turn[b])
         full[np.array(found, int)[np.all(local <= sides[b] / 2, axis=1)]] = True
     return 1 - full.mean()

@@ -10,7 +10,7 @@ import argparse
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 
 def power_exponent(sizes, least, largest):
@@ -32,7 +32,7 @@ def power_exponent(sizes, least, largest):
     with np.errstate(over="ignore"):  # of wide laws: over infinity is the 0 that it should be
         if slope(low) <= 0 or slope(high) >= 0:
             return None
-        a = brentq(slope, low, high)
+        a = scipy.optimize.brentq(slope, low, high)
         information = 1 / a**2 - (span / (2 * np.sinh(a * span / 2)))**2
     return a, 1 / np.sqrt(len(sizes) * information)
 

@@ -1,6 +1,6 @@
 """Obstacles of a scene as polyhedra, and where they are in time. SI units."""
 import numpy as np
-from scipy.interpolate import PchipInterpolator, make_interp_spline
+import scipy  # whose modules come when they are used
 
 from floe.lattice import Shapes
 from floe.results.output import Lattice, matrices
@@ -99,7 +99,8 @@ def of_column(time, values, smooth, periodic):
     if periodic:  # slopes at the ends are those of the periods beside
         rows = (np.concatenate([time[:-1] - span, time, time[1:] + span]),
                 np.concatenate([values[:-1], values, values[1:]]))
-    curve = PchipInterpolator(*rows) if smooth else make_interp_spline(*rows, k=1)
+    curve = (scipy.interpolate.PchipInterpolator(*rows) if smooth else
+             scipy.interpolate.make_interp_spline(*rows, k=1))
     area = curve.antiderivative()
 
     def value(at):

@@ -6,7 +6,7 @@ import heapq
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial import cKDTree
+import scipy
 
 from floe.errors import InputError, reading
 from floe.results import tables
@@ -54,7 +54,7 @@ class Patches:
     def neighbours(self):
         """Per patch the numbers of those beside it: near, and looking less than 90 degrees away."""
         side = np.sqrt(self.area)
-        tree = cKDTree(self.centre)
+        tree = scipy.spatial.cKDTree(self.centre)
         pairs = tree.query_pairs(NEAR * side.max(), output_type="ndarray")
         i, j = pairs[:, 0], pairs[:, 1]
         apart = np.linalg.norm(self.centre[i] - self.centre[j], axis=1)

@@ -3,6 +3,13 @@ import csv
 
 import h5py
 
+from launch import FULL
+
+
+def short(*options):
+    """Options that shorten a run, in the short form of the tests."""
+    return () if FULL else options
+
 
 def last_row(output):
     """Last row of history.csv as {column: number}."""
