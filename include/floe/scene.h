@@ -172,10 +172,10 @@ struct Scene {
   BeamOptions beam;
   FractureOptions fracture;
   Calibrate calibrate = Calibrate::none;
-  double gravity = 9.81;  ///< [m/s^2]
+  double gravity = 9.81;        ///< [m/s^2]
   double water_density = 1010;  ///< [kg/m^3]
   Backend backend = Backend::cpu;
-  int water_pace = 1;           ///< the submerged parts are found in every step of this number
+  int water_pace = 1;  ///< the submerged parts are found in every step of this number
   DragOptions drag;
   WaveOptions waves;
   double added_mass = 0;  ///< relative to the mass of water that a body displaces at rest
