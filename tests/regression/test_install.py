@@ -104,20 +104,37 @@ class Installed(launch.FolderTest):
                 for place in (REPOSITORY, BUILD, self.folder / "first"):
                     self.assertNotIn(str(place).encode(), text, path)
 
+    def test_one_package(self):
+        """Python's package floe is there once, and tools use it and no other."""
+        package = self.prefix / "lib/python3/dist-packages/floe"
+        self.assertEqual([path.parent for path in self.prefix.rglob("program.py")], [package])
+        here, there = ({path.relative_to(folder) for path in folder.rglob("*")
+                        if path.suffix not in (".so", ".pyc") and path.name != "__pycache__"}
+                       for folder in (package, REPOSITORY / "python/floe"))
+        self.assertEqual(here, there)
+        run(self.floe, self.prefix / "share/floe/input/tension.yaml", cwd=self.folder)
+        (self.folder / "other/floe").mkdir(parents=True)
+        (self.folder / "other/floe/__init__.py").write_text("raise ValueError('another floe')")
+        done = subprocess.run([self.floe, "plot_sheet", "out/tension"], cwd=self.folder, text=True,
+                              capture_output=True,
+                              env={**ENVIRONMENT, "PYTHONPATH": str(self.folder / "other")})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_python(self):
         """The package that was installed, and no other, runs a scene."""
         packages = self.prefix / "lib/python3/dist-packages"
         if not list(packages.glob("floe/_floe*.so")):
             self.skipTest("the Python module is not built")
         script = ("import floe; floe.Simulation(floe.Scene(sys.argv[1])).run().close(); "
-                  "print(floe.__file__)")
+                  "print(floe.__file__); from floe import program; print(program.floe())")
         done = subprocess.run(["/usr/bin/python3", "-c", "import sys; " + script,
                                self.prefix / "share/floe/input/tension.yaml"], cwd=self.folder,
                               env={**ENVIRONMENT, "PYTHONPATH": str(packages),
                                    "PYTHONDONTWRITEBYTECODE": "1"},
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.strip(), str(packages / "floe/__init__.py"))
+        self.assertEqual(done.stdout.splitlines(),
+                         [str(packages / "floe/__init__.py"), str(self.floe)])
         summary = json.loads((self.folder / "out/tension/summary.json").read_text())
         self.assertEqual(summary["status"], "done")
 
