@@ -222,6 +222,47 @@ class Installed(launch.FolderTest):
         self.assertIn("it was built with PETSc", error)
 
 
+# The backend of pip over what is built already.
+WHEEL = """import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import pip_backend
+pip_backend.BUILD = Path(sys.argv[2])
+pip_backend.build = lambda options: None
+print(pip_backend.build_wheel("."))
+"""
+
+
+class Wheel(launch.FolderTest):
+    def test_pip(self):
+        """What `pip install .` installs, in an environment of its own: package, module, program and
+        tools, which find each other, and which pip removes."""
+        if not list(BUILD.glob("python/floe/_floe*.so")):
+            self.skipTest("the Python module is not built")
+        place = self.folder / "v"
+        made = subprocess.run(["/usr/bin/python3", "-m", "venv", "--system-site-packages", place],
+                              capture_output=True, text=True)
+        if made.returncode != 0:
+            self.skipTest("python3-venv is not installed")
+        python = place / "bin/python"
+        name = run(python, "-c", WHEEL, REPOSITORY / "python", BUILD, cwd=self.folder)
+        run(python, "-m", "pip", "install", "--no-index", "--no-deps", name.strip(),
+            cwd=self.folder)
+        scene = place / "share/floe/input/tension.yaml"
+        said = run(python, "-c", "import floe, sys; from floe import program\n"
+                   "floe.Simulation(floe.Scene(sys.argv[1])).run().close()\n"
+                   "print(floe.__file__, program.floe(), program.scene('input/tension.yaml'))",
+                   scene, cwd=self.folder)
+        package = next(place.glob("lib/python3*/site-packages/floe"))
+        self.assertEqual(said.split(), [str(package / "__init__.py"),
+                                        str((place / "bin/floe").resolve()), str(scene.resolve())])
+        run(place / "bin/floe", "plot_sheet", "out/tension", cwd=self.folder)
+        self.assertTrue((self.folder / "out/tension/sheet.png").exists())
+        run(python, "-m", "pip", "uninstall", "--yes", "floe", cwd=self.folder)
+        self.assertEqual([path for path in place.rglob("*floe*") if path.is_file()
+                          and path.suffix != ".pyc"], [])
+
+
 class Included(unittest.TestCase):
     """A project that has floe's sources as a part of itself."""
 
