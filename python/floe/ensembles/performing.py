@@ -63,7 +63,7 @@ def perform(folder: specs.Folder, runs: Sequence[Any], jobs: int,
         return 3, "signal"
     written = time.monotonic()
 
-    def finish(run, output, ended):
+    def finish(run: Any, output: Path, ended: Any) -> None:
         nonlocal written
         folder.keep(run, output, ended)
         if time.monotonic() - written > 5:
