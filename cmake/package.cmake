@@ -49,8 +49,9 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-floe)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "floe from Python: scenes, runs, coupling
-The module floe makes scenes of floating ice, steps them, couples them with
-other programs and looks at their bodies, beams and contacts while they run.")
+With this compiled module Python's package floe, which comes with floe and
+reads results, also makes scenes of floating ice, steps them, couples them
+with other programs and looks at their bodies, beams and contacts.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
 get_property(FLOE_PYTHON_VERSIONS GLOBAL PROPERTY FLOE_PYTHON_VERSIONS)  # empty: not built
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS

@@ -19,6 +19,7 @@ from .failures import CallbackError, RunFailed
 if TYPE_CHECKING:
     import os
 
+    from .ensembles.performing import run_ensemble
     from .force import Force
     from .library import rank, size, version
     from .run import Run
@@ -26,12 +27,14 @@ if TYPE_CHECKING:
     from .simulation import Motion, Pose, Simulation, State, Wrench
 
 __all__ = ["CallbackError", "Force", "InputError", "Motion", "Option", "Pose", "RunFailed",
-           "Scene", "Simulation", "State", "Wrench", "open", "options", "rank", "size", "version"]
+           "Scene", "Simulation", "State", "Wrench", "open", "options", "rank", "run_ensemble",
+           "size", "version"]
 
 _HOMES = {"Scene": "scene", "options": "scene", "Option": "scene", "Simulation": "simulation",
           "Pose": "simulation", "Motion": "simulation", "Wrench": "simulation",
           "State": "simulation",
-          "Force": "force", "rank": "library", "size": "library", "version": "library"}
+          "Force": "force", "run_ensemble": "ensembles.performing", "rank": "library",
+          "size": "library", "version": "library"}
 
 
 def __getattr__(name):

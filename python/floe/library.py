@@ -12,8 +12,9 @@ try:
 except ImportError as error:
     if "_floe" not in str(error) or "circular" in str(error):
         raise
-    raise ImportError(f"floe was built without its Python module ({error}); reading results "
-                      "(floe.open) works without") from error
+    raise ImportError(f"floe's compiled module is not there ({error}): install python3-floe, or "
+                      "build floe with python3-dev and pybind11-dev; reading results (floe.open) "
+                      "works without") from error
 
 _started = False
 

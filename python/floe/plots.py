@@ -279,6 +279,26 @@ class Plots:
         return fragments(self._run.output, time, axes)
 
 
+    def motion(self, structure: str | None = None, component: str | None = None,
+               start: float = 0) -> Figure:
+        """Motion of a structure and its spectrum from a time on [s]; see floe.panels.motion and
+        floe.results.motion.read."""
+        from floe import panels
+        from floe.results import motion as motions
+        return panels.motion(motions.read(self._run.history, structure, component, start))
+
+    def pressure(self, obstacle: str | None = None, start: float = 0) -> Figure:
+        """Pressures on an obstacle from a time on [s]; see floe.panels.pressure."""
+        from floe import panels
+        from floe.results import pressure as pressures
+        return panels.pressure(pressures.chosen(self._run.pressure, obstacle, start))
+
+    def deflection(self, axes: Axes | None = None) -> Axes:
+        """A point-loaded sheet beside Wyman's infinite plate; see floe.panels.deflection."""
+        from floe import panels
+        return panels.deflection([self._run.output], axes)
+
+
 class EnsemblePlots:
     """ensemble.plot: pictures of an ensemble."""
 

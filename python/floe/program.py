@@ -29,15 +29,16 @@ TOOLS = HOME / "tools"
 
 def floe():
     """The floe that a tool runs: $FLOE (set by the floe that became the tool), else the one that
-    belongs to the tool's folder, else the shell's."""
+    belongs to the package's folder, else the shell's. InputError if there is none."""
     given = os.environ.get("FLOE")
-    belonging = [HOME / "build/release/floe", HOME.parent.parent / "bin/floe"]
+    belonging = [Path(__file__).absolute().parents[2] / "floe",  # in a build folder
+                 HOME / "build/release/floe", HOME.parent.parent / "bin/floe"]
     found = given or next((str(path) for path in belonging if path.is_file()),
                           None) or shutil.which("floe")
     if not found or not shutil.which(found):
         reason = (f"$FLOE is {given}, which is no program" if given else
                   "floe is not built; run tools/setup first")
-        sys.exit(f"floe {name()}: {reason}")
+        raise InputError(reason)
     return str(Path(shutil.which(found)).resolve())
 
 

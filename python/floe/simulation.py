@@ -299,7 +299,7 @@ class Simulation:
 
     # -- back
     def save(self) -> State:
-        """Keeps the present state in memory: for explicit runs by leapfrog without supply."""
+        """Keeps the present state in memory: for explicit runs by leapfrog."""
         run = self._open()
         return State(run.save(), run.time())
 

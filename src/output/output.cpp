@@ -9,6 +9,7 @@
 #include <fstream>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "base/collectives.h"
 #include "base/on_root.h"
@@ -52,6 +53,7 @@ struct Output<Space>::Impl {
   OutputArchive memory;
   std::optional<State<Space>> pending;  ///< accepted, but not in fields.h5
   std::optional<Frame> pending_frame;   ///< of `pending`, once the bodies have moved to other ranks
+  bool has_followed = false;            ///< whether bodies have joined or left since restore()
 
   Impl(const OutputOptions& o, const Model<Space>& m) : options(o), model(m), part(m.part()) {
     find_parts();
@@ -418,6 +420,7 @@ void Output<Space>::follow() {
 template <class Space>
 void Output<Space>::follow(const Lattice& lattice, std::span<const std::int32_t> names) {
   Impl& me = *impl_;
+  me.has_followed = true;
   me.pending_frame.reset();  // of other bodies
   me.find_sets(lattice);
   on_root(me.part.comm, [&] {
@@ -436,7 +439,7 @@ OutputState Output<Space>::save() {
 }
 
 template <class Space>
-void Output<Space>::restore(const OutputState& state) {
+void Output<Space>::restore(const OutputState& state, const PresentMesh& mesh) {
   const Timed timed(Event::output);
   Impl& me = *impl_;
   const OutputArchive& to = state.archive;
@@ -447,10 +450,12 @@ void Output<Space>::restore(const OutputState& state) {
   me.pending_frame = state.pending;
   if (me.cracks) me.cracks->follow_lattice();
   const std::string& dir = me.options.dir;
+  // Its new mesh is none of the frames'.
+  const bool follows = std::exchange(me.has_followed, false);
   on_root(me.part.comm, [&] {
     if (rows) me.history.emplace(dir + "/history.csv", to.rows);
     if (pressures) me.pressure.emplace(dir + "/pressure.csv", to.pressures);
-    if (frames) me.fields.emplace(dir, me.lattice, to.frames);
+    if (frames || follows) me.fields.emplace(dir, me.lattice, to.frames, mesh.first, mesh.names);
   });
 }
 

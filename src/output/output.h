@@ -127,7 +127,8 @@ class Output {
   /// State of the output, before finish(). Gathers a frame.
   OutputState save();
   /// Goes back to a state: cuts the files back if rows or frames have been written since then.
-  void restore(const OutputState& state);
+  /// \param mesh  of the bodies then, which the output follows already, where bodies join and leave
+  void restore(const OutputState& state, const PresentMesh& mesh = {});
 
   /// History with which a checkpoint can cut the files back to this moment.
   const OutputArchive& archive() const;

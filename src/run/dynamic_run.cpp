@@ -134,10 +134,7 @@ void DynamicRun<Space>::persist(Archive& archive) {
     throw OtherRun("checkpoint: restart: '" + options_.checkpoint.restart + "' is of a " + model +
                    " model, this run's is " + space + " (model: planar)");
   if (options_.supply && !archive.within_run()) {  // first, since all others are of these bodies
-    archive.enter("supply");
-    options_.supply->persist(archive);
-    ice_.persist(archive);
-    if (archive.loading()) follow_division();
+    persist_ice(archive);
     archive.enter("run");
   }
   archive.common("step", done_);
@@ -169,6 +166,15 @@ void DynamicRun<Space>::persist(Archive& archive) {
     archive.enter("force_" + std::to_string(k) + "_" + std::string(model_.forces()[k]->name()));
     if (auto* role = model_.forces()[k]->roles().persists) role->persist(archive);
   }
+}
+
+/// Saves which bodies exist, or loads them and begins with them. Collective.
+template <class Space>
+void DynamicRun<Space>::persist_ice(Archive& archive) {
+  archive.enter("supply");
+  options_.supply->persist(archive);
+  ice_.persist(archive);
+  if (archive.loading()) follow_division();
 }
 
 /// The run keeps the checkpoint's step; its end may lie later.

@@ -256,6 +256,7 @@ class DynamicRun : public Run {
   void take_remarks();
   std::string where();
   void persist(Archive& archive);
+  void persist_ice(Archive& archive);
 
   Model<Space>& model_;
   DynamicOptions options_;  // with the command line's -ts_* options

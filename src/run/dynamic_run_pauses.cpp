@@ -37,14 +37,13 @@ std::vector<std::int32_t> DynamicRun<Space>::owners() const {
 
 template <class Space>
 std::unique_ptr<const RunState> DynamicRun<Space>::save() {
-  if (options_.supply)
-    throw InputError("save: runs whose ice joins and leaves (supply) cannot go back to a state");
   if (!can_go_back() || !options_.remake) return refuse_to_go_back();
   const MPI_Comm comm = model_.part().comm;
   auto saved = std::make_unique<SavedRun>();
   on_root(comm, [&] { saved->file.emplace(Hdf5File::in_memory()); });
   Archive archive(model_.part(), saved->archive_file(), Transfer::save);
   archive.stay_in_run();
+  if (options_.supply) persist_ice(archive);
   persist(archive);
   share_outcome(archive.outcome(), comm);
   saved->owner = owners();
@@ -61,10 +60,13 @@ void DynamicRun<Space>::restore(const RunState& state) {
     (void)refuse_to_go_back();
     return;
   }
-  options_.remake(saved->owner);
-  follow_division();
   Archive archive(model_.part(), saved->archive_file(), Transfer::load);
   archive.stay_in_run();
+  if (options_.supply) persist_ice(archive);
+  if (!options_.supply || owners() != saved->owner) {
+    options_.remake(saved->owner);
+    follow_division();
+  }
   persist(archive);
   take_up_state();
   looked_ = saved->looked;

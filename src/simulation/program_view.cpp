@@ -238,7 +238,7 @@ void RunningIn<Space>::restore(const SavedState& state) {
     throw InputError("restore: the state is of another simulation");
   run_->restore(*kept->run);
   if (keeps_contacts_) contact_->keep_contacts();
-  if (output_) output_->restore(kept->output.value_or(OutputState{}));
+  if (output_) output_->restore(kept->output.value_or(OutputState{}), present_mesh());
 }
 
 template const State<Spatial>* RunningIn<Spatial>::state() const;

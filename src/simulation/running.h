@@ -72,7 +72,7 @@ struct Setting {
 
 /// Whether a run of the scene may go back to a saved state.
 inline bool can_go_back(const Scene& scene) {
-  return scene.integrator == Integrator::explicit_ && !scene.check_only && !scene.supply.on;
+  return scene.integrator == Integrator::explicit_ && !scene.check_only;
 }
 
 /// Whether a program moves or loads an obstacle.
@@ -154,7 +154,10 @@ class RunningIn final : public Running {
   void divide(Lattice lattice, const std::vector<std::int32_t>& owner);
   Renumbering change(SuppliedIce::Change change, const IceNow& now);
   void persist_ice(Archive& archive);
-  PresentMesh present_mesh() const;
+  PresentMesh present_mesh() const {
+    if (mesh_frame_ == 0) return {};
+    return {.first = mesh_frame_, .names = setting_.mesh.ice->names_of_bodies()};
+  }
   bool plan(const RunPlan& plan);
   void observe(const Accepted<Space>& accepted);
   void show(std::int64_t step);

@@ -121,10 +121,12 @@ void RunningIn<Space>::equip(const Lattice& lattice) {
 template <class Space>
 void RunningIn<Space>::add_forces_of_program() {
   if constexpr (std::is_same_v<Space, Spatial>) {
-    const bool first = applied_->empty();
-    for (std::size_t k = 0; k < scene_.structures.size(); ++k)
-      if (first && is_coupled(setting_, scene_.obstacles[scene_.structures[k].obstacle].name))
-        applied_->push_back({.body = body_of(k)});
+    std::size_t wrench = 0;
+    for (std::size_t k = 0; k < scene_.structures.size(); ++k) {
+      if (!is_coupled(setting_, scene_.obstacles[scene_.structures[k].obstacle].name)) continue;
+      if (wrench == applied_->size()) applied_->emplace_back();
+      (*applied_)[wrench++].body = body_of(k);  // another one after ice has joined
+    }
     if (!applied_->empty()) model_->add_force(make_applied_wrenches(model_->part(), applied_));
     for (const BodyForce& force : setting_.settings.forces)
       model_->add_force(make_program_force(model_->part(), force));
@@ -304,12 +306,6 @@ void RunningIn<Space>::open(const std::vector<std::string>& columns) {
     show(0);
   }
   first_.reset();
-}
-
-template <class Space>
-PresentMesh RunningIn<Space>::present_mesh() const {
-  if (mesh_frame_ == 0) return {};
-  return {.first = mesh_frame_, .names = setting_.mesh.ice->names_of_bodies()};
 }
 
 template <class Space>

@@ -222,6 +222,38 @@ class Applied(PythonTest):
         self.assertEqual(len(out), 8)
 
 
+    def test_after_ice_has_joined(self):
+        """A load that Python gives a structure is that structure's, however many bodies of ice
+        there are: its speed is the impulse over its mass."""
+        self.scene("""integrator: explicit
+forces: [beam, contact]
+ice: {young: 4e7}
+sheet: {length: 24, width: 6, thickness: 0.5, element_size: 1.5, iterations: 20}
+contact: {young: 1e7}
+supply: {strip: 12, length: 48}
+boundary: {names: [push], push: {set: left, fix: x y z rx ry rz, velocity: [8, 0, 0]}}
+initial: {names: [moving], moving: {set: all, velocity: [8, 0, 0]}}
+obstacle:
+  names: [far]
+  far: {shape: cylinder, base: [0, 500, -2], radius: 2, height: 4, mass: 1000}
+time: {end: 3.2, dt: 5e-4}
+""")
+        for ranks in (1, 2):
+            self.python("""
+                sim = floe.Simulation(floe.Scene("s.yaml", output_overwrite=True),
+                                      coupled=["far"])
+                bodies = len(sim.bodies.index)
+                sim["far"].apply([300, 0, 0])
+                sim.step_to(2)
+                assert len(sim.bodies.index) > bodies
+                sim["far"].apply([0, 500, 0])
+                sim.step_to(3)
+                speed = sim["far"].velocity.velocity
+                assert np.allclose(speed, [0.6, 0.5, 0], rtol=1e-3, atol=1e-9), speed
+                assert abs(sim.energies["external"] - 500 * (0.6 ** 2 + 0.5 ** 2)) < 1
+            """, ranks=ranks)
+
+
 class Forces(PythonTest):
     def test_gravity_in_python(self):
         """Weight as a force in Python is the scene's gravity, bit for bit, and its work is booked;

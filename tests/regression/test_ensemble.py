@@ -340,7 +340,7 @@ class Runs(EnsembleTest):
         process = self.begin("--jobs", "1")
         self.wait(process, (self.folder / "out/ensemble_e/ensemble.json").exists)
         _, said = self.ensemble(code=2)
-        self.assertIn("out/ensemble_e: is in use by another floe ensemble", said)
+        self.assertIn("out/ensemble_e: is in use by another process", said)
         self.assertEqual(said.count("\n"), 1)
         process.kill()
         process.wait()

@@ -104,20 +104,37 @@ class Installed(launch.FolderTest):
                 for place in (REPOSITORY, BUILD, self.folder / "first"):
                     self.assertNotIn(str(place).encode(), text, path)
 
+    def test_one_package(self):
+        """Python's package floe is there once, and tools use it and no other."""
+        package = self.prefix / "lib/python3/dist-packages/floe"
+        self.assertEqual([path.parent for path in self.prefix.rglob("program.py")], [package])
+        here, there = ({path.relative_to(folder) for path in folder.rglob("*")
+                        if path.suffix not in (".so", ".pyc") and path.name != "__pycache__"}
+                       for folder in (package, REPOSITORY / "python/floe"))
+        self.assertEqual(here, there)
+        run(self.floe, self.prefix / "share/floe/input/tension.yaml", cwd=self.folder)
+        (self.folder / "other/floe").mkdir(parents=True)
+        (self.folder / "other/floe/__init__.py").write_text("raise ValueError('another floe')")
+        done = subprocess.run([self.floe, "plot_sheet", "out/tension"], cwd=self.folder, text=True,
+                              capture_output=True,
+                              env={**ENVIRONMENT, "PYTHONPATH": str(self.folder / "other")})
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_python(self):
         """The package that was installed, and no other, runs a scene."""
         packages = self.prefix / "lib/python3/dist-packages"
         if not list(packages.glob("floe/_floe*.so")):
             self.skipTest("the Python module is not built")
         script = ("import floe; floe.Simulation(floe.Scene(sys.argv[1])).run().close(); "
-                  "print(floe.__file__)")
+                  "print(floe.__file__); from floe import program; print(program.floe())")
         done = subprocess.run(["/usr/bin/python3", "-c", "import sys; " + script,
                                self.prefix / "share/floe/input/tension.yaml"], cwd=self.folder,
                               env={**ENVIRONMENT, "PYTHONPATH": str(packages),
                                    "PYTHONDONTWRITEBYTECODE": "1"},
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.strip(), str(packages / "floe/__init__.py"))
+        self.assertEqual(done.stdout.splitlines(),
+                         [str(packages / "floe/__init__.py"), str(self.floe)])
         summary = json.loads((self.folder / "out/tension/summary.json").read_text())
         self.assertEqual(summary["status"], "done")
 
@@ -203,6 +220,47 @@ class Installed(launch.FolderTest):
                     f"-DCMAKE_PREFIX_PATH={self.prefix}",
                     cwd=self.folder, code=1)
         self.assertIn("it was built with PETSc", error)
+
+
+# The backend of pip over what is built already.
+WHEEL = """import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import pip_backend
+pip_backend.BUILD = Path(sys.argv[2])
+pip_backend.build = lambda options: None
+print(pip_backend.build_wheel("."))
+"""
+
+
+class Wheel(launch.FolderTest):
+    def test_pip(self):
+        """What `pip install .` installs, in an environment of its own: package, module, program and
+        tools, which find each other, and which pip removes."""
+        if not list(BUILD.glob("python/floe/_floe*.so")):
+            self.skipTest("the Python module is not built")
+        place = self.folder / "v"
+        made = subprocess.run(["/usr/bin/python3", "-m", "venv", "--system-site-packages", place],
+                              capture_output=True, text=True)
+        if made.returncode != 0:
+            self.skipTest("python3-venv is not installed")
+        python = place / "bin/python"
+        name = run(python, "-c", WHEEL, REPOSITORY / "python", BUILD, cwd=self.folder)
+        run(python, "-m", "pip", "install", "--no-index", "--no-deps", name.strip(),
+            cwd=self.folder)
+        scene = place / "share/floe/input/tension.yaml"
+        said = run(python, "-c", "import floe, sys; from floe import program\n"
+                   "floe.Simulation(floe.Scene(sys.argv[1])).run().close()\n"
+                   "print(floe.__file__, program.floe(), program.scene('input/tension.yaml'))",
+                   scene, cwd=self.folder)
+        package = next(place.glob("lib/python3*/site-packages/floe"))
+        self.assertEqual(said.split(), [str(package / "__init__.py"),
+                                        str((place / "bin/floe").resolve()), str(scene.resolve())])
+        run(place / "bin/floe", "plot_sheet", "out/tension", cwd=self.folder)
+        self.assertTrue((self.folder / "out/tension/sheet.png").exists())
+        run(python, "-m", "pip", "uninstall", "--yes", "floe", cwd=self.folder)
+        self.assertEqual([path for path in place.rglob("*floe*") if path.is_file()
+                          and path.suffix != ".pyc"], [])
 
 
 class Included(unittest.TestCase):

@@ -7,12 +7,15 @@ import sys
 import unittest
 
 import h5py
+import matplotlib
 import numpy as np
 
 from launch import REPOSITORY, FolderTest
 
+matplotlib.use("Agg")
 sys.path.insert(0, str(REPOSITORY / "python"))
 from floe.results import pressure as pressures  # noqa: E402
+from floe.run import Run  # noqa: E402
 
 SIDE = 0.5
 HEADER = "time,obstacle,patch,force_x,force_y,force_z\n"
@@ -191,6 +194,12 @@ class Tool(PressureTest):
         self.assertAlmostEqual(float(found[1]), 100 * share, delta=0.1)
         self.assertAlmostEqual(float(found[2]), 100 * share * 0.95, delta=0.1)
         self.assertGreater((self.folder / "pressure.png").stat().st_size, 20000)
+        figure = Run(self.folder).plot.pressure("wall")
+        drawn = {axes.get_title(): axes.collections[0].get_array()
+                 for axes in figure.axes if axes.get_title()}
+        largest, mean = drawn["largest"], drawn["mean"]
+        np.testing.assert_allclose(np.sort(largest), np.sort(pressure) / 1e6, rtol=1e-9)
+        np.testing.assert_allclose(mean, largest / 2, rtol=1e-9)
         self.assertIn("x.svg", self.plot("--obstacle", "wall", "--start", "0.5", "--file",
                                          str(self.folder / "x.svg")))
 
@@ -205,7 +214,7 @@ class Tool(PressureTest):
         (self.folder / "pressure.csv").write_text(text)
         self.assertIn("nothing touches wall", self.plot(code=2))
         self.assertIn("must be one of wall", self.plot("--obstacle", "hull", code=2))
-        self.assertIn("--start 3: is after", self.plot("--start", "3", code=2))
+        self.assertIn("start 3: is after", self.plot("--start", "3", code=2))
         self.assertIn("none: no such folder", subprocess.run(
             [sys.executable, str(REPOSITORY / "tools/plot_pressure"), "none"], capture_output=True,
             text=True).stderr)

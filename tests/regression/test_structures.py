@@ -7,6 +7,7 @@ import sys
 import unittest
 
 import h5py
+import matplotlib
 import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq, curve_fit
@@ -16,11 +17,13 @@ from launch import FULL, REPOSITORY
 from scene_runs import SceneTest, rows_of
 from test_restart import contents
 
+matplotlib.use("Agg")
 sys.path.insert(0, str(REPOSITORY / "python"))
 from floe import lattice as fl  # noqa: E402
 from floe.loads.fields import Bodies, contact_area, placed  # noqa: E402
 from floe.results.obstacles import obstacles_of_run  # noqa: E402
 from floe.results.output import Output  # noqa: E402
+from floe.run import Run  # noqa: E402
 
 # A leg beside ice that it never meets.
 ALONE = """integrator: explicit
@@ -111,6 +114,13 @@ class OneDegree(StructureTest):
                                                   rate / (2 * np.pi)), (1e-3, 1e-3, 2e-3, 0.15)):
             self.assertAlmostEqual(value / expected, 1, delta=delta, msg=text)
         self.assertTrue((self.folder / "out/s/motion.png").stat().st_size > 10000)
+        figure = Run(self.folder / "out/s").plot.motion(start=1)
+        for axes, expected in zip(figure.axes, (0.02 / rate, 0.02, 0.02 * rate)):
+            drawn = axes.lines[0]
+            self.assertAlmostEqual(np.abs(drawn.get_ydata()).max() / expected, 1, delta=3e-3)
+            self.assertGreaterEqual(drawn.get_xdata().min(), 1)
+        self.assertTrue(0.8 < figure.axes[3].lines[0].get_xdata()[
+            np.argmax(figure.axes[3].lines[0].get_ydata())] / (rate / (2 * np.pi)) < 1.2)
         self.assertIn("leg rz: largest displacement 0 rad", said("--component", "rz"))
         self.assertIn("must be one of leg", said("--structure", "hull", code=2))
         self.assertIn("fewer than 16", said("--start", "19.99", code=2))

@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -141,7 +142,7 @@ def locked(path, kind=fcntl.LOCK_EX, patience=2.0, what=None):
             except BlockingIOError:
                 if time.monotonic() > until:
                     raise InputError(f"{what or path.parent}: is in use by another "
-                                     f"floe {program.name()}") from None
+                                     "process") from None
                 time.sleep(0.02)
         yield file.fileno()
 
@@ -240,7 +241,11 @@ class Runner:
     @contextlib.contextmanager
     def requests_to_stop(self):
         """SIGINT, SIGTERM and SIGHUP ask all runs to stop with a checkpoint; a second one does not
-        wait for them."""
+        wait for them. In other threads than the main one, which get no signals, nothing does."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+
         def ask(number, _):
             if self.stopping:
                 raise KeyboardInterrupt

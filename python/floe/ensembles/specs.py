@@ -323,6 +323,16 @@ def spec_of(given, name, base):
                   for key in ("run", "total")), output, given)
 
 
+def checked(given, name, where, base):
+    """The Spec of nested dicts. InputError, which says where they stand."""
+    try:
+        return spec_of(given if given is not None else {}, name, base)
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{where}: {' '.join(str(error).split())}") from None
+
+
 def read(path):
     """The Spec in a YAML file."""
     path = Path(path)
@@ -330,11 +340,9 @@ def read(path):
         text = path.read_text()
     try:
         given = yaml.load(text, UniqueKeys)
-        return spec_of(given if given is not None else {}, path.stem, path.parent)
-    except InputError:
-        raise
     except (ValueError, yaml.YAMLError) as error:
         raise InputError(f"{path}: {' '.join(str(error).split())}") from None
+    return checked(given, path.stem, path, path.parent)
 
 
 def members(spec):

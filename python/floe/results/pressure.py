@@ -118,6 +118,20 @@ def grown(seed, pressure, area, beside, most):
     return np.array(force), np.array(size)
 
 
+def chosen(found, obstacle=None, start=0.0):
+    """The Patches of an obstacle (None: the first) from a time on [s]. found: what read() returns.
+    InputError where nothing touches them."""
+    name = obstacle or next(iter(found))
+    if name not in found:
+        raise InputError(f"obstacle {name}: must be one of {', '.join(found)}")
+    patches = found[name].since(start)
+    if not len(patches.time):
+        raise InputError(f"start {start:g}: is after the last row of pressure.csv")
+    if not np.any(patches.force > 0):
+        raise InputError(f"nothing touches {name}" + (f" from {start:g} s on" if start else ""))
+    return patches
+
+
 def area_curve(patches, most=None):
     """Area [m2] and largest mean pressure [Pa] of connected windows of 1, 2, ... patches, over all
     times and places: windows that grow from each local maximum of the pressure by the neighbour
