@@ -21,11 +21,11 @@ namespace floe {
 template <template <class> class Frame>
 inline constexpr std::size_t frame_size = sizeof(Frame<double>) / sizeof(double);
 
-/// Constants with doubles of a beam in lanes with this frame.
-template <template <class> class Frame>
+/// Constants, on a scalar, of a beam in lanes with this frame.
+template <class C, template <class> class Frame>
 using ScalarConstants =
-    std::conditional_t<is_eccentric_frame<Frame>, BeamConstants<double, EccentricFrame>,
-                       BeamConstants<double, AnyFrame>>;
+    std::conditional_t<is_eccentric_frame<Frame>, BeamConstants<C, EccentricFrame>,
+                       BeamConstants<C, AnyFrame>>;
 
 /// Copies the numbers of a lane from another block.
 template <class Values>
@@ -37,7 +37,7 @@ void copy_lane(Values& to, std::size_t lane, const Values& from, std::size_t oth
 template <template <class> class Frame>
 struct alignas(64) BeamBlock {
   static constexpr std::size_t first = frame_size<Frame>;
-  using Scalar = ScalarConstants<Frame>;
+  using Scalar = ScalarConstants<double, Frame>;
   std::array<std::array<double, lanes>, first + 7> values;
   std::array<std::int32_t, lanes> i, j;  ///< local bodies
 

@@ -94,8 +94,7 @@ std::vector<Real> expected(const Case<Frame>& c, Real& lost) {
     const double *ri = c.state.record(i), *rj = c.state.record(j);
     const auto& b = c.beams[lane];
     const auto real = [](const Vec3<double>& v) { return Vec3<Real>{v.x, v.y, v.z}; };
-    BeamConstants<Real, ScalarFrame<Frame>::template Type> beam{{},    b.l0, b.kn,  b.ksz,
-                                                                b.ksy, b.kt, b.kby, b.kbz};
+    ScalarConstants<Real, Frame> beam{{}, b.l0, b.kn, b.ksz, b.ksy, b.kt, b.kby, b.kbz};
     beam.rest.e1 = real(b.rest.e1), beam.rest.e2 = real(b.rest.e2), beam.rest.e3 = real(b.rest.e3);
     if constexpr (Kernel::template is_eccentric<decltype(beam)>) {
       beam.rest.offset_i = real(b.rest.offset_i);
