@@ -13,6 +13,13 @@ namespace {
 
 constexpr double far_away = 1e9;  ///< place of a body that has not been looked at [m]
 
+/// The numbers of an expansion, in the order in which checkpoints and back ends have them.
+std::array<Lanes*, 15> numbers_of(Expansion<Lanes>& e) {
+  Waterplane<Lanes>& w = e.waterplane;
+  return {&e.z,        &e.q.w,  &e.q.x, &e.q.y, &e.q.z, &e.volume, &e.moment.x, &e.moment.y,
+          &e.moment.z, &w.area, &w.x,   &w.y,   &w.xx,  &w.xy,     &w.yy};
+}
+
 }  // namespace
 
 const Part& require_shapes(const Part& part, std::string_view force) {
@@ -69,12 +76,6 @@ Immersion::Lane Submersion::find_some(const State<Spatial>& state, std::size_t b
     now.moment.y[lane] = double(followed.now.moment.y[lane]);
   }
   return now;
-}
-
-std::array<Lanes*, Submersion::numbers> Submersion::numbers_of(Expansion<Lanes>& e) {
-  Waterplane<Lanes>& w = e.waterplane;
-  return {&e.z,        &e.q.w,  &e.q.x, &e.q.y, &e.q.z, &e.volume, &e.moment.x, &e.moment.y,
-          &e.moment.z, &w.area, &w.x,   &w.y,   &w.xx,  &w.xy,     &w.yy};
 }
 
 void Submersion::persist(Archive& archive) {

@@ -83,7 +83,6 @@ class Submersion final : public PreparesSteps<Spatial>,
 
  private:
   static constexpr std::size_t numbers = 15;  ///< of a body in an Expansion
-  static std::array<Lanes*, numbers> numbers_of(Expansion<Lanes>& e);
   void set_numbers(std::span<const double> rows);
   struct Size {
     Lanes extent2;  ///< square of the distance of the farthest vertex [m^2]
