@@ -27,8 +27,8 @@ list(FILTER modules EXCLUDE REGEX "/tools/(floe_|draw_)")
 set(share ${CMAKE_INSTALL_DATADIR}/floe)
 install(PROGRAMS ${tools} DESTINATION ${share}/tools COMPONENT program)
 install(FILES ${modules} DESTINATION ${share}/tools COMPONENT program)
-# The package that the tools are made of; tools/find_floe.py finds it there. It needs nothing that is
-# compiled; with the compiled module beside it (component `python`) it also runs scenes.
+# The package that the tools are made of; tools/find_floe.py finds it there. It needs nothing that
+# is compiled; with the compiled module beside it (component `python`) it also runs scenes.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/floe DESTINATION ${FLOE_PYTHON_PACKAGES}
         COMPONENT program PATTERN __pycache__ EXCLUDE PATTERN .mypy_cache EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/input DESTINATION ${share} COMPONENT program)

@@ -48,7 +48,8 @@ def build(options):
         if not shutil.which(program):
             sys.exit(f"floe needs {program}: tools/setup installs all that it is built with")
     configure = ["cmake", "--preset", "release", "-B", BUILD,
-                 f"-DPython_EXECUTABLE={sys.executable}", "-DFLOE_TESTS=OFF", "-DFLOE_PYTHON=ON", "-DCMAKE_INSTALL_LIBDIR=lib", *options]
+                 f"-DPython_EXECUTABLE={sys.executable}", "-DFLOE_TESTS=OFF",
+                 "-DFLOE_PYTHON=ON", "-DCMAKE_INSTALL_LIBDIR=lib", *options]
     said = subprocess.run(configure, cwd=ROOT, stdout=subprocess.PIPE, text=True)
     print(said.stdout, flush=True)
     if said.returncode != 0:
