@@ -26,6 +26,7 @@ from floe.make import sizes as laws  # noqa: E402
 from floe.make import tessellation  # noqa: E402
 
 TOOL = REPOSITORY / "tools/make_floes"
+sys.path.insert(0, str(TOOL.parent))  # as of a program that is started
 loader = importlib.machinery.SourceFileLoader("make_floes", str(TOOL))
 tool = importlib.util.module_from_spec(importlib.util.spec_from_loader("make_floes", loader))
 loader.exec_module(tool)
