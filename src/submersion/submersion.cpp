@@ -14,7 +14,7 @@ namespace {
 constexpr double far_away = 1e9;  ///< place of a body that has not been looked at [m]
 
 /// The numbers of an expansion, in the order in which checkpoints and back ends have them.
-std::array<Lanes*, 15> numbers_of(Expansion<Lanes>& e) {
+std::array<Lanes*, 15> numbers_in(Expansion<Lanes>& e) {
   Waterplane<Lanes>& w = e.waterplane;
   return {&e.z,        &e.q.w,  &e.q.x, &e.q.y, &e.q.z, &e.volume, &e.moment.x, &e.moment.y,
           &e.moment.z, &w.area, &w.x,   &w.y,   &w.xx,  &w.xy,     &w.yy};
@@ -64,7 +64,7 @@ Immersion::Lane Submersion::find_some(const State<Spatial>& state, std::size_t b
   Expansion<Lanes> old = expansions_[block];
   Immersion::Lane now = find(state, block, m);
   new_[block] = 0;
-  const auto to = numbers_of(expansions_[block]), from = numbers_of(old);
+  const auto to = numbers_in(expansions_[block]), from = numbers_in(old);
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     if (followed.apart[lane] > 0) {
       new_[block] = static_cast<std::uint8_t>(new_[block] | 1U << lane);
@@ -98,7 +98,7 @@ void Submersion::read(std::vector<double>& rows, std::int64_t& steps) const {
   rows.clear();
   for (std::size_t b = 0; b < static_cast<std::size_t>(part_.owned); ++b) {
     Expansion<Lanes> of = expansions_[b / lanes];
-    for (const Lanes* number : numbers_of(of)) rows.push_back((*number)[b % lanes]);
+    for (const Lanes* number : numbers_in(of)) rows.push_back((*number)[b % lanes]);
   }
 }
 
@@ -110,7 +110,7 @@ void Submersion::write(std::span<const double> rows, std::int64_t steps) {
 void Submersion::set_numbers(std::span<const double> rows) {
   for (std::size_t k = 0; k < expansions_.size() * lanes; ++k) {
     const double* row = &rows[immersion_.body_of(k / lanes, k % lanes) * numbers];
-    for (Lanes* number : numbers_of(expansions_[k / lanes])) (*number)[k % lanes] = *row++;
+    for (Lanes* number : numbers_in(expansions_[k / lanes])) (*number)[k % lanes] = *row++;
   }
 }
 
