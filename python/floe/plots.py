@@ -86,9 +86,12 @@ def energies(table: Any, axes: Axes | None = None) -> Axes:
     most = max((np.abs(values).max() for values in change.values()), default=0.0)
     size, unit = next(((size, unit) for size, unit in ((1e9, "GJ"), (1e6, "MJ"), (1e3, "kJ"))
                        if most >= size), (1.0, "J"))
-    for name, values in change.items():
-        if np.abs(values).max() > 1e-3 * most:
-            axes.plot(table.index, values / size, linewidth=1,
+    shown = {name: values for name, values in change.items()
+             if np.abs(values).max() > 1e-3 * most}
+    for k, (name, values) in enumerate(shown.items()):
+        # more curves than colours: those that come again are dashed
+        axes.plot(table.index, values / size, color=f"C{k % 10}", linewidth=1,
+                  linestyle="-" if k < 10 else "--",
                       label=name.removeprefix("energy_").replace("_", " "))
     axes.set(xlabel="time [s]", ylabel=f"energy since the first row [{unit}]")
     axes.legend(frameon=False, fontsize=8, ncols=2)

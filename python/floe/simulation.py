@@ -2,7 +2,7 @@
 import json
 import math
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import TracebackType
 from typing import Any, NamedTuple
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import library
+from .errors import InputError
 from .failures import RunFailed
 from .force import Force
 from .scene import Scene
@@ -126,9 +127,13 @@ class Obstacle:
 
         Collective. Raises InputError if the obstacle is not coupled or has a mass.
         """
-        position, orientation = _both(pose, (1.0, 0.0, 0.0, 0.0))
-        speed, spin = _both(velocity, (0.0, 0.0, 0.0))
-        self._simulation._open().prescribe(self.name, position, orientation, speed, spin, until)
+        position, orientation = _both(pose, (1.0, 0.0, 0.0, 0.0), ("position", "orientation"))
+        if not any(orientation):
+            raise InputError(f"prescribe: orientation: {orientation} is no rotation: a quaternion "
+                             "w x y z of length 1")
+        speed, spin = _both(velocity, (0.0, 0.0, 0.0), ("velocity", "spin"))
+        self._simulation._open().prescribe(self.name, position, orientation, speed, spin,
+                                           None if until is None else _number(until, "until"))
         self._simulation._changed()
 
     def apply(self, force: ArrayLike, moment: ArrayLike = (0.0, 0.0, 0.0)) -> None:
@@ -137,7 +142,8 @@ class Obstacle:
 
         Collective. Raises InputError if the obstacle is not coupled or has no mass.
         """
-        self._simulation._open().apply(self.name, _numbers(force, 3), _numbers(moment, 3))
+        self._simulation._open().apply(self.name, _numbers(force, 3, "force"),
+                                       _numbers(moment, 3, "moment"))
         self._simulation._changed()
 
     def __repr__(self) -> str:
@@ -174,8 +180,8 @@ class Simulation:
         self.scene = scene if isinstance(scene, Scene) else Scene(scene)
         self._results: dict[str, Any] | None = None
         self._kept: dict[str, Any] | None = None
-        self._handle: Any = library.compiled.Run(self.scene._read, list(coupled), list(forces),
-                                                 verbose, progress, False)
+        self._handle: Any = library.compiled.Run(self.scene._read, _names(coupled),
+                                                 _checked(forces), verbose, progress, False)
 
     # -- steps
     def step_to(self, time: float) -> bool:
@@ -183,7 +189,7 @@ class Simulation:
         has ended. Raises RunFailed."""
         run = self._open()
         self._changed()
-        goes_on = run.step_to(float(time))
+        goes_on = run.step_to(_number(time, "time", math.inf))
         if not goes_on:
             self._raise_failure()
         return goes_on
@@ -197,15 +203,16 @@ class Simulation:
                        print(sim.time, sim.progress)
         Raises RunFailed.
         """
-        end = math.inf if until is None else float(until)
+        end = math.inf if until is None else _number(until, "until", math.inf)
         if every is not None:
-            return self._steps(end, float(every))
+            period = _number(every, "every")
+            if not period > 0:
+                raise InputError(f"every: {every} must be > 0 [s]")
+            return self._steps(end, period)
         self.step_to(end)
         return self
 
     def _steps(self, end: float, every: float) -> Iterator["Simulation"]:
-        if not every > 0:
-            raise ValueError(f"every: {every} must be > 0 [s]")
         early = 1e-9
         while self.time < end - early * every:
             k = math.floor(self.time / every + early) + 1
@@ -307,6 +314,8 @@ class Simulation:
         """Goes back to a saved state of this simulation, also from the end of the run; rows and
         frames that were written since then are taken back too. The same steps from there have the
         same bits."""
+        if not isinstance(state, State):
+            raise InputError(f"restore: {state!r} is no state of save()")
         self._changed()
         self._open().restore(state._state)
 
@@ -367,15 +376,53 @@ class Simulation:
             raise RunFailed(outcome["message"])
 
 
-def _numbers(values: ArrayLike, count: int) -> list[float]:
-    array = np.asarray(values, dtype=float)
+def _number(value: Any, name: str, most: float = 0.0) -> float:
+    """A number; with most = inf it may be infinite."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if math.isnan(number) or math.isinf(number) and not math.isinf(most):
+        raise InputError(f"{name}: {value!r} must be a number [s]")
+    return number
+
+
+def _numbers(values: ArrayLike, count: int, name: str) -> list[float]:
+    try:
+        array = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        array = np.empty(0)
     if array.shape != (count,) or not np.isfinite(array).all():
-        raise ValueError(f"{values!r} must be {count} finite numbers")
+        raise InputError(f"{name}: {values!r} must be {count} finite numbers")
     return array.tolist()
 
 
-def _both(values: Any, second: Sequence[float]) -> tuple[list[float], list[float]]:
+def _both(values: Any, second: Sequence[float],
+          names: tuple[str, str]) -> tuple[list[float], list[float]]:
     """A vector and what stands beside it, which may be left out."""
-    if len(values) == 2 and np.ndim(values[0]) == 1:
-        return _numbers(values[0], 3), _numbers(values[1], len(second))
-    return _numbers(values, 3), list(second)
+    if isinstance(values, (tuple, list)) and len(values) == 2 and np.ndim(values[0]) == 1:
+        return _numbers(values[0], 3, names[0]), _numbers(values[1], len(second), names[1])
+    return _numbers(values, 3, names[0]), list(second)
+
+
+def _names(coupled: Any) -> list[str]:
+    if isinstance(coupled, str) or not isinstance(coupled, Iterable):
+        raise InputError(f"coupled: {coupled!r} must be a list of names of obstacles")
+    return list(coupled)
+
+
+def _checked(forces: Any) -> list[Force]:
+    """Forces that can be asked."""
+    if not isinstance(forces, Iterable):
+        raise InputError(f"forces: {forces!r} must be a list of floe.Force")
+    all_forces = list(forces)
+    for force in all_forces:
+        if not isinstance(force, Force) or type(force).add is Force.add:
+            raise InputError(f"forces: {force!r} must be a floe.Force with a method "
+                             "add(self, bodies)")
+        for name in ("stiffness", "damping"):
+            value = getattr(force, name)
+            if not isinstance(value, (int, float)) or not 0 <= value < math.inf:
+                raise InputError(f"forces: {type(force).__name__}: {name}: {value!r} must be a "
+                                 "finite number >= 0")
+    return all_forces

@@ -213,6 +213,8 @@ void register_errors() {
     } catch (const InputError& why) {
       raise(0, why);
     } catch (const CallbackFailed& why) {
+      // The rank that has an exception of its own gets it, whatever asked for the forces.
+      if (why.why()) std::rethrow_exception(why.why());
       raise(1, why);
     } catch (const Verdict& why) {
       raise(2, why);

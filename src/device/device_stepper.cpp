@@ -131,7 +131,8 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   DeviceModel& numbers = described.numbers;
   for (const auto& force : model.forces()) {
     const Roles<Spatial> roles = force->roles();
-    if (roles.device == nullptr) refuse("such force '" + std::string(force->name()) + "'");
+    if (roles.device == nullptr)
+      refuse("force '" + std::string(force->name()) + "' with its options");
     roles.device->describe(numbers);
     if (roles.work != nullptr) numbers.next_work += roles.work->works();
   }
@@ -165,7 +166,9 @@ DeviceStepper::DeviceStepper(const Model<Spatial>& model, DescribedModel describ
   static_assert(Engine::record == Spatial::record);
 }
 
-void DeviceStepper::put(const State<Spatial>& state) {
+void DeviceStepper::put(const State<Spatial>& state, std::span<const double> works) {
+  works_.assign(works.begin(), works.end());
+  of_engine([&] { engine_->forget_works(0); });
   constexpr std::size_t n = Engine::record;
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
@@ -235,15 +238,20 @@ double DeviceStepper::flush() {
 
 double DeviceStepper::take_works(std::span<double> works) {
   const Works parts = of_engine([&] { return engine_->works(0); });
+  std::copy(works_.begin(), works_.end(), works.begin());
   for (const double work : parts.beams) works[described_.numbers.beam_work] += work;
   for (std::size_t l = 0; l < parts.loaded.size(); ++l) {
     const DeviceModel::Load& load =
         item(described_.numbers.loads, described_.lattice.loaded[l].load);
     works[load.work] += parts.loaded[l];
   }
+  const auto add = [&](const std::vector<double>& some, const std::optional<std::size_t>& force) {
+    if (!force) return;  // of other runs in the launch
+    for (const double work : some) works[*force] += work;
+  };
   if (const auto& water = described_.numbers.water) {
-    for (const double work : parts.drag) works[water->drag_work.value_or(0)] += work;
-    for (const double work : parts.buoyancy) works[water->buoyancy_work.value_or(0)] += work;
+    add(parts.drag, water->drag_work);
+    add(parts.buoyancy, water->buoyancy_work);
   }
   double boundaries = 0;
   for (const double work : parts.held) boundaries += work;

@@ -32,15 +32,16 @@ class DeviceStepper {
                 std::unique_ptr<Engine> engine);
 
   /// Hands the records to the engine.
-  void put(const State<Spatial>& state);
-  /// Makes what is queued and copies the records. Times of the state are the caller's.
+  /// \param works  of all forces until then [J]
+  void put(const State<Spatial>& state, std::span<const double> works);
+  /// Copies the records; nothing may be queued. Times of the state are the caller's.
   void get(State<Spatial>& state);
   /// Queues a step. \param time  of its start [s] \param before  length of the step before it [s]
   void queue(double time, double dt, double before);
   /// Makes the queued steps. Returns the square of the largest speed in them [m^2/s^2].
   double flush();
-  /// Adds what forces have worked since the last call to `works`, by their indices. Returns the
-  /// boundaries' work [J].
+  /// Sets the works of all forces, those until put() and since [J]: sums that do not depend on how
+  /// often somebody asks. Returns the boundaries' work since put() [J].
   double take_works(std::span<double> works);
   /// Largest speed and spin of the steps of the last flush [m/s, rad/s].
   double fastest() const { return fastest_; }
@@ -60,7 +61,7 @@ class DeviceStepper {
   DescribedModel described_;
   std::unique_ptr<Engine> engine_;
   Steps steps_;
-  std::vector<double> room_, kept_;
+  std::vector<double> room_, kept_, works_;
   std::int64_t since_ = 0;  ///< steps since all submerged parts were found
   double fastest_ = 0, fastest_spin_ = 0;
 };

@@ -81,7 +81,7 @@ struct Steps {
 struct Findings {
   double speed2 = 0, spin2 = 0;  ///< largest squares; perhaps not finite [m^2/s^2, rad^2/s^2]
 };
-/// Works since the last question, of one run, in parts [J].
+/// Works since they were forgotten, of one run, in parts [J].
 struct Works {
   std::vector<double> beams;           ///< per body: by dashpots of beams of which it is the first
   std::vector<double> held;            ///< per held body: by boundaries
@@ -111,11 +111,13 @@ class Engine {
   virtual void step(std::span<const Steps> steps) = 0;
   virtual Findings findings(std::size_t run) = 0;
   virtual Works works(std::size_t run) = 0;
+  /// Lets the works of a run begin anew.
+  virtual void forget_works(std::size_t run) = 0;
   virtual std::int32_t tiles() const = 0;
 };
 
 /// \param lattices    one per run
-/// \param tile        most bodies of a tile; 0: by the number of bodies
+/// \param tile        most bodies of a tile, at most 128; 0: by the number of bodies
 std::unique_ptr<Engine> make_loop_engine(std::vector<Lattice> lattices, std::int32_t tile = 0);
 /// \throws Failed if there is no device, InputError if floe is built without CUDA
 std::unique_ptr<Engine> make_cuda_engine(std::vector<Lattice> lattices, std::int32_t tile = 0);

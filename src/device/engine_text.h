@@ -36,6 +36,7 @@ class TileEngine final : public Engine {
     }
     const auto bodies = static_cast<std::size_t>(first_body_.back());
     if (tile == 0) tile = tile_for(first_body_.back());
+    if (tile < 1 || tile > most_threads) throw Failed("a tile has 1 to 128 bodies");
     constexpr std::size_t usual = 48U << 10;  // of shared memory that any device gives [bytes]
     tiles_ = make_tiles(lattices_, tile,
                         static_cast<std::int32_t>(usual / (sizeof(double) * Step::shares)));
@@ -99,17 +100,17 @@ class TileEngine final : public Engine {
       if (!lattices_[r].water)
         water_motions.resize(water_motions.size() + 4 * static_cast<std::size_t>(of.count));
     }
-    if (most == 0) return;
+    if (most == 0 || tiles_.run.empty()) return;
     queue_.wait();
     bool grown = give(motions, motions_);
     grown = give(wrenches, wrenches_) || grown;
     grown = give(water_motions, water_motions_) || grown;
-    if (grown) ++tables_;
+    if (grown) queue_.forget();
     runs_.put(runs);
     waters_.put(waters);
     const Memory memory = all();
     const WaterMemory water = all_of_water();
-    const auto key = static_cast<std::uint64_t>(most) << 32U | tables_ << 1U | now_;
+    const auto key = static_cast<std::uint64_t>(most) << 1U | now_;
     const int parity = static_cast<int>(now_);
     const auto tiles = static_cast<std::int32_t>(tiles_.run.size());
     constexpr int warp = 32;
@@ -142,7 +143,6 @@ class TileEngine final : public Engine {
     const auto take = [](Array<double>& works, std::size_t first, std::size_t end) {
       std::vector<double> values(works.size() == 0 ? 0 : end - first);
       works.get(values, first);
-      works.put(std::vector<double>(values.size()), first);
       return values;
     };
     const auto body = [&](std::size_t r) { return static_cast<std::size_t>(first_body_[r]); };
@@ -151,6 +151,18 @@ class TileEngine final : public Engine {
             take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
             take(drag_works_, body(run), body(run + 1)),
             take(buoyancy_works_, body(run), body(run + 1))};
+  }
+
+  void forget_works(std::size_t run) override {
+    queue_.wait();
+    const auto forget = [](Array<double>& works, std::size_t first, std::size_t end) {
+      if (works.size() > 0) works.put(std::vector<double>(end - first), first);
+    };
+    const auto first = static_cast<std::size_t>(first_body_[run]),
+               end = static_cast<std::size_t>(first_body_[run + 1]);
+    for (auto* works : {&beam_works_, &drag_works_, &buoyancy_works_}) forget(*works, first, end);
+    forget(held_works_, first_held_[run], first_held_[run + 1]);
+    forget(load_works_, first_loaded_[run], first_loaded_[run + 1]);
   }
 
   std::int32_t tiles() const override { return static_cast<std::int32_t>(tiles_.run.size()); }
@@ -324,7 +336,8 @@ class TileEngine final : public Engine {
     if (has_pace) expansions_ = Array<double>(of_expansion * bodies);
   }
 
-  /// Hands over a table, in memory that is made larger where that must be. Whether it was.
+  /// Hands over a table, in memory that is made larger where that must be. Returns
+  /// whether it was made larger.
   static bool give(const std::vector<double>& values, Array<double>& memory) {
     const bool larger = values.size() > memory.size();
     if (larger) memory = Array<double>(2 * values.size());
@@ -390,7 +403,6 @@ class TileEngine final : public Engine {
   std::vector<std::size_t> first_held_{0}, first_loaded_{0};
   Tiles tiles_;
   std::size_t shared_ = 0, now_ = 0;
-  std::uint64_t tables_ = 0;  ///< which memory of tables the recorded launches know
   Queue queue_;
   Array<std::int32_t> first_body_of_tile_, first_slot_, run_, i_, j_, first_end_, ends_;
   Array<double> constants_, bodies_, weights_, beam_works_, held_works_, motions_, arms_,

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <new>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -25,11 +24,13 @@
 #endif
 
 namespace floe::device {
+namespace {  // of each back end its own
 
 #if defined(__CUDACC__)
 
 inline void check(cudaError_t code, const char* what) {
-  if (code == cudaErrorMemoryAllocation) throw std::bad_alloc();
+  if (code == cudaErrorMemoryAllocation)
+    throw Failed(std::string("CUDA: the memory of the device is full: ") + what);
   if (code != cudaSuccess)
     throw Failed(std::string("CUDA: ") + what + ": " + cudaGetErrorString(code));
 }
@@ -75,13 +76,16 @@ class Array {
 /// such doubles are in the order of the numbers.
 __device__ inline void raise(std::uint64_t* address, double value) {
   static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
-  atomicMax(reinterpret_cast<unsigned long long*>(address),
-            static_cast<unsigned long long>(__double_as_longlong(value)));
+  const auto bits = static_cast<unsigned long long>(__double_as_longlong(value));
+  auto* largest = reinterpret_cast<unsigned long long*>(address);
+  // It only grows, so what is read may be old and tells all the same of most that they are smaller.
+  if (bits > *static_cast<volatile unsigned long long*>(largest)) atomicMax(largest, bits);
 }
 
 /// One block of threads per tile.
+constexpr int most_threads = 128;  ///< of a block
 template <class Work>
-__global__ void run_tile(const Work work) {
+__global__ void __launch_bounds__(most_threads) run_tile(const Work work) {
   extern __shared__ double shared[];
   const auto tile = static_cast<std::int32_t>(blockIdx.x);
   const auto threads = static_cast<std::int32_t>(blockDim.x);
@@ -99,8 +103,13 @@ class Queue {
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
   ~Queue() {
-    for (const auto& [key, graph] : graphs_) cudaGraphExecDestroy(graph);
+    forget();
     cudaStreamDestroy(stream_);
+  }
+  /// Forgets all recorded launches: memory that they know has moved.
+  void forget() {
+    for (const auto& [key, graph] : graphs_) cudaGraphExecDestroy(graph);
+    graphs_.clear();
   }
 
   /// Makes the launches of record(launch), where launch(work, tiles, threads, shared) runs the work
@@ -113,19 +122,27 @@ class Queue {
     if (found == graphs_.end()) {
       cudaGraph_t graph = nullptr;
       check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "capture");
-      record([this](const auto& work, std::int32_t tiles, int threads, std::size_t shared) {
-        using Work = std::decay_t<decltype(work)>;
-        constexpr std::size_t without_asking = 48U << 10;
-        if (shared > without_asking)
-          check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                     static_cast<int>(shared)),
-                "shared memory of a tile");
-        run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
-      });
+      try {
+        record([this](const auto& work, std::int32_t tiles, int threads, std::size_t shared) {
+          using Work = std::decay_t<decltype(work)>;
+          constexpr std::size_t without_asking = 48U << 10;
+          if (shared > without_asking)
+            check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                       static_cast<int>(shared)),
+                  "shared memory of a tile");
+          run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
+          check(cudaGetLastError(), "launch");
+        });
+      } catch (...) {
+        cudaStreamEndCapture(stream_, &graph);
+        if (graph != nullptr) cudaGraphDestroy(graph);
+        throw;
+      }
       check(cudaStreamEndCapture(stream_, &graph), "capture");
       cudaGraphExec_t ready = nullptr;
-      check(cudaGraphInstantiate(&ready, graph, 0), "cudaGraphInstantiate");
+      const cudaError_t made = cudaGraphInstantiate(&ready, graph, 0);
       cudaGraphDestroy(graph);
+      check(made, "cudaGraphInstantiate");
       graphs_.emplace_back(key, ready);
       found = graphs_.end() - 1;
     }
@@ -163,6 +180,8 @@ inline void raise(std::uint64_t* address, double value) {
   *address = std::max(*address, std::bit_cast<std::uint64_t>(value));
 }
 
+constexpr int most_threads = 128;
+
 class Queue {
  public:
   template <class Record>
@@ -176,6 +195,7 @@ class Queue {
     });
   }
   void wait() {}
+  void forget() {}
 
  private:
   std::vector<double> shared_;  ///< of one tile
@@ -183,4 +203,5 @@ class Queue {
 
 #endif
 
+}  // namespace
 }  // namespace floe::device

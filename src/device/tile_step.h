@@ -11,6 +11,7 @@
 #include "leapfrog/held_body.h"
 
 namespace floe::device {
+namespace {  // of each back end its own, as in launch.h
 
 /// Numbers of many bodies or beams, number by number: neighbouring threads read what lies side by
 /// side.
@@ -296,4 +297,5 @@ struct TileStep {
   }
 };
 
+}  // namespace
 }  // namespace floe::device

@@ -11,6 +11,7 @@
 #include "water/drag_law.h"
 
 namespace floe::device {
+namespace {  // of each back end its own, as in launch.h
 
 /// The water of a run.
 struct WaterOfRun {
@@ -158,4 +159,5 @@ struct WaterStep {
   }
 };
 
+}  // namespace
 }  // namespace floe::device

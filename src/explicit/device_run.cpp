@@ -82,19 +82,25 @@ class DeviceRun final : public ExplicitRun<Spatial> {
   }
   /// Returns the square of the largest speed in the steps that were made; perhaps none [m^2/s^2].
   double queue_step() {
-    if (!is_on_engine_) stepper_->put(state());
+    if (!is_on_engine_) {
+      stepper_->put(state(), work_ledger().all());
+      boundary_work_ = step_->boundary_work();
+    }
     is_on_engine_ = true;
     stepper_->queue(state().time, dt(), last_dt_);
     is_here_ = false;
     return (done() + 1) % most_queued == 0 ? stepper_->flush() : 0.0;
   }
 
+  /// Makes the queued steps, so that their speeds are known.
+  void finish_steps() override { note_speed2(stepper_->flush()); }
   /// Brings back the state and what forces and boundaries have worked.
   void bring_state() override {
     if (is_here_) return;
-    note_speed2(stepper_->flush());
+    finish_steps();
     stepper_->get(state());
-    step_->take_over(stepper_->take_works(work_ledger().all()), last_dt_);
+    const double work = stepper_->take_works(work_ledger().all());
+    step_->take_over(boundary_work_ + work, last_dt_);
     state().velocity_time = state().time - 0.5 * last_dt_;
     is_here_ = true;
   }
@@ -114,6 +120,12 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     const auto [kinetic, boundary] = step_->energies(dt());
     return {kinetic, boundary};
   }
+  /// How long a step takes is not known: looks are the processor's.
+  void add_to(RunPlan& plan) const override {
+    ExplicitRun::add_to(plan);
+    plan.seconds_a_step = 0;
+    plan.measured.clear();
+  }
   void persist_own(Archive& archive) override {
     ExplicitRun::persist_own(archive);
     step_->persist(archive);
@@ -127,7 +139,8 @@ class DeviceRun final : public ExplicitRun<Spatial> {
   /// The engine has the state at the last step; the object `state()` has it.
   bool is_on_engine_ = false, is_here_ = true;
   bool forces_are_of_other_velocities_ = false;
-  double last_dt_ = 0;  ///< length of the last step, also if it is queued [s]
+  double boundary_work_ = 0;  ///< until the engine got the state [J]
+  double last_dt_ = 0;        ///< length of the last step, also if it is queued [s]
   LeapfrogStep make_step_ = [this](double) { return guarded([this] { return step(); }); };
 };
 

@@ -114,6 +114,9 @@ template <class Space>
 std::unique_ptr<Run> make_explicit_run(Model<Space>& model, const ExplicitOptions& options,
                                        ObserverOf<Space> observer) {
   if constexpr (std::is_same_v<Space, Spatial>) {
+    if (options.backend != Backend::cpu && options.supply)
+      throw InputError("supply: backend: " + std::string(name_of(options.backend)) +
+                       " steps a lattice that stays as it is; backend: cpu lets ice join");
     if (options.backend != Backend::cpu)
       return make_device_run(model, options, std::move(observer));
   }

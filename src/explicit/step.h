@@ -101,9 +101,9 @@ class ExplicitStep {
   double boundary_work() const { return stepper_.boundary_work(); }
   double last_dt() const { return work_.last_dt(); }
   /// Takes note of steps that were made elsewhere, whose works are in the ledger.
-  /// \param work  by boundaries in these steps [J] \param dt  length of the last step [s]
+  /// \param work  by boundaries since the start [J] \param dt  length of the last step [s]
   void take_over(double work, double dt) {
-    stepper_.set_boundary_work(stepper_.boundary_work() + work);
+    stepper_.set_boundary_work(work);
     work_.set_last_dt(dt);
   }
   /// Saves or loads what the next step needs beside the state and the works. Collective.

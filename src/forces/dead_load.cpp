@@ -39,7 +39,7 @@ class DeadLoad final : public Force<Space>,
 
   std::string_view name() const override { return "load"; }
   Roles<Space> roles() override {
-    return {.tangent = this, .work = this, .time = this, .device = this};
+    return {.tangent = this, .work = this, .time = this, .device = linear_ ? nullptr : this};
   }
 
   void describe(DeviceModel& model) const override {

@@ -664,6 +664,7 @@ void DynamicRun<Space>::take_remarks() {
 /// Collective: all ranks get the same answer.
 template <class Space>
 bool DynamicRun<Space>::within_limits() {
+  finish_steps();
   const double all = largest_over_ranks(largest_, model_.part().comm);
   if (std::sqrt(all) <= options_.velocity_limit) return true;
   why_ = (std::isfinite(all) ? "a velocity of " + text(std::sqrt(all)) + " m/s"

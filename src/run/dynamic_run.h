@@ -122,6 +122,8 @@ class DynamicRun : public Run {
   /// Brings the state, the works and the integrator's history to where they are read, for
   /// integrators that keep them elsewhere.
   virtual void bring_state() {}
+  /// Makes steps known that have been counted and not made yet.
+  virtual void finish_steps() {}
   /// Whether a state at a pause is all that later steps need: then runs can go back to it.
   virtual bool can_go_back() const { return false; }
   /// Evaluates the forces at the start, with the velocities there, as the run's first step wants

@@ -56,7 +56,8 @@ class Run {
  protected:
   static std::unique_ptr<const RunState> refuse_to_go_back() {
     throw InputError(
-        "save: only runs with integrator: explicit by leapfrog can go back to a state");
+        "save: only runs with integrator: explicit by leapfrog and backend: cpu can go back to a "
+        "state");
   }
 };
 

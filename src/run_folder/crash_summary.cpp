@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -74,11 +75,11 @@ CrashSummary::CrashSummary(const std::string& dir, const std::string& reserved,
 
 bool CrashSummary::write(const char* why, double time, long long step) const noexcept {
   std::array<char, 4096> head{};
-  const int length =
-      std::snprintf(head.data(), head.size(),
-                    "{\n  \"status\": \"failed\",\n  \"message\": \"%s\",\n  \"time\": %.17g,\n"
-                    "  \"steps\": %lld,\n  \"ended\": \"%s\",\n  ",
-                    escaped(why).data(), time, step, now(utc_offset_).data());
+  const int length = std::snprintf(
+      head.data(), head.size(),
+      "{\n  \"status\": \"failed\",\n  \"message\": \"%s\",\n  \"time\": %.17g,\n"
+      "  \"steps\": %lld,\n  \"ended\": \"%s\",\n  ",
+      escaped(why).data(), std::isfinite(time) ? time : 0.0, step, now(utc_offset_).data());
   const int file = ::open(reserved_.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) return false;
   const std::string_view front(head.data(), static_cast<std::size_t>(length));

@@ -7,8 +7,8 @@
 namespace floe {
 
 /// Writes the summary with the status failed into the room that the run's folder reserves. The
-/// crash may have been in the allocator, whose lock it then holds, so write() makes system calls
-/// only, as a signal handler may (signal-safety(7)).
+/// crash may have been in the allocator, whose lock it then holds, so write() allocates nothing
+/// and takes no lock.
 class CrashSummary {
  public:
   /// \param dir       folder of the run

@@ -254,7 +254,9 @@ void RunFolder::begin(const std::string& run) {
   on_root(comm_, [&] { begin_here(run); });
   begun_ = true;
   broadcast(run_, comm_);
-  crash_.emplace(dir_, reserve, known_facts(started_, comm_).dump(2) + "\n");
+  crash_.emplace(
+      dir_, reserve,
+      known_facts(started_, comm_).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void RunFolder::begin_here(const std::string& run) {

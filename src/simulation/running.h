@@ -72,7 +72,8 @@ struct Setting {
 
 /// Whether a run of the scene may go back to a saved state.
 inline bool can_go_back(const Scene& scene) {
-  return scene.integrator == Integrator::explicit_ && !scene.check_only;
+  return scene.integrator == Integrator::explicit_ && scene.backend == Backend::cpu &&
+         !scene.check_only;
 }
 
 /// Whether a program moves or loads an obstacle.

@@ -182,6 +182,9 @@ class Applied(PythonTest):
         out = self.python("""
             cone = floe.Scene("s.yaml", time_end=0.1)
             leg = floe.Scene("leg.yaml", output_dir="leg", time_end=0.1)
+            class Nothing(floe.Force):
+                def add(self, bodies):
+                    pass
             def refused(work):
                 try:
                     work()
@@ -201,7 +204,16 @@ class Applied(PythonTest):
             refused(lambda: three["cone"].apply([0, 0, 0]))
             refused(lambda: floe.Simulation(floe.Scene({
                 "forces": ["beam"], "sheet": {"length": 6}, "time": {"end": 1}}),
-                forces=[floe.Force()]))
+                forces=[Nothing()]))
+            refused(lambda: sim["cone"].prescribe(([8, 0, -2], [0, 0, 0, 0])))
+            refused(lambda: sim["cone"].prescribe(([8, 0, -2], [1, 0, 0, float("nan")])))
+            refused(lambda: sim.step_to(float("nan")))
+            refused(lambda: sim.run(every=0))
+            refused(lambda: sim.restore(None))
+            refused(lambda: floe.Simulation(leg, coupled="cone"))
+            refused(lambda: floe.Simulation(leg, forces=[floe.Force()]))
+            Nothing.stiffness = -1
+            refused(lambda: floe.Simulation(leg, forces=[Nothing()]))
             try:
                 three["leg"]
             except KeyError as error:
@@ -217,9 +229,16 @@ class Applied(PythonTest):
                 "prescribe: until 0.010000 must be > 0.05",
                 "prescribe: obstacle 'cone' has a mass: forces move it (apply)",
                 "coupled: obstacle 'cone' is not coupled", "a program moves obstacles and gives",
-                "\"no obstacle 'leg' (cone)\"", "[0, 0] must be 3 finite numbers")):
+                "prescribe: orientation: [0.0, 0.0, 0.0, 0.0] is no rotation",
+                "orientation: [1, 0, 0, nan] must be 4 finite numbers",
+                "time: nan must be a number [s]", "every: 0 must be > 0 [s]",
+                "restore: None is no state of save()",
+                "coupled: 'cone' must be a list of names of obstacles",
+                "forces: <floe.force.Force object",
+                "forces: Nothing: stiffness: -1 must be a finite number >= 0",
+                "\"no obstacle 'leg' (cone)\"", "position: [0, 0] must be 3 finite numbers")):
             self.assertTrue(line.startswith(expected), f"{line}\nis not\n{expected}")
-        self.assertEqual(len(out), 8)
+        self.assertEqual(len(out), 16)
 
 
     def test_after_ice_has_joined(self):

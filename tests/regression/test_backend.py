@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """backend: the device's text in loops on the processor makes the runs of the processor; what is
 not there yet is refused by name."""
+import os
 import unittest
 
 import numpy as np
@@ -29,11 +30,23 @@ FLOATING = HANGING.replace("gravity]", "gravity, buoyancy, drag]") + """water:
   drag_linear: 50
   current: [0.3, 0, 0]
 """
+SUPPLIED = """forces: [beam, gravity, buoyancy, drag]
+integrator: explicit
+sheet: {length: 8, width: 5, thickness: 0.5, element_size: 1, iterations: 5}
+beam: {damping_ratio: 0.1}
+water: {drag_linear: 50}
+boundary: {names: [edge], edge: {set: left, fix: x y z rx ry rz, velocity: [1, 0, 0]}}
+supply: {strip: 8, length: 32}
+time: {end: 0.1}
+"""
 BREAKING = HANGING.replace("[beam, gravity]", "[beam, gravity, fracture]") + """fracture:
   tensile_strength: 1e6
   shear_strength: 1e6
   energy: 15
 """
+# tools/check_gpu, on a machine with a device.
+HAS_DEVICE = os.environ.get("FLOE_HAS_DEVICE") == "1"
+DEVICES = ("loop", "cuda") if HAS_DEVICE else ("loop",)
 
 
 class Backend(RunningTest):
@@ -58,15 +71,18 @@ class Backend(RunningTest):
         for scene, works in ((HANGING, ("damping", "external", "boundary")),
                              (FLOATING, ("damping", "external", "boundary", "drag"))):
             self.write(scene)
-            for backend in ("cpu", "loop"):
+            for backend in ("cpu", *DEVICES):
                 self.floe("-backend", backend, "-output_dir", backend, "-output_overwrite")
-            (names, cpu), (others, loop) = self.history("cpu"), self.history("loop")
-            self.assertEqual(names, others)
+            names, cpu = self.history("cpu")
             self.assertEqual(cpu.shape, (21, len(names)))
-            self.alike(names, cpu, loop)
-            for name in works:
-                self.assertGreater(np.abs(loop[:, names.index(f"energy_{name}")]).max(), 0, name)
-            self.assertIn(", steps by loop", (self.folder / "loop/floe.log").read_text())
+            for backend in DEVICES:
+                others, device = self.history(backend)
+                self.assertEqual(names, others)
+                self.alike(names, cpu, device)
+                for name in works:
+                    self.assertGreater(np.abs(device[:, names.index(f"energy_{name}")]).max(), 0)
+                self.assertIn(f", steps by {backend}",
+                              (self.folder / backend / "floe.log").read_text())
 
     def test_steps_in_space(self):
         self.write(PULL)
@@ -78,9 +94,10 @@ class Backend(RunningTest):
         """Stopped on the way, a run ends in the bits of one in one piece; a run of the processor
         goes on by the device's text, and back."""
         self.write(FLOATING)
-        for backend in ("cpu", "loop"):
+        for backend in ("cpu", *DEVICES):
             self.floe("-backend", backend, "-output_dir", backend)
-        for first, then in (("loop", "loop"), ("cpu", "loop"), ("loop", "cpu")):
+        for first, then in (pair for device in DEVICES
+                            for pair in ((device, device), ("cpu", device), (device, "cpu"))):
             dir = f"{first}_{then}"
             with self.subTest(dir):
                 self.floe("-backend", first, "-output_dir", dir, "-checkpoint_every", "1000",
@@ -100,10 +117,19 @@ class Backend(RunningTest):
         self.assertIn("(limit: velocity 3 m/s)", said)
         self.assertEqual(self.summary()["status"], "failed")
 
+    def test_a_state_beyond_the_limits_gets_no_checkpoint(self):
+        """Also where it stops between two looks at the speeds."""
+        self.write(HANGING.replace("-1e4], ramp: 0.05", "-1e8]") + "limit: {velocity: 3}\n")
+        said = self.floe("-backend", "loop", "-ts_max_steps", "20", "-checkpoint_every", "1000",
+                         code=1)
+        self.assertIn("(limit: velocity 3 m/s)", said)
+        self.assertFalse((self.folder / "out/scene/checkpoint.h5").exists())
+
     def test_what_is_refused(self):
         for scene, words, said in (
                 (BREAKING, (), "backend: loop has no beams that break yet"),
-                (HANGING, ("-backend", "cuda"), "backend: cuda: "),
+                (SUPPLIED, (), "supply: backend: loop steps a lattice that stays as it is"),
+                *(() if HAS_DEVICE else ((HANGING, ("-backend", "cuda"), "backend: cuda: "),)),
                 (HANGING, ("-backend", "loop", "-integrator", "implicit"),
                  "backend: makes explicit steps"),
                 (HANGING, ("-backend", "loop", "-ts_type", "rk"),

@@ -4,6 +4,8 @@ the half-infinite one loaded at its edge, a square block in simple shear; and th
 bending run."""
 import numpy as np
 
+from floe.errors import InputError
+
 
 def kei(x):
     """Kelvin's function kei of order 0, for x >= 0 of any shape.
@@ -84,6 +86,8 @@ def plate(options):
     rigidity = value["ice_young"] * value["sheet_thickness"]**3 / (12 * (1
                                                                          - value["ice_poisson"]**2))
     foundation = value["water_density"] * value["gravity"]
+    if "load_names" not in options:
+        raise InputError("not the output of a bending scene: it has no load")
     loads = [options[f"load_{name.strip()}_force"] for name in options["load_names"].split(",")]
     force = -sum(float(load.replace(",", " ").split()[2]) for load in loads)
     length = (rigidity / foundation)**0.25
