@@ -6,6 +6,7 @@ import unittest
 
 import numpy as np
 
+from interposed import library
 from running import RunningTest
 from small_scenes import PULL
 
@@ -118,10 +119,13 @@ class Backend(RunningTest):
         self.assertEqual(self.summary()["status"], "failed")
 
     def test_a_state_beyond_the_limits_gets_no_checkpoint(self):
-        """Also where it stops between two looks at the speeds."""
-        self.write(HANGING.replace("-1e4], ramp: 0.05", "-1e8]") + "limit: {velocity: 3}\n")
-        said = self.floe("-backend", "loop", "-ts_max_steps", "20", "-checkpoint_every", "1000",
-                         code=1)
+        """Also where a run is asked to stop between two looks at the speeds, after a blow that
+        comes with its second sample."""
+        self.write(HANGING.replace("force: [0, 0, -1e4], ramp: 0.05", "table: blow.csv")
+                   + "limit: {velocity: 3}\n")
+        (self.folder / "blow.csv").write_text("time,fz\n0,0\n0.00495,0\n0.005,-1e9\n1,-1e9\n")
+        said = self.floe("-backend", "loop", code=1,
+                         environment={**library(self.folder), "TEST_TERM_AT_ROW": "3"})
         self.assertIn("(limit: velocity 3 m/s)", said)
         self.assertFalse((self.folder / "out/scene/checkpoint.h5").exists())
 
