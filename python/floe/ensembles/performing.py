@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from floe.ensembles import specs
 from floe.ensembles.runs import Runner, locked, processors
-from floe.errors import InputError
+from floe.errors import InputError, path_of
 
 if TYPE_CHECKING:
     from floe.run import Ensemble
@@ -119,7 +119,9 @@ def run_ensemble(spec: str | os.PathLike[str] | Mapping[str, Any],
     if isinstance(spec, Mapping):
         read = specs.checked(plain(spec), "ensemble", "spec", Path())
     else:
-        read = specs.read(spec)
+        read = specs.read(path_of("spec", spec))
+    if folder is not None:
+        folder = path_of("folder", folder)
     if jobs is not None and not (isinstance(jobs, int) and jobs >= 1):
         raise InputError(f"jobs: {jobs!r} must be a whole number of at least 1")
     if isinstance(only, str):
