@@ -93,6 +93,14 @@ struct DeviceModel {
   bool damped = false;          ///< beams have dashpots
   std::vector<double> weights;  ///< per body: along -z [N]; empty: none
   std::vector<Load> loads;
+  /// Springs and dashpots on a body (support_law.h).
+  struct Support {
+    std::int32_t body;
+    Point3 arm;  ///< from the centroid to their point, at rest [m]
+    std::array<double, 36> stiffness, damping;
+  };
+  std::vector<Support> supports;
+  std::size_t support_work = 0;  ///< index of their dashpots' work among those of all forces
   std::optional<DeviceWater> water;
   std::optional<DeviceBreaking> breaking;
 
