@@ -50,7 +50,7 @@ using TermWrenches = TermWrenchesOf<double>;
 /// Whether the mean elastic depth (V - V_p)/|S| of a contact exceeds a quarter of the least width
 /// of the thinner one of A and B [m].
 template <class T>
-MaskOf<T> is_deep(const T& thinner, const ContactTrialOf<T>& contact) {
+constexpr MaskOf<T> is_deep(const T& thinner, const ContactTrialOf<T>& contact) {
   constexpr double holds = 0.25;
   return contact.volume - contact.memory.plastic > holds * thinner * contact.area;
 }

@@ -69,8 +69,9 @@ struct Acceleration {
 /// \param centre  the point, from the centroid of A [m]
 /// \param apart   x_A - x_B [m]
 template <class T>
-RelativeMotionOf<T> relative_motion(const BodyVelocityOf<T>& a, const BodyVelocityOf<T>& b,
-                                    const Vec3<T>& centre, const Vec3<T>& apart) {
+constexpr RelativeMotionOf<T> relative_motion(const BodyVelocityOf<T>& a,
+                                              const BodyVelocityOf<T>& b, const Vec3<T>& centre,
+                                              const Vec3<T>& apart) {
   return {.velocity =
               (a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, centre + apart)),
           .spin = a.spin - b.spin};

@@ -15,7 +15,7 @@ struct OverlapLaw {
   explicit OverlapLaw(const ContactOptions& options) : constants(options) {}
 
   template <class T>
-  ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
+  constexpr ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
     return {
         .rate = state.pair.stiffness, .couple = {}, .stiffness = state.pair.stiffness * state.area};
   }

@@ -19,7 +19,7 @@ struct PotentialLaw {
   explicit PotentialLaw(const ContactOptions& options) : constants(options) {}
 
   template <class T>
-  ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
+  constexpr ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
     const T stiffness = state.pair.stiffness, reference = state.pair.area;
     return {.rate = stiffness * state.area / reference,
             .couple = (stiffness / reference) * state.overlap.moment,

@@ -31,7 +31,7 @@ inline std::pair<Vec3<double>, Vec3<double>> basis_across(const Vec3<double>& n)
 /// edge, here by the rule of Gauss-Legendre with four points: 6e-5 too large for a square about its
 /// centre, at most 1.5 % for narrow rectangles.
 template <class T>
-T reach_of_edge(const Across<T>& a, const Across<T>& b) {
+constexpr T reach_of_edge(const Across<T>& a, const Across<T>& b) {
   using std::sqrt;
   constexpr std::array<double, 4> at{0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
                                      0.9305681557970263};
