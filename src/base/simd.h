@@ -81,16 +81,6 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
-/// Returns x where `of` is not negative, else 0.
-inline Lanes where_not_negative(const Lanes& of, Lanes x) {
-  where(of < 0.0, x) = 0.0;
-  return x;
-}
-template <class T>
-double where_not_negative(const T& of, double x) {
-  return of < 0.0 ? 0.0 : x;
-}
-
 /// Returns a where the mask is true, else b.
 inline Lanes chosen(const Lanes::mask_type& mask, const Lanes& a, Lanes b) {
   where(mask, b) = a;

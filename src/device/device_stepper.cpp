@@ -12,9 +12,8 @@ namespace {
 
 /// What the engines have, for messages.
 constexpr auto they_have =
-    "it has beams that do not break, gravity, loads, boundaries, and buoyancy and drag of bodies "
-    "in "
-    "water without waves";
+    "it has beams, gravity, loads, boundaries, and buoyancy and drag of bodies in water without "
+    "waves";
 
 /// Does work of an engine, whose errors end the run.
 template <class Work>
@@ -126,7 +125,6 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   };
   if (size(part.comm) > 1) refuse("runs on several ranks");
   if (!model.added_inertia().empty()) refuse("added mass");
-  if (model.fracture() != nullptr) refuse("beams that break");
   DescribedModel described;
   DeviceModel& numbers = described.numbers;
   for (const auto& force : model.forces()) {
@@ -154,6 +152,8 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   add_held(model, place, lattice);
   add_loads(numbers, place, lattice);
   if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
+  if (const auto& b = numbers.breaking)
+    lattice.breaking = Breaking{b->general, b->crushes, b->beams, b->limits};
   return described;
 }
 
@@ -173,6 +173,11 @@ void DeviceStepper::put(const State<Spatial>& state, std::span<const double> wor
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
   of_engine([&] { engine_->put(0, room_); });
+  if (const auto& breaking = described_.numbers.breaking) {
+    Damage damage;
+    breaking->kept->read(damage.cracks, damage.viscous);
+    of_engine([&] { engine_->put_damage(0, damage); });
+  }
   const KeptParts* kept = kept_parts();
   if (kept == nullptr) return;
   kept->read(kept_, since_);
@@ -190,6 +195,10 @@ void DeviceStepper::get(State<Spatial>& state) {
     std::copy_n(&room_[d * n], n, state.record(static_cast<std::size_t>(described_.order[d])));
   state.fastest = fastest_;
   state.fastest_spin = fastest_spin_;
+  if (const auto& breaking = described_.numbers.breaking) {
+    const Damage damage = of_engine([&] { return engine_->get_damage(0); });
+    breaking->kept->write(damage.cracks, damage.viscous, last_dt_);
+  }
   KeptParts* kept = kept_parts();
   if (kept == nullptr) return;
   std::vector<double> ordered(described_.order.size() * of_kept);
@@ -208,6 +217,8 @@ void DeviceStepper::queue(double time, double dt, double before) {
     throw std::logic_error("steps of one queue are equal");
   }
   ++steps_.count;
+  last_dt_ = dt;
+  if (described_.numbers.breaking) steps_.times.push_back(time);
   for (const double at : {time, time + dt}) {
     for (const PlacedBoundary& placed : model_.boundaries()) {
       const std::array<double, 6> values = placed.boundary.value(at);

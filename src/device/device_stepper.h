@@ -64,6 +64,7 @@ class DeviceStepper {
   std::vector<double> room_, kept_, works_;
   std::int64_t since_ = 0;  ///< steps since all submerged parts were found
   double fastest_ = 0, fastest_spin_ = 0;
+  double last_dt_ = 0;  ///< of the last step that was queued [s]
 };
 
 }  // namespace floe::device
