@@ -7,6 +7,7 @@
 
 #include "beams/kernel.h"
 #include "device/engine.h"
+#include "device/halts.h"
 #include "device/launch.h"
 #include "device/soa.h"
 #include "fracture_laws/law.h"
@@ -18,6 +19,7 @@ namespace {  // of each back end its own, as in launch.h
 struct BreakingOfRun {
   std::int32_t general;  ///< Criterion::general
   std::int32_t crushes;
+  std::int32_t halts;  ///< after a step in which a beam has broken
   std::int64_t times;  ///< where the times of its queued steps begin
 };
 
@@ -30,6 +32,7 @@ struct BreakingMemory {
   Soa cracks;            ///< as Damage::cracks
   SoaOf<float> viscous;  ///< forces of dashpots at the start of the last step; null: none
   std::uint64_t* grown;  ///< per run: not 0 if the damage of a beam has grown
+  Halts halts;
 };
 
 /// A breakable beam in one step.
@@ -89,11 +92,12 @@ struct BreakableBeam {
       const double before = now.damage;
       const BeamStress<double> strain{strains.delta, strains.gamma_y, strains.gamma_z, strains.psi};
       DamageEnergy energy = damage_energy(force, strain);
-      Crack next =
-          grown(known ? &now : nullptr, std::sqrt(s2), crushing, false, energy,
-                number(Breaking::area), number(Breaking::toughness), number(Breaking::toughness + 1));
+      Crack next = grown(known ? &now : nullptr, std::sqrt(s2), crushing, false, energy,
+                         number(Breaking::area), number(Breaking::toughness),
+                         number(Breaking::toughness + 1));
       const DamageEnergy path = energy_over_step(next, force, strain, rates(), dt);
       if (next.broken()) {
+        if (run.halts != 0) memory.halts.halt(of_run, step, Made::beam_broke);
         const Vec3<double> place = middle();
         memory.cracks.at(Damage::time, slot) = memory.times[run.times + step];
         memory.cracks.at(Damage::place, slot) = place.x;

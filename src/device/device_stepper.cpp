@@ -15,6 +15,18 @@ constexpr auto they_have =
     "it has beams, gravity, loads, boundaries, and buoyancy and drag of bodies in water without "
     "waves";
 
+/// Returns what a user calls a force that a back end does not have.
+std::string in_words(std::string_view force, const Model<Spatial>& model) {
+  if (force == "support") return "structures";
+  if (force == "line") return "mooring lines";
+  if (force == "far_edge") return "supply: pressure";
+  if (force == "program" || force == "applied") return "forces of programs";
+  if (force == "beam")
+    return model.kinematics() == Kinematics::linear ? "linear beams"
+                                                    : "fracture: propagation: energy";
+  return "force '" + std::string(force) + "' with its options";
+}
+
 /// Does work of an engine, whose errors end the run.
 template <class Work>
 auto of_engine(Work&& work) {
@@ -129,8 +141,7 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   DeviceModel& numbers = described.numbers;
   for (const auto& force : model.forces()) {
     const Roles<Spatial> roles = force->roles();
-    if (roles.device == nullptr)
-      refuse("force '" + std::string(force->name()) + "' with its options");
+    if (roles.device == nullptr) refuse(in_words(force->name(), model));
     roles.device->describe(numbers);
     if (roles.work != nullptr) numbers.next_work += roles.work->works();
   }
@@ -239,12 +250,32 @@ void DeviceStepper::queue(double time, double dt, double before) {
 
 double DeviceStepper::flush() {
   if (steps_.count == 0) return 0;
-  of_engine([&] { engine_->step({&steps_, 1}); });
-  steps_.count = 0;
+  Made made;
+  do {
+    made = of_engine([&] {
+      engine_->step({&steps_, 1});
+      return engine_->made(0);
+    });
+    drop(made.steps);
+  } while (steps_.count > 0);
   const Findings found = of_engine([&] { return engine_->findings(0); });
   fastest_ = std::sqrt(found.speed2);
   fastest_spin_ = std::sqrt(found.spin2);
   return found.speed2;
+}
+
+/// Takes the first steps off the queue: they are made.
+void DeviceStepper::drop(int count) {
+  if (count <= 0) throw std::logic_error("an engine makes at least the step at which a run halts");
+  const auto of = [&](std::vector<double>& table) {
+    const std::size_t each = table.size() / static_cast<std::size_t>(steps_.count);
+    table.erase(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(each) * count);
+  };
+  for (auto* table : {&steps_.motions, &steps_.wrenches, &steps_.water, &steps_.times}) of(*table);
+  if (const auto& water = described_.numbers.water)
+    steps_.since = static_cast<int>((steps_.since + count) % water->pace);
+  steps_.before = steps_.dt;
+  steps_.count -= count;
 }
 
 double DeviceStepper::take_works(std::span<double> works) {

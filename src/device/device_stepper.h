@@ -57,6 +57,8 @@ class DeviceStepper {
     return water ? water->kept : nullptr;
   }
 
+  void drop(int count);
+
   const Model<Spatial>& model_;
   DescribedModel described_;
   std::unique_ptr<Engine> engine_;

@@ -95,6 +95,7 @@ struct Lattice {
 
   std::optional<Water> water;
   std::optional<Breaking> breaking;
+  bool halts_at_breaks = false;  ///< a run halts at a step in which a beam breaks
 };
 
 /// Steps to be made of one run.
@@ -109,6 +110,14 @@ struct Steps {
   int since = 0;                   ///< steps since all submerged parts were found, at a pace
 };
 
+/// The steps that a run has made. Where it halted at one, those after it stood still, so that they
+/// can be given again.
+struct Made {
+  /// Reasons to halt, in bits.
+  enum Why : std::uint32_t { beam_broke = 1 };
+  int steps = 0;
+  std::uint32_t why = 0;  ///< 0: it did not halt
+};
 /// What the steps since the last question have done, of one run.
 struct Findings {
   double speed2 = 0, spin2 = 0;  ///< largest squares; perhaps not finite [m^2/s^2, rad^2/s^2]
@@ -144,6 +153,8 @@ class Engine {
   virtual Damage get_damage(std::size_t run) = 0;
   /// Makes steps of each run, which may differ in number; returns perhaps before they are made.
   virtual void step(std::span<const Steps> steps) = 0;
+  /// Returns what the last step() has made of a run's steps.
+  virtual Made made(std::size_t run) = 0;
   virtual Findings findings(std::size_t run) = 0;
   virtual Works works(std::size_t run) = 0;
   /// Lets the works of a run begin anew.

@@ -68,6 +68,9 @@ class TileEngine final : public Engine {
     speed2_ = Array<std::uint64_t>(lattices_.size());
     spin2_ = Array<std::uint64_t>(lattices_.size());
     runs_ = Array<RunOfTiles>(lattices_.size());
+    last_ = Array<std::int32_t>(lattices_.size());
+    last_.put(std::vector<std::int32_t>(lattices_.size(), -1));
+    why_ = Array<std::uint32_t>(lattices_.size());
   }
 
   void put(std::size_t run, std::span<const double> records) override {
@@ -111,6 +114,7 @@ class TileEngine final : public Engine {
   void step(std::span<const Steps> steps) override {
     int most = 0;
     std::vector<RunOfTiles> runs;
+    std::vector<std::int32_t> last;
     std::vector<double> motions, wrenches, water_motions;
     std::vector<WaterOfRun> waters;
     std::vector<BreakingOfRun> breaking;
@@ -118,7 +122,8 @@ class TileEngine final : public Engine {
     for (std::size_t r = 0; r < lattices_.size(); ++r) {
       const Steps& of = steps[r];
       most = std::max(most, of.count);
-      runs.push_back({of.count, of.dt, of.before, static_cast<std::int64_t>(motions.size()),
+      last.push_back(of.count - 1);
+      runs.push_back({of.dt, of.before, static_cast<std::int64_t>(motions.size()),
                       lattices_[r].motions, static_cast<std::int64_t>(wrenches.size()),
                       lattices_[r].loads});
       motions.insert(motions.end(), of.motions.begin(), of.motions.end());
@@ -126,6 +131,7 @@ class TileEngine final : public Engine {
       if constexpr (breakable) {
         const Breaking none, &b = lattices_[r].breaking ? *lattices_[r].breaking : none;
         breaking.push_back({b.general ? 1 : 0, b.crushes ? 1 : 0,
+                            lattices_[r].halts_at_breaks ? 1 : 0,
                             static_cast<std::int64_t>(times.size())});
         times.insert(times.end(), of.times.begin(), of.times.end());
       }
@@ -138,8 +144,10 @@ class TileEngine final : public Engine {
       if (!lattices_[r].water)
         water_motions.resize(water_motions.size() + 4 * static_cast<std::size_t>(of.count));
     }
-    if (most == 0 || tiles_.run.empty()) return;
     queue_.wait();
+    last_.put(last);
+    why_.put(std::vector<std::uint32_t>(lattices_.size()));
+    if (most == 0 || tiles_.run.empty()) return;
     bool grown = give(motions, motions_);
     grown = give(wrenches, wrenches_) || grown;
     grown = give(water_motions, water_motions_) || grown;
@@ -164,6 +172,15 @@ class TileEngine final : public Engine {
       }
     });
     now_ = (now_ + static_cast<std::size_t>(most)) % 2;
+  }
+
+  Made made(std::size_t run) override {
+    queue_.wait();
+    std::int32_t last = 0;
+    std::uint32_t why = 0;
+    last_.get({&last, 1}, run);
+    why_.get({&why, 1}, run);
+    return {last + 1, why};
   }
 
   Findings findings(std::size_t run) override {
@@ -291,7 +308,8 @@ class TileEngine final : public Engine {
     const std::size_t first = first_slot_of_run_[run];
     std::vector<T> row(first_slot_of_run_[run + 1] - first);
     for (std::size_t n = 0; n < count; ++n) {
-      for_slots(run, [&](std::size_t s, std::size_t m) { row[s - first] = numbers[m * count + n]; });
+      for_slots(run,
+                [&](std::size_t s, std::size_t m) { row[s - first] = numbers[m * count + n]; });
       memory.put(std::span<const T>(row), n * tiles_.beam.size() + first);
     }
   }
@@ -468,6 +486,7 @@ class TileEngine final : public Engine {
             load_works_.data(),
             wrenches_.data(),
             runs_.data(),
+            {last_.data(), why_.data()},
             speed2_.data(),
             spin2_.data(),
             {breaking_.data(),
@@ -476,7 +495,8 @@ class TileEngine final : public Engine {
              {breakable_.data(), slots},
              {cracks_.data(), slots},
              {or_null(viscous_), slots},
-             grown_.data()}};
+             grown_.data(),
+             {last_.data(), why_.data()}}};
   }
 
   WaterMemory all_of_water() {
@@ -517,6 +537,8 @@ class TileEngine final : public Engine {
   Array<float> viscous_;
   Array<std::uint64_t> grown_;
   Array<RunOfTiles> runs_;
+  Array<std::int32_t> last_;
+  Array<std::uint32_t> why_;
   bool has_water_ = false;
   Array<WaterOfRun> waters_;
   Array<double> water_motions_, prisms_, wholes_, extents_, most2_, area_per_volume_, vertices_,
@@ -539,10 +561,11 @@ std::unique_ptr<Engine> make_engine_of(std::vector<Lattice> lattices, std::int32
 }
 std::unique_ptr<Engine> make_engine(std::vector<Lattice> lattices, std::int32_t tile) {
   const auto any = [&](auto has) { return std::any_of(lattices.begin(), lattices.end(), has); };
-  const bool damped = any([](const Lattice& lattice) { return lattice.damped; }),
-             breaks = any([](const Lattice& lattice) { return lattice.breaking.has_value(); });
-  const auto make = damped ? breaks ? make_engine_of<true, true> : make_engine_of<true, false>
-                           : breaks ? make_engine_of<false, true> : make_engine_of<false, false>;
+  const bool damped = any([](const Lattice&lattice) { return lattice.damped; }),
+             breaks = any([](const Lattice&lattice) { return lattice.breaking.has_value(); });
+  const auto make = damped   ? breaks ? make_engine_of<true, true> : make_engine_of<true, false>
+                      : breaks ? make_engine_of<false, true>
+                             : make_engine_of<false, false>;
   return make(std::move(lattices), tile);
 }
 

@@ -8,6 +8,7 @@
 
 #include "beams/kernel.h"
 #include "device/breaking.h"
+#include "device/halts.h"
 #include "device/launch.h"
 #include "device/soa.h"
 #include "leapfrog/held_body.h"
@@ -20,7 +21,6 @@ enum Record : int { u_at = 0, q_at = 3, v_at = 7, w_at = 10, momentum_at = 13, o
 
 /// One run among those that are stepped together.
 struct RunOfTiles {
-  int steps;             ///< of this launch; fewer than others make: its bodies then stay
   double dt, before;     ///< as Steps
   std::int64_t motions;  ///< where its motions begin in the table, of the first step
   std::int32_t motion_count;
@@ -59,6 +59,7 @@ struct Memory {
   const double* wrenches;
   // Runs.
   const RunOfTiles* runs;
+  Halts halts;
   std::uint64_t *speed2, *spin2;  ///< largest squares as bits, which are in the same order
   BreakingMemory breaking;
 };
@@ -110,7 +111,7 @@ struct TileStep {
   /// \param shared  room of a tile, number by number
   FLOE_KERNEL void beam(std::int32_t tile, std::int32_t k, double* shared) const {
     const RunOfTiles& run = memory.runs[memory.run[tile]];
-    if (step >= run.steps) return;
+    if (memory.halts.stands(memory.run[tile], step)) return;
     const std::int64_t slot = memory.first_slot[tile] + k;
     const Soa &c = memory.constants, &r = memory.records[step % 2];
     const BeamConstants<double, Frame> beam{FrameOf<Frame>::get(c, slot), c.at(first, slot),
@@ -153,8 +154,9 @@ struct TileStep {
     }
     if constexpr (damped) {
       const BeamStress<double> rate = rates();
-      const auto dashpot = [&](int d) { return (d == 0 ? left.axial : left.rest) *
-                                               c.at(first + 7 + d, slot); };
+      const auto dashpot = [&](int d) {
+        return (d == 0 ? left.axial : left.rest) * c.at(first + 7 + d, slot);
+      };
       const BeamStress<double> viscous{
           dashpot(0) * rate.n,
           dashpot(1) * rate.qy,
@@ -180,7 +182,7 @@ struct TileStep {
     const RunOfTiles& run = memory.runs[memory.run[tile]];
     const std::int64_t b = memory.first_body[tile] + k;
     const Soa &from = memory.records[step % 2], &to = memory.records[(step + 1) % 2];
-    if (step >= run.steps) {
+    if (memory.halts.stands(memory.run[tile], step)) {
       for (int n = 0; n < of_record; ++n) to.at(n, b) = from.at(n, b);
       return;
     }
@@ -189,8 +191,11 @@ struct TileStep {
                                  from.vector(v_at, b), from.vector(w_at, b),
                                  from.vector(momentum_at, b)};
     Vec3<double> force{0, 0, 0}, moment{0, 0, 0};
-    sum_beams(tile, b, shared, breakable ? 0.5 * before : before > 0 ? dt : 0.25 * dt, force,
-              moment);
+    sum_beams(tile, b, shared,
+              breakable    ? 0.5 * before
+              : before > 0 ? dt
+                           : 0.25 * dt,
+              force, moment);
     if (memory.weights != nullptr) force.z -= memory.weights[b];
     if (memory.water.numbers != nullptr) {
       force = force + memory.water.vector(0, b);

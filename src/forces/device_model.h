@@ -52,16 +52,15 @@ class KeptCracks {
   virtual void read(std::vector<double>& cracks, std::vector<float>& viscous) const = 0;
   /// \param cracks  empty: as they were
   /// \param dt      length of the last step [s]
-  virtual void write(std::span<const double> cracks, std::span<const float> viscous,
-                     double dt) = 0;
+  virtual void write(std::span<const double> cracks, std::span<const float> viscous, double dt) = 0;
 
  protected:
   ~KeptCracks() = default;
 };
 /// Beams that break, in the order of DeviceModel::beams.
 struct DeviceBreaking {
-  /// Of a beam: five strengths, area [m^2], G_f and G_s [J/m^2], the middle between its ends at rest
-  /// (3) [m], three further strengths of the general criterion (fracture_laws/law.h).
+  /// Of a beam: five strengths, area [m^2], G_f and G_s [J/m^2], the middle between its ends at
+  /// rest (3) [m], three further strengths of the general criterion (fracture_laws/law.h).
   std::vector<std::array<double, 14>> beams;
   std::vector<double> limits;  ///< twice the energy below which the strength does not matter [J]
   bool general = false;        ///< by the general criterion

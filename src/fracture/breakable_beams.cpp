@@ -285,27 +285,18 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   void read(std::vector<double>& cracks, std::vector<float>& viscous) const override {
     cracks.assign(crack_numbers * crack_of_.size(), 0.0);
     for (const Crack& c : cracks_) {
-      const std::array<double, crack_numbers> all{c.kappa,
-                                                  c.damage,
-                                                  c.ultimate,
-                                                  c.mode_mix,
-                                                  c.nominal,
-                                                  c.dissipated,
-                                                  c.at_tip ? 1.0 : 0.0,
-                                                  c.crushed ? 1.0 : 0.0,
-                                                  c.time,
-                                                  c.place[0],
-                                                  c.place[1],
-                                                  c.place[2]};
+      const std::array<double, crack_numbers> all{
+          c.kappa,   c.damage,     c.ultimate,           c.mode_mix,
+          c.nominal, c.dissipated, c.at_tip ? 1.0 : 0.0, c.crushed ? 1.0 : 0.0,
+          c.time,    c.place[0],   c.place[1],           c.place[2]};
       std::copy(all.begin(), all.end(),
                 cracks.begin() + static_cast<std::ptrdiff_t>(crack_numbers) * c.beam);
     }
     viscous.clear();
     if constexpr (damped) {
       for (std::size_t m = 0; m < crack_of_.size(); ++m)
-        for_viscous(static_cast<std::int32_t>(m), [&](const float& value) {
-          viscous.push_back(value);
-        });
+        for_viscous(static_cast<std::int32_t>(m),
+                    [&](const float& value) { viscous.push_back(value); });
     }
   }
   void write(std::span<const double> cracks, std::span<const float> viscous, double dt) override {
@@ -318,7 +309,16 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       if (!(v[0] > 0) || (known != nullptr && known->kappa == v[0] && known->damage == v[1]))
         continue;
       dissipated_ += v[5] - (known != nullptr ? known->dissipated : 0.0);
-      put({beam, v[0], v[1], v[2], v[3], v[4], v[5], v[6] != 0, v[8], {v[9], v[10], v[11]},
+      put({beam,
+           v[0],
+           v[1],
+           v[2],
+           v[3],
+           v[4],
+           v[5],
+           v[6] != 0,
+           v[8],
+           {v[9], v[10], v[11]},
            v[7] != 0});
     }
     if (std::exchange(packed_, false)) order_blocks();
@@ -624,8 +624,8 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     next.beam = m;
     DamageEnergy path = energy;
     if (options_.dynamic) {
-      path = energy_over_step(next, force, strain,
-                              rates(c, e, record(state, i), record(state, j)), dt_);
+      path = energy_over_step(next, force, strain, rates(c, e, record(state, i), record(state, j)),
+                              dt_);
     } else if (!breaks_at_once(known, crushing, at_tip)) {
       // A beam that jumps beyond s_u dissipates what is left of G A; the rest is released.
       const double most = next.brittle() ? s : std::min(s, next.ultimate);

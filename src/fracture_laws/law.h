@@ -132,7 +132,8 @@ struct DamageEnergy {
 };
 /// Bilinear: the forces of one state on the strains of another. With both of one state it is the
 /// energy of that state.
-constexpr DamageEnergy damage_energy(const BeamStress<double>& e, const BeamStress<double>& strain) {
+constexpr DamageEnergy damage_energy(const BeamStress<double>& e,
+                                     const BeamStress<double>& strain) {
   const double axial = 0.5 * e.n * strain.n;
   const bool tension = e.n > 0 && strain.n > 0, pressure = e.n < 0 && strain.n < 0;
   return {tension ? axial : 0.0, pressure ? axial : 0.0,
@@ -162,7 +163,7 @@ struct Crack {
 /// \param area        A [m^2]
 /// \param g, g_shear  G_f, G_s [J/m^2]
 constexpr void initiate(Crack& crack, const DamageEnergy& energy, double s, double area, double g,
-                     double g_shear) {
+                        double g_shear) {
   const double damaged = energy.damaged();
   crack.mode_mix = damaged > 0 ? energy.shear / damaged : 0;
   crack.nominal = area / ((1 - crack.mode_mix) / g + crack.mode_mix / g_shear);
@@ -227,9 +228,8 @@ constexpr Growth dissipating(Crack next, double before, bool crushing, const Dam
 constexpr DamageEnergy energy_over_step(const Crack& next, const BeamStress<double>& force,
                                         const BeamStress<double>& strain,
                                         const BeamStress<double>& rate, double dt) {
-  DamageEnergy path =
-      damage_energy(force, {strain.n - dt * rate.n, strain.qy - dt * rate.qy,
-                            strain.qz - dt * rate.qz, strain.c - dt * rate.c});
+  DamageEnergy path = damage_energy(force, {strain.n - dt * rate.n, strain.qy - dt * rate.qy,
+                                            strain.qz - dt * rate.qz, strain.c - dt * rate.c});
   if (next.crushed) path.crush();
   return path;
 }
