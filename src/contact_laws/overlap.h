@@ -13,6 +13,7 @@ struct OverlapLaw {
   SharedConstants constants;
 
   explicit OverlapLaw(const ContactOptions& options) : constants(options) {}
+  explicit constexpr OverlapLaw(const SharedConstants& shared) : constants(shared) {}
 
   template <class T>
   constexpr ElasticTermOf<T> term(const ContactStateOf<T>& state) const {

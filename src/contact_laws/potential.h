@@ -17,6 +17,7 @@ struct PotentialLaw {
   SharedConstants constants;
 
   explicit PotentialLaw(const ContactOptions& options) : constants(options) {}
+  explicit constexpr PotentialLaw(const SharedConstants& shared) : constants(shared) {}
 
   template <class T>
   constexpr ElasticTermOf<T> term(const ContactStateOf<T>& state) const {

@@ -15,6 +15,7 @@ struct SharedConstants {
   double damping_ratio = 0;    ///< zeta of the viscous term
   PlasticLimit plastic_limit;  ///< sigma_p
 
+  SharedConstants() = default;
   explicit SharedConstants(const ContactOptions& options)
       : damping_ratio(options.damping_ratio), plastic_limit(options.plastic_limit) {}
 };

@@ -52,4 +52,12 @@ constexpr void find_trial(const Law& law, const PairConstantsOf<T>& pair,
   trial = chosen_of<ContactTrialOf>(enclosed, none, trial);
 }
 
+/// Whether the mean elastic depth (V - V_p)/|S| of a contact exceeds a quarter of the least width
+/// of the thinner one of A and B [m].
+template <class T>
+constexpr MaskOf<T> is_deep(const T& thinner, const ContactTrialOf<T>& contact) {
+  constexpr double holds = 0.25;
+  return contact.volume - contact.memory.plastic > holds * thinner * contact.area;
+}
+
 }  // namespace floe

@@ -65,7 +65,9 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     forces_are_of_other_velocities_ = true;
   }
   bool step() {
-    const bool looks = due() || done() % look_every == 0;
+    // While bodies may be about to touch for the first time, on which the step depends.
+    const bool watches = is_on_engine_ && stepper_->watches();
+    const bool looks = due() || watches || done() % look_every == 0;
     if (looks && done() > 0) evaluate();
     if (!sample_if_due()) return false;
     if (looks && !keep_step_stable()) return false;
