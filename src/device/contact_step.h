@@ -300,7 +300,7 @@ struct TrialStep : PairStep<Memory> {
     const bool wet = of_a.x.z + centre.z < 0, touched = (state & 1) != 0, fresh = (state & 2) != 0;
     const PairConstants constants{c.constants.at(0, pair), c.constants.at(1, pair),
                                   c.constants.at(wet ? 3 : 2, pair), c.constants.at(4, pair)};
-    const PairHistory memory = touched ? history(pair) : PairHistory{};
+    const PairHistory known = touched ? history(pair) : PairHistory{};
     Mobility mobility;
     mobility.a = mobility_of(c.inverse, a, of_a.axes);
     if (this->is_body(b)) mobility.b = mobility_of(c.inverse, b, of_b.axes);
@@ -313,7 +313,7 @@ struct TrialStep : PairStep<Memory> {
     ContactTrial trial;
     const auto find = [&](const auto& law) {
       find_trial(law, constants, met.met.overlap, met.met.depth, motion, mobility, last, mean_spin,
-                 memory, fresh && !touched, trial);
+                 known, fresh && !touched, trial);
     };
     if (of.potential != 0) {
       find(PotentialLaw(of.constants));
@@ -331,13 +331,13 @@ struct TrialStep : PairStep<Memory> {
  private:
   FLOE_KERNEL PairHistory history(std::int64_t pair) const {
     const Soa& h = this->memory.contacts.history;
-    PairHistory memory;
-    memory.plastic = h.at(0, pair);
-    memory.springs.stiffness = h.at(1, pair);
-    memory.springs.force = h.vector(2, pair);
-    memory.twist.stiffness = h.at(5, pair);
-    memory.twist.couple = h.at(6, pair);
-    return memory;
+    PairHistory known;
+    known.plastic = h.at(0, pair);
+    known.springs.stiffness = h.at(1, pair);
+    known.springs.force = h.vector(2, pair);
+    known.twist.stiffness = h.at(5, pair);
+    known.twist.couple = h.at(6, pair);
+    return known;
   }
 };
 
