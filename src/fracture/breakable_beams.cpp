@@ -302,13 +302,15 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   void write(std::span<const double> cracks, std::span<const float> viscous, double dt) override {
     growing_.clear();
     dt_ = dt;
+    // The sum does not depend on how often somebody has asked.
+    if (!cracks.empty()) dissipated_ = 0;
     for (std::size_t m = 0; m < crack_of_.size() && !cracks.empty(); ++m) {
       const double* v = &cracks[crack_numbers * m];
       const auto beam = static_cast<std::int32_t>(m);
       const Crack* known = crack(beam);
+      dissipated_ += v[5];
       if (!(v[0] > 0) || (known != nullptr && known->kappa == v[0] && known->damage == v[1]))
         continue;
-      dissipated_ += v[5] - (known != nullptr ? known->dissipated : 0.0);
       put({beam,
            v[0],
            v[1],
