@@ -277,6 +277,7 @@ class DistributedContact final : public Contact,
   void set_obstacle_forces(std::span<const std::array<double, 6>> forces) override {
     obstacle_forces_.set_numbers(forces);
   }
+  bool are_possible() const override { return possible_; }
   bool watches() const override { return !possible_ && (near_ || obstacle_near_); }
 
  private:

@@ -193,8 +193,8 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
   if (const auto& b = numbers.breaking)
     lattice.breaking = Breaking{b->general, b->crushes, b->beams, b->limits};
-  if (numbers.contacts && numbers.breaking) refuse("contact of bodies whose beams break");
   if (numbers.contacts) lattice.contacts = in_order(*numbers.contacts, part, described.order);
+  lattice.halts_at_breaks = numbers.contacts && numbers.breaking;
   described.place = std::move(place);
   return described;
 }
@@ -220,6 +220,9 @@ void DeviceStepper::put(const State<Spatial>& state, std::span<const double> wor
     Damage damage;
     breaking->kept->read(damage.cracks, damage.viscous);
     of_engine([&] { engine_->put_damage(0, damage); });
+    std::vector<std::array<std::int32_t, 2>> known;
+    broken_.assign(described_.numbers.beams.size(), 0);
+    note_broken(damage.cracks, known);
   }
   if (const auto& contacts = described_.numbers.contacts) {
     std::vector<double> forces;
@@ -274,6 +277,26 @@ void DeviceStepper::keep_contacts() {
   for (std::size_t k = 0; k < forces.size(); ++k)
     std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(6 * k), 6, forces[k].begin());
   contacts.kept->set_obstacle_forces(forces);
+}
+
+/// Notes the broken beams; appends the bodies of those that were not broken before.
+void DeviceStepper::note_broken(std::span<const double> cracks,
+                                std::vector<std::array<std::int32_t, 2>>& fresh) {
+  for (std::size_t m = 0; m < broken_.size() && !cracks.empty(); ++m) {
+    if (broken_[m] != 0 || cracks[m * Damage::numbers + Damage::damage] != 1) continue;
+    broken_[m] = 1;
+    const auto [i, j] = described_.numbers.beams[m].bodies;
+    fresh.push_back({item(model_.part().global, i), item(model_.part().global, j)});
+  }
+}
+
+/// Lets bodies touch whose beams have broken since the last call.
+void DeviceStepper::release_broken() {
+  std::vector<std::array<std::int32_t, 2>> pairs;
+  const Damage damage = of_engine([&] { return engine_->get_damage(0); });
+  note_broken(damage.cracks, pairs);
+  for (const auto& force : model_.forces())
+    if (auto* role = force->roles().broken_pairs) role->release(pairs);
 }
 
 /// Makes a new list of pairs between two steps. \param time  of the state of the engine [s]
@@ -365,15 +388,16 @@ void DeviceStepper::make_steps() {
           "(backend: cpu has)");
     const double time = item(times_, made.steps - 1) + steps_.dt;
     drop(made.steps);
-    if ((made.why & Made::list_expired) != 0) renew_pairs(time);
+    if ((made.why & Made::beam_broke) != 0) release_broken();
+    if ((made.why & (Made::list_expired | Made::beam_broke)) != 0) renew_pairs(time);
   }
 }
 
 double DeviceStepper::flush() {
   make_steps();
-  const Findings found = of_engine([&] { return engine_->findings(0); });
   if (made_ == 0) return 0;
   made_ = 0;
+  const Findings found = of_engine([&] { return engine_->findings(0); });
   fastest_ = std::sqrt(found.speed2);
   fastest_spin_ = std::sqrt(found.spin2);
   return found.speed2;

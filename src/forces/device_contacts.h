@@ -44,7 +44,9 @@ class KeptContacts {
   /// Per obstacle: the largest force so far and the integral of the force [N, N s].
   virtual std::vector<std::array<double, 6>> obstacle_forces() const = 0;
   virtual void set_obstacle_forces(std::span<const std::array<double, 6>> forces) = 0;
-  /// Whether an evaluation at every step is to tell that bodies are about to touch.
+  /// Whether the stable step allows for contacts; as long as it does not, whether an evaluation at
+  /// every step is to tell that bodies are about to touch.
+  virtual bool are_possible() const = 0;
   virtual bool watches() const = 0;
 
  protected:
