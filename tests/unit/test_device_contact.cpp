@@ -337,6 +337,42 @@ TEST(DeviceContact, RunsTogetherAreWhatTheyAreAlone) {
   }
 }
 
+/// Two blocks whose shapes overlap, joined by a beam that shears and breaks, and a third one.
+Case breaking_blocks() {
+  Case c;
+  constexpr double apart = 0.95, speed = 2;
+  test::append_block(c.lattice, {1, 1, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0.2, 0, -0.5 * speed});
+  test::append_block(c.lattice, {1, 1, 1}, {apart, 0, 0}, {1, 0, 0, 0}, {-0.2, 0, 0.5 * speed});
+  test::append_block(c.lattice, {1, 1, 1}, {-1.0005, 0, 0}, {1, 0, 0, 0}, {1, 0, 0});
+  Beams& b = c.lattice.beams;
+  b.bodies = {{0, 1}};
+  b.area = {1}, b.width = {1}, b.height = {1}, b.length = {apart};
+  b.inertia_y = b.inertia_z = {1.0 / 12}, b.torsion = {saint_venant_torsion(1, 1)};
+  b.young = {1e8}, b.shear_modulus = {4e7}, b.shear_factor = {5.0 / 6}, b.axis_y = {{0, 1, 0}};
+  c.scene = test::contact_scene(1e7, 0.2, 0.5, false);
+  c.scene.forces.beam = c.scene.forces.fracture = true;
+  c.scene.fracture.tensile_strength = c.scene.fracture.shear_strength = 1e5;
+  c.dt = 2e-5;
+  c.steps_before = 5;
+  return c;
+}
+
+// From the step after the break on the blocks touch, and what they overlap by has no energy.
+TEST(DeviceContact, ABrokenBeamReleasesItsPair) {
+  const Case c = breaking_blocks();
+  const auto start = started(c);
+  EXPECT_EQ(start->reported("beams_broken"), 0);
+  EXPECT_EQ(looked_at(*start).contacts, 1);  // with the third block
+  for (const int queued : {1, 7, 400}) {
+    const Stepped lanes = by_lanes(c, 400), loop = by_loop(c, 400, 0, queued);
+    EXPECT_EQ(lanes.contacts, 2);
+    EXPECT_EQ(loop.contacts, 2);
+    expect_alike(lanes, loop, 1e-10);
+    EXPECT_NEAR(loop.stored, lanes.stored, 1e-8 * lanes.stored);
+    EXPECT_GT(lanes.stored, 0);
+  }
+}
+
 TEST(DeviceContact, WhatIsNotThereYetIsRefusedByName) {
   const auto refused = [](const std::function<void(Case&)>& change) {
     Case c = pushed_blocks();
