@@ -17,6 +17,7 @@ namespace floe::device {
 struct DescribedModel {
   Lattice lattice;
   std::vector<std::int32_t> order;  ///< per body of the engine: the body of the part
+  std::vector<std::int32_t> place;  ///< per body of the part: that of the engine
   DeviceModel numbers;              ///< of the forces
 };
 /// \param backend  its name, for messages
@@ -47,6 +48,16 @@ class DeviceStepper {
   double fastest() const { return fastest_; }
   double fastest_spin() const { return fastest_spin_; }
 
+  /// KeptContacts::are_possible() and watches(); without contacts true and false.
+  bool contacts_are_possible() const {
+    const auto& contacts = described_.numbers.contacts;
+    return !contacts || contacts->kept->are_possible();
+  }
+  bool watches() const {
+    const auto& contacts = described_.numbers.contacts;
+    return contacts && contacts->kept->watches();
+  }
+
   const Engine& engine() const { return *engine_; }
 
  private:
@@ -57,6 +68,14 @@ class DeviceStepper {
     return water ? water->kept : nullptr;
   }
 
+  void get_records(State<Spatial>& state);
+  void list_pairs(const State<Spatial>& state);
+  void keep_contacts();
+  void renew_pairs(double time);
+  void release_broken();
+  void note_broken(std::span<const double> cracks, std::vector<std::array<std::int32_t, 2>>& fresh);
+  void queue_contacts(const DeviceContacts& contacts, double time, double dt, double before);
+  void make_steps();
   void drop(int count);
 
   const Model<Spatial>& model_;
@@ -66,7 +85,14 @@ class DeviceStepper {
   std::vector<double> room_, kept_, works_;
   std::int64_t since_ = 0;  ///< steps since all submerged parts were found
   double fastest_ = 0, fastest_spin_ = 0;
-  double last_dt_ = 0;  ///< of the last step that was queued [s]
+  double last_dt_ = 0;                ///< of the last step that was queued [s]
+  std::vector<double> times_;         ///< of the queued steps [s]
+  std::int64_t made_ = 0;             ///< steps made since then
+  DevicePairs pairs_;                 ///< as they were listed
+  State<Spatial> listed_;             ///< work space of renew_pairs()
+  std::vector<std::uint8_t> broken_;  ///< per beam, where a break releases a pair
+  double listed_at_ = 0;              ///< time of the list [s]
+  std::int64_t steps_of_list_ = 0;    ///< made since contacts were kept
 };
 
 }  // namespace floe::device

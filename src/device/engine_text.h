@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "device/contact_store.h"
 #include "device/engine.h"
 #include "device/launch.h"
+#include "device/move_step.h"
 #include "device/tile_step.h"
 #include "device/tiles.h"
 #include "device/water_step.h"
@@ -63,6 +65,7 @@ class TileEngine final : public Engine {
     take_loads(bodies);
     take_water(bodies);
     if constexpr (breakable) take_breaking();
+    contacts_.take(lattices_, first_body_);
     for (auto& records : records_) records = Array<double>(of_record * bodies);
     if (damped) beam_works_ = Array<double>(bodies);
     speed2_ = Array<std::uint64_t>(lattices_.size());
@@ -111,6 +114,23 @@ class TileEngine final : public Engine {
     return damage;
   }
 
+  void put_pairs(std::size_t run, Pairs pairs) override {
+    queue_.wait();
+    if (contacts_.put_pairs(run, std::move(pairs), records_[now_])) queue_.forget();
+  }
+  void get_pairs(std::size_t run, Pairs& pairs) override {
+    queue_.wait();
+    contacts_.get_pairs(run, pairs);
+  }
+  void put_obstacles(std::size_t run, std::span<const double> numbers) override {
+    queue_.wait();
+    contacts_.put_obstacles(run, numbers);
+  }
+  void get_obstacles(std::size_t run, std::span<double> numbers) override {
+    queue_.wait();
+    contacts_.get_obstacles(run, numbers);
+  }
+
   void step(std::span<const Steps> steps) override {
     int most = 0;
     std::vector<RunOfTiles> runs;
@@ -152,6 +172,7 @@ class TileEngine final : public Engine {
     grown = give(wrenches, wrenches_) || grown;
     grown = give(water_motions, water_motions_) || grown;
     grown = give(times, times_) || grown;
+    if (contacts_.any()) grown = contacts_.put_steps(steps) || grown;
     if (grown) queue_.forget();
     runs_.put(runs);
     breaking_.put(breaking);
@@ -168,7 +189,20 @@ class TileEngine final : public Engine {
       if (parity == 1) std::swap(of_step.records[0], of_step.records[1]);
       for (int k = 0; k < most; ++k) {
         if (has_water_) launch(WaterStep{of_step, water, k}, tiles, threads, 0);
+        if (contacts_.room() > 0) {
+          launch(OverlapStep<Memory>{of_step, k}, contacts_.room(), threads, 0);
+          launch(TrialStep<Memory>{of_step, k}, contacts_.blocks(), most_threads, 0);
+        }
         launch(Step{of_step, k}, tiles, threads, shared_);
+        if (!contacts_.any()) continue;
+        if (contacts_.room() > 0 && contacts_.damps()) {
+          launch(PredictStep{of_step, k}, tiles, threads, 0);
+          launch(DashpotStep<Memory>{of_step, k}, contacts_.blocks(), most_threads, 0);
+        }
+        if (contacts_.obstacles() > 0)
+          launch(ObstacleStep<Memory>{of_step, k}, static_cast<std::int32_t>(contacts_.obstacles()),
+                 most_threads, 0);
+        launch(MoveStep{of_step, k}, tiles, threads, 0);
       }
     });
     now_ = (now_ + static_cast<std::size_t>(most)) % 2;
@@ -203,11 +237,15 @@ class TileEngine final : public Engine {
       return values;
     };
     const auto body = [&](std::size_t r) { return static_cast<std::size_t>(first_body_[r]); };
-    return {take(beam_works_, body(run), body(run + 1)),
-            take(held_works_, first_held_[run], first_held_[run + 1]),
-            take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
-            take(drag_works_, body(run), body(run + 1)),
-            take(buoyancy_works_, body(run), body(run + 1))};
+    Works works{take(beam_works_, body(run), body(run + 1)),
+                take(held_works_, first_held_[run], first_held_[run + 1]),
+                take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
+                take(drag_works_, body(run), body(run + 1)),
+                take(buoyancy_works_, body(run), body(run + 1)),
+                {},
+                {}};
+    contacts_.add_works(run, works);
+    return works;
   }
 
   void forget_works(std::size_t run) override {
@@ -220,6 +258,7 @@ class TileEngine final : public Engine {
     for (auto* works : {&beam_works_, &drag_works_, &buoyancy_works_}) forget(*works, first, end);
     forget(held_works_, first_held_[run], first_held_[run + 1]);
     forget(load_works_, first_loaded_[run], first_loaded_[run + 1]);
+    contacts_.forget_works(run);
   }
 
   std::int32_t tiles() const override { return static_cast<std::int32_t>(tiles_.run.size()); }
@@ -496,7 +535,8 @@ class TileEngine final : public Engine {
              {cracks_.data(), slots},
              {or_null(viscous_), slots},
              grown_.data(),
-             {last_.data(), why_.data()}}};
+             {last_.data(), why_.data()}},
+            contacts_.memory()};
   }
 
   WaterMemory all_of_water() {
@@ -544,6 +584,7 @@ class TileEngine final : public Engine {
   Array<double> water_motions_, prisms_, wholes_, extents_, most2_, area_per_volume_, vertices_,
       expansions_, water_forces_, drag_works_, buoyancy_works_;
   Array<std::int32_t> first_vertex_, first_face_, first_corner_, corners_;
+  ContactStore contacts_;
   std::vector<double> room_;
 };
 

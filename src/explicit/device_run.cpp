@@ -65,7 +65,12 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     forces_are_of_other_velocities_ = true;
   }
   bool step() {
-    const bool looks = due() || done() % look_every == 0;
+    // While bodies may be about to touch for the first time, on which the step depends.
+    const bool watches = is_on_engine_ && stepper_->watches(),
+               were_possible = contacts_are_possible_;
+    contacts_are_possible_ = stepper_->contacts_are_possible();
+    const bool looks =
+        due() || watches || contacts_are_possible_ != were_possible || done() % look_every == 0;
     if (looks && done() > 0) evaluate();
     if (!sample_if_due()) return false;
     if (looks && !keep_step_stable()) return false;
@@ -89,7 +94,8 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     is_on_engine_ = true;
     stepper_->queue(state().time, dt(), last_dt_);
     is_here_ = false;
-    return (done() + 1) % most_queued == 0 ? stepper_->flush() : 0.0;
+    const bool is_full = (done() + 1) % most_queued == 0 || !contacts_are_possible_;
+    return is_full ? stepper_->flush() : 0.0;
   }
 
   /// Makes the queued steps, so that their speeds are known.
@@ -139,8 +145,9 @@ class DeviceRun final : public ExplicitRun<Spatial> {
   /// The engine has the state at the last step; the object `state()` has it.
   bool is_on_engine_ = false, is_here_ = true;
   bool forces_are_of_other_velocities_ = false;
-  double boundary_work_ = 0;  ///< until the engine got the state [J]
-  double last_dt_ = 0;        ///< length of the last step, also if it is queued [s]
+  bool contacts_are_possible_ = true;  ///< at the last step
+  double boundary_work_ = 0;           ///< until the engine got the state [J]
+  double last_dt_ = 0;                 ///< length of the last step, also if it is queued [s]
   LeapfrogStep make_step_ = [this](double) { return guarded([this] { return step(); }); };
 };
 
