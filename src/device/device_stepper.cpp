@@ -17,7 +17,6 @@ constexpr auto they_have =
 
 /// Returns what a user calls a force that a back end does not have.
 std::string in_words(std::string_view force, const Model<Spatial>& model) {
-  if (force == "support") return "structures";
   if (force == "line") return "mooring lines";
   if (force == "far_edge") return "supply: pressure";
   if (force == "program" || force == "applied") return "forces of programs";
@@ -190,6 +189,9 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   add_beams(numbers, place, lattice);
   add_held(model, place, lattice);
   add_loads(numbers, place, lattice);
+  for (const DeviceModel::Support& one : numbers.supports)
+    lattice.supports.push_back(
+        {item(place, one.body), {one.arm.x, one.arm.y, one.arm.z}, one.stiffness, one.damping});
   if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
   if (const auto& b = numbers.breaking)
     lattice.breaking = Breaking{b->general, b->crushes, b->beams, b->limits};
@@ -430,6 +432,7 @@ double DeviceStepper::take_works(std::span<double> works) {
         item(described_.numbers.loads, described_.lattice.loaded[l].load);
     works[load.work] += parts.loaded[l];
   }
+  for (const double work : parts.supports) works[described_.numbers.support_work] += work;
   const auto add = [&](const std::vector<double>& some, const std::optional<std::size_t>& force) {
     if (!force) return;  // of other runs in the launch
     for (const double work : some) works[*force] += work;

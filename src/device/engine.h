@@ -122,6 +122,14 @@ struct Lattice {
   std::vector<Loaded> loaded;
   std::int32_t loads = 0;
 
+  /// Springs and dashpots on bodies, one on a body at most (forces/support_law.h).
+  struct Supported {
+    std::int32_t body;
+    std::array<double, 3> arm;
+    std::array<double, 36> stiffness, damping;
+  };
+  std::vector<Supported> supports;
+
   std::optional<Water> water;
   std::optional<Breaking> breaking;
   bool halts_at_breaks = false;  ///< a run halts at a step in which a beam breaks
@@ -163,6 +171,7 @@ struct Works {
   std::vector<double> beams;           ///< per body: by dashpots of beams of which it is the first
   std::vector<double> held;            ///< per held body: by boundaries
   std::vector<double> loaded;          ///< per load on a body
+  std::vector<double> supports;        ///< per support: by its dashpots
   std::vector<double> drag, buoyancy;  ///< per body; empty: none
   /// By contacts: per body those of elastic, viscous and friction's terms; per obstacle these, and
   /// that of the obstacle.

@@ -37,6 +37,7 @@ class TileEngine final : public Engine {
       first_beam_.push_back(first_beam_.back() + static_cast<std::int32_t>(lattice.ends.size()));
       first_held_.push_back(first_held_.back() + lattice.held.size());
       first_loaded_.push_back(first_loaded_.back() + lattice.loaded.size());
+      first_support_.push_back(first_support_.back() + lattice.supports.size());
     }
     const auto bodies = static_cast<std::size_t>(first_body_.back());
     if (tile == 0) tile = tile_for(first_body_.back());
@@ -63,6 +64,7 @@ class TileEngine final : public Engine {
     take_bodies(bodies);
     take_held(bodies);
     take_loads(bodies);
+    take_supports(bodies);
     take_water(bodies);
     if constexpr (breakable) take_breaking();
     contacts_.take(lattices_, first_body_);
@@ -240,6 +242,7 @@ class TileEngine final : public Engine {
     Works works{take(beam_works_, body(run), body(run + 1)),
                 take(held_works_, first_held_[run], first_held_[run + 1]),
                 take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
+                take(support_works_, first_support_[run], first_support_[run + 1]),
                 take(drag_works_, body(run), body(run + 1)),
                 take(buoyancy_works_, body(run), body(run + 1)),
                 {},
@@ -258,6 +261,7 @@ class TileEngine final : public Engine {
     for (auto* works : {&beam_works_, &drag_works_, &buoyancy_works_}) forget(*works, first, end);
     forget(held_works_, first_held_[run], first_held_[run + 1]);
     forget(load_works_, first_loaded_[run], first_loaded_[run + 1]);
+    forget(support_works_, first_support_[run], first_support_[run + 1]);
     contacts_.forget_works(run);
   }
 
@@ -423,6 +427,24 @@ class TileEngine final : public Engine {
     load_works_ = Array<double>(all);
   }
 
+  void take_supports(std::size_t bodies) {
+    if (first_support_.back() == 0) return;
+    std::vector<std::int32_t> of(bodies, -1);
+    std::vector<double> numbers;
+    std::int32_t next = 0;
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      for (const Lattice::Supported& one : lattices_[r].supports) {
+        of[static_cast<std::size_t>(first_body_[r] + one.body)] = next++;
+        numbers.insert(numbers.end(), one.arm.begin(), one.arm.end());
+        numbers.insert(numbers.end(), one.stiffness.begin(), one.stiffness.end());
+        numbers.insert(numbers.end(), one.damping.begin(), one.damping.end());
+      }
+    }
+    support_of_ = keep(of);
+    supports_ = keep(numbers);
+    support_works_ = Array<double>(first_support_.back());
+  }
+
   /// What the water needs. Runs without water, beside others with it, have bodies without shape.
   void take_water(std::size_t bodies) {
     has_water_ = std::any_of(lattices_.begin(), lattices_.end(),
@@ -524,6 +546,9 @@ class TileEngine final : public Engine {
             {arms_.data(), static_cast<std::int64_t>(first_loaded_.back())},
             load_works_.data(),
             wrenches_.data(),
+            or_null(support_of_),
+            supports_.data(),
+            support_works_.data(),
             runs_.data(),
             {last_.data(), why_.data()},
             speed2_.data(),
@@ -558,13 +583,14 @@ class TileEngine final : public Engine {
 
   std::vector<Lattice> lattices_;
   std::vector<std::int32_t> first_body_{0}, first_beam_{0};
-  std::vector<std::size_t> first_held_{0}, first_loaded_{0};
+  std::vector<std::size_t> first_held_{0}, first_loaded_{0}, first_support_{0};
   Tiles tiles_;
   std::size_t shared_ = 0, now_ = 0;
   Queue queue_;
   Array<std::int32_t> first_body_of_tile_, first_slot_, run_, i_, j_, first_end_, ends_;
   Array<double> constants_, bodies_, weights_, beam_works_, held_works_, motions_, arms_,
-      load_works_, wrenches_;
+      load_works_, wrenches_, supports_, support_works_;
+  Array<std::int32_t> support_of_;
   Array<double> records_[2];  // NOLINT: pairs of memory
   Array<std::int32_t> held_row_, held_motions_, first_load_, load_;
   Array<std::uint8_t> held_bits_;

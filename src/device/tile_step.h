@@ -12,6 +12,7 @@
 #include "device/halts.h"
 #include "device/launch.h"
 #include "device/soa.h"
+#include "forces/support_law.h"
 #include "leapfrog/held_body.h"
 
 namespace floe::device {
@@ -58,6 +59,10 @@ struct Memory {
   Soa arms;
   double* load_works;
   const double* wrenches;
+  // Supports of bodies.
+  const std::int32_t* support_of;  ///< per body, -1: none; null: no body has one
+  const double* supports;          ///< arm, stiffness, damping of each
+  double* support_works;
   // Runs.
   const RunOfTiles* runs;
   Halts halts;
@@ -91,6 +96,8 @@ struct FrameOf<EccentricFrame> {
   }
 };
 
+inline constexpr int of_matrix = 36, of_support = 3 + 2 * of_matrix;
+
 /// The end of a step, for one body at a time.
 struct BodyStep {
   Memory memory;
@@ -118,6 +125,7 @@ struct BodyStep {
     leap(c, now, force, moment, dt);
     hold(run, b, c, old, moment, now);
     add_works_of_loads(run, b, old, now, dt, before);
+    add_works_of_support(b, old, now, dt, before);
     add_works_of_water(b, old, now, dt, before);
     put(to, u_at, b, now.u);
     to.at(q_at, b) = now.q.w;
@@ -164,6 +172,31 @@ struct BodyStep {
       memory.load_works[l] += 0.5 * (before * (dot(f, old.v) + dot(moment, old.w)) +
                                      dt * (dot(f, now.v) + dot(moment, now.w)));
     }
+  }
+
+  FLOE_KERNEL bool is_supported(std::int64_t b) const {
+    return memory.support_of != nullptr && memory.support_of[b] >= 0;
+  }
+  FLOE_KERNEL SupportedBody<double> supported_body(std::int64_t b,
+                                                   const BodyMotion<double>& m) const {
+    const double* s = memory.supports + std::int64_t{of_support} * memory.support_of[b];
+    return supported(s + 3, s + 3 + of_matrix, Vec3<double>{s[0], s[1], s[2]}, m.u, m.q, m.v, m.w);
+  }
+  FLOE_KERNEL void add_support(std::int64_t b, const BodyMotion<double>& m, Vec3<double>& force,
+                               Vec3<double>& moment) const {
+    if (!is_supported(b)) return;
+    const SupportedBody<double> s = supported_body(b, m);
+    force = force + s.wrench.force;
+    moment = moment + s.moment;
+  }
+  FLOE_KERNEL void add_works_of_support(std::int64_t b, const BodyMotion<double>& old,
+                                        const BodyMotion<double>& now, double dt,
+                                        double before) const {
+    if (!is_supported(b)) return;
+    const SupportWrenchOf<double> lost = supported_body(b, old).damping;
+    memory.support_works[memory.support_of[b]] +=
+        0.5 * (before * (dot(lost.force, old.v) + dot(lost.moment, old.w)) +
+               dt * (dot(lost.force, now.v) + dot(lost.moment, now.w)));
   }
 
   FLOE_KERNEL void add_works_of_water(std::int64_t b, const BodyMotion<double>& old,
@@ -314,6 +347,7 @@ struct TileStep : BodyStep {
       moment.y += memory.water.at(5, b);
     }
     add_loads(run, b, old, force, moment);
+    add_support(b, old, force, moment);
     if (has_contacts) {  // which are yet to come
       put(memory.contacts.others, 0, b, force);
       put(memory.contacts.others, 3, b, moment);
