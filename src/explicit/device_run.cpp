@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "device/batch.h"
 #include "device/device_stepper.h"
+#include "device/make_engine.h"
 #include "explicit/explicit_run.h"
 #include "explicit/leapfrog.h"
 #include "explicit/step.h"
@@ -17,12 +19,12 @@ constexpr std::int64_t most_queued = 50;
 /// Steps between looks at the stable step where no sample is due: each brings the state back.
 constexpr std::int64_t look_every = 1000;
 
+/// The engine of this run alone, or of the batch that the process belongs to.
 std::unique_ptr<device::Engine> make_engine(Backend backend, const device::Lattice& lattice) {
-  if (backend == Backend::loop) return device::make_loop_engine({lattice});
-  if (device::has_cuda() && device::name_of_device().empty())
-    throw InputError("backend: cuda: this machine has no device that CUDA finds");
   try {
-    return device::make_cuda_engine({lattice});
+    if (const auto batch = device::connection_to_batch())
+      return device::join_batch(*batch, lattice);
+    return device::make_engine(name_of(backend), {lattice});
   } catch (const device::Failed& error) {
     throw RunFailed(error.what());
   }
