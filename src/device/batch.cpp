@@ -29,6 +29,7 @@ enum class Ask : std::uint32_t {
   step,
   findings,
   works,
+  put_works,
   forget_works
 };
 enum class Answer : std::uint32_t { good, failed, bad_input };
@@ -206,6 +207,9 @@ void Batch::answer(Member& member, Message& message) {
     case Ask::works:
       reply(engine.works(member.run));
       break;
+    case Ask::put_works:
+      engine.put_works(member.run, question.get<Works>());
+      break;
     case Ask::forget_works:
       engine.forget_works(member.run);
       break;
@@ -302,6 +306,9 @@ class EngineOfBatch final : public Engine {
   void step(std::span<const Steps> steps) override { tell(Ask::step, steps.front()); }
   Findings findings(std::size_t /*run*/) override { return ask(Ask::findings).get<Findings>(); }
   Works works(std::size_t /*run*/) override { return ask(Ask::works).get<Works>(); }
+  void put_works(std::size_t /*run*/, const Works& works) override {
+    (void)ask(Ask::put_works, works);
+  }
   void forget_works(std::size_t /*run*/) override { (void)ask(Ask::forget_works); }
   std::int32_t tiles() const override { return tiles_; }
 

@@ -154,7 +154,7 @@ class Kind {
     if (value) visit_fields(*value, *this);
   }
   void operator()(bool value) { add(value); }
-  void operator()(double value) { add(value != 0); }
+  void operator()(double /*number*/) {}
   void operator()(std::int32_t /*number*/) {}
 
  private:

@@ -153,6 +153,18 @@ class TileEngine final : public Engine {
             take(buoyancy_works_, body(run), body(run + 1))};
   }
 
+  void put_works(std::size_t run, const Works& works) override {
+    queue_.wait();
+    const auto put = [](Array<double>& memory, const std::vector<double>& values, auto first) {
+      if (memory.size() > 0) memory.put(values, static_cast<std::size_t>(first));
+    };
+    put(beam_works_, works.beams, first_body_[run]);
+    put(held_works_, works.held, first_held_[run]);
+    put(load_works_, works.loaded, first_loaded_[run]);
+    put(drag_works_, works.drag, first_body_[run]);
+    put(buoyancy_works_, works.buoyancy, first_body_[run]);
+  }
+
   void forget_works(std::size_t run) override {
     queue_.wait();
     const auto forget = [](Array<double>& works, std::size_t first, std::size_t end) {

@@ -33,7 +33,7 @@ int serve_batch(int argc, char** argv) {
         },
         files);
     batch.serve();
-    std::printf("%zu runs in %zu engines, %lld launches, %lld steps\n", files.size(),
+    std::printf("%zu runs, engines: %zu, launches: %lld, steps: %lld\n", files.size(),
                 batch.engines(), static_cast<long long>(batch.launches()),
                 static_cast<long long>(batch.steps()));
     return done;

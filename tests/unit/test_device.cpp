@@ -92,7 +92,7 @@ Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7
   auto engine = device::make_loop_engine({described.lattice}, tile);
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   Stepped out;
   double before = 0;
   const auto flush = [&] {
@@ -396,7 +396,7 @@ TEST(Device, FindsASpeedThatIsNotFinite) {
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   run->state().record(3)[Spatial::velocity] = std::nan("");
   const WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   for (int n = 0; n < 3; ++n) stepper.queue(n * c.dt, c.dt, c.dt);
   EXPECT_FALSE(std::isfinite(stepper.flush()));
 }
