@@ -20,7 +20,7 @@ from floe.ensembles.runs import Run  # noqa: E402
 from floe.ensembles.specs import TIMES  # noqa: E402
 from floe.results.output import frames_of  # noqa: E402
 
-KEEPING = FLOATING + "checkpoint: {at_end: true, every: 1000}\n"
+KEEPING = FLOATING + "checkpoint: {every: 1000}\n"
 # Of other meshes, steps, ends, and one in each list that fails on its way.
 OTHERS = """seeds: [3, 4]
 list:

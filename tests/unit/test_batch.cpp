@@ -94,7 +94,10 @@ Asked ask(Engine& engine, const Sheet& sheet, const std::vector<int>& counts) {
   if (floats) engine.put_submerged(0, asked.submerged);
   const Steps early = sheet.steps(0, 2);
   engine.step({&early, 1});
+  const device::Works works = engine.works(0);
   engine.forget_works(0);
+  for (const double work : engine.works(0).loaded) EXPECT_EQ(work, 0);
+  engine.put_works(0, works);
   int done = 2;
   for (const int count : counts) {
     const Steps steps = sheet.steps(done, count);
@@ -220,6 +223,7 @@ struct Broken : Engine {
   void step(std::span<const Steps>) override { throw device::Failed("CUDA: a kernel: broken"); }
   device::Findings findings(std::size_t) override { return {}; }
   device::Works works(std::size_t) override { return {}; }
+  void put_works(std::size_t, const device::Works&) override {}
   void forget_works(std::size_t) override {}
   std::int32_t tiles() const override { return 1; }
 };
