@@ -80,16 +80,6 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
-/// Returns x where `of` is not negative, else 0.
-inline Lanes where_not_negative(const Lanes& of, Lanes x) {
-  where(of < 0.0, x) = 0.0;
-  return x;
-}
-template <class T>
-double where_not_negative(const T& of, double x) {
-  return of < 0.0 ? 0.0 : x;
-}
-
 /// Answers of a comparison: one bool, or one per lane.
 template <class T>
 using MaskOf = decltype(T{} < T{});

@@ -59,7 +59,7 @@ class LatticeBeams : public BeamForce<typename Beam::Space>,
     return roles;
   }
 
-  void describe(DeviceModel& model) const override {
+  void describe(DeviceModel& model) override {
     if constexpr (std::is_same_v<Space, Spatial>) {
       model.damped = damped;
       model.beam_work = model.next_work;

@@ -12,9 +12,20 @@ namespace {
 
 /// What the engines have, for messages.
 constexpr auto they_have =
-    "it has beams that do not break, gravity, loads, boundaries, and buoyancy and drag of bodies "
-    "in "
-    "water without waves";
+    "it has beams, gravity, loads, boundaries, and buoyancy and drag of bodies in water without "
+    "waves";
+
+/// Returns what a user calls a force that a back end does not have.
+std::string in_words(std::string_view force, const Model<Spatial>& model) {
+  if (force == "support") return "structures";
+  if (force == "line") return "mooring lines";
+  if (force == "far_edge") return "supply: pressure";
+  if (force == "program" || force == "applied") return "forces of programs";
+  if (force == "beam")
+    return model.kinematics() == Kinematics::linear ? "linear beams"
+                                                    : "fracture: propagation: energy";
+  return "force '" + std::string(force) + "' with its options";
+}
 
 /// Does work of an engine, whose errors end the run.
 template <class Work>
@@ -126,13 +137,11 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   };
   if (size(part.comm) > 1) refuse("runs on several ranks");
   if (!model.added_inertia().empty()) refuse("added mass");
-  if (model.fracture() != nullptr) refuse("beams that break");
   DescribedModel described;
   DeviceModel& numbers = described.numbers;
   for (const auto& force : model.forces()) {
     const Roles<Spatial> roles = force->roles();
-    if (roles.device == nullptr)
-      refuse("force '" + std::string(force->name()) + "' with its options");
+    if (roles.device == nullptr) refuse(in_words(force->name(), model));
     roles.device->describe(numbers);
     if (roles.work != nullptr) numbers.next_work += roles.work->works();
   }
@@ -154,6 +163,8 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   add_held(model, place, lattice);
   add_loads(numbers, place, lattice);
   if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
+  if (const auto& b = numbers.breaking)
+    lattice.breaking = Breaking{b->general, b->crushes, b->beams, b->limits};
   return described;
 }
 
@@ -176,6 +187,11 @@ void DeviceStepper::put(const State<Spatial>& state, const WorkParts& works) {
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
   of_engine([&] { engine_->put(0, room_); });
+  if (const auto& breaking = described_.numbers.breaking) {
+    Damage damage;
+    breaking->kept->read(damage.cracks, damage.viscous);
+    of_engine([&] { engine_->put_damage(0, damage); });
+  }
   const KeptParts* kept = kept_parts();
   if (kept == nullptr) return;
   kept->read(kept_, since_);
@@ -193,6 +209,10 @@ void DeviceStepper::get(State<Spatial>& state) {
     std::copy_n(&room_[d * n], n, state.record(static_cast<std::size_t>(described_.order[d])));
   state.fastest = fastest_;
   state.fastest_spin = fastest_spin_;
+  if (const auto& breaking = described_.numbers.breaking) {
+    const Damage damage = of_engine([&] { return engine_->get_damage(0); });
+    breaking->kept->write(damage.cracks, damage.viscous, last_dt_);
+  }
   KeptParts* kept = kept_parts();
   if (kept == nullptr) return;
   std::vector<double> ordered(described_.order.size() * of_kept);
@@ -211,6 +231,8 @@ void DeviceStepper::queue(double time, double dt, double before) {
     throw std::logic_error("steps of one queue are equal");
   }
   ++steps_.count;
+  last_dt_ = dt;
+  if (described_.numbers.breaking) steps_.times.push_back(time);
   for (const double at : {time, time + dt}) {
     for (const PlacedBoundary& placed : model_.boundaries()) {
       const std::array<double, 6> values = placed.boundary.value(at);
@@ -231,12 +253,32 @@ void DeviceStepper::queue(double time, double dt, double before) {
 
 double DeviceStepper::flush() {
   if (steps_.count == 0) return 0;
-  of_engine([&] { engine_->step({&steps_, 1}); });
-  steps_.count = 0;
+  Made made;
+  do {
+    made = of_engine([&] {
+      engine_->step({&steps_, 1});
+      return engine_->made(0);
+    });
+    drop(made.steps);
+  } while (steps_.count > 0);
   const Findings found = of_engine([&] { return engine_->findings(0); });
   fastest_ = std::sqrt(found.speed2);
   fastest_spin_ = std::sqrt(found.spin2);
   return found.speed2;
+}
+
+/// Takes the first steps off the queue: they are made.
+void DeviceStepper::drop(int count) {
+  if (count <= 0) throw std::logic_error("an engine makes at least the step at which a run halts");
+  const auto of = [&](std::vector<double>& table) {
+    const std::size_t each = table.size() / static_cast<std::size_t>(steps_.count);
+    table.erase(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(each) * count);
+  };
+  for (auto* table : {&steps_.motions, &steps_.wrenches, &steps_.water, &steps_.times}) of(*table);
+  if (const auto& water = described_.numbers.water)
+    steps_.since = static_cast<int>((steps_.since + count) % water->pace);
+  steps_.before = steps_.dt;
+  steps_.count -= count;
 }
 
 double DeviceStepper::take_works(std::span<double> works) {

@@ -67,6 +67,8 @@ class DeviceStepper {
     return water ? water->kept : nullptr;
   }
 
+  void drop(int count);
+
   const Model<Spatial>& model_;
   DescribedModel described_;
   std::unique_ptr<Engine> engine_;
@@ -75,6 +77,7 @@ class DeviceStepper {
   WorkParts works_;
   std::int64_t since_ = 0;  ///< steps since all submerged parts were found
   double fastest_ = 0, fastest_spin_ = 0;
+  double last_dt_ = 0;  ///< of the last step that was queued [s]
 };
 
 }  // namespace floe::device

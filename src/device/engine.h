@@ -32,6 +32,36 @@ struct Water {
   std::vector<std::array<double, 3>> vertices;
 };
 
+/// Breakable beams of a lattice (src/fracture).
+struct Breaking {
+  /// Numbers of a beam: its strengths (5), area [m^2], G_f and G_s [J/m^2], the middle between its
+  /// ends at rest (3) [m], what Criterion::general needs (3).
+  enum Number : int { area = 5, toughness = 6, middle = 8, further = 11, numbers = 14 };
+  bool general = false;  ///< Criterion::general
+  bool crushes = false;
+  std::vector<std::array<double, numbers>> beams;
+  std::vector<double> limits;  ///< twice the energy a whole beam may hold before its s matters [J]
+};
+/// State of a run's breakable beams.
+struct Damage {
+  /// Numbers of a beam's crack (fracture_laws/law.h); kappa 0: it has none.
+  enum Number : int {
+    kappa,
+    damage,
+    ultimate,
+    mode_mix,
+    nominal,
+    dissipated,
+    at_tip,
+    crushed,
+    time,
+    place,
+    numbers = place + 3
+  };
+  std::vector<double> cracks;  ///< beam after beam; from an engine empty: as it was put
+  std::vector<float> viscous;  ///< beam after beam: forces of dashpots at the last step's start
+};
+
 /// One run's lattice for an engine. Bodies are in the engine's order, in which those of a tile
 /// follow each other.
 struct Lattice {
@@ -64,6 +94,8 @@ struct Lattice {
   std::int32_t loads = 0;
 
   std::optional<Water> water;
+  std::optional<Breaking> breaking;
+  bool halts_at_breaks = false;  ///< a run halts at a step in which a beam breaks
 };
 
 /// Steps to be made of one run.
@@ -74,9 +106,18 @@ struct Steps {
   std::vector<double> motions{};   ///< per step: prescribed values at its start and end [m, rad]
   std::vector<double> wrenches{};  ///< per step and load: force and moment on each body [N, N m]
   std::vector<double> water{};     ///< per step: level [m] and current [m/s] of the water
+  std::vector<double> times{};     ///< per step: at its start, where beams break [s]
   int since = 0;                   ///< steps since all submerged parts were found, at a pace
 };
 
+/// The steps that a run has made. Where it halted at one, those after it stood still, so that they
+/// can be given again.
+struct Made {
+  /// Reasons to halt, in bits.
+  enum Why : std::uint32_t { beam_broke = 1 };
+  int steps = 0;
+  std::uint32_t why = 0;  ///< 0: it did not halt
+};
 /// What the steps since the last question have done, of one run.
 struct Findings {
   double speed2 = 0, spin2 = 0;  ///< largest squares; perhaps not finite [m^2/s^2, rad^2/s^2]
@@ -107,8 +148,13 @@ class Engine {
   /// numbers as Submersion keeps them.
   virtual void put_submerged(std::size_t run, std::span<const double> numbers) = 0;
   virtual void get_submerged(std::size_t run, std::span<double> numbers) = 0;
+  /// Sets, or returns, the damage of a run whose beams break.
+  virtual void put_damage(std::size_t run, const Damage& damage) = 0;
+  virtual Damage get_damage(std::size_t run) = 0;
   /// Makes steps of each run, which may differ in number; returns perhaps before they are made.
   virtual void step(std::span<const Steps> steps) = 0;
+  /// Returns what the last step() has made of a run's steps.
+  virtual Made made(std::size_t run) = 0;
   virtual Findings findings(std::size_t run) = 0;
   virtual Works works(std::size_t run) = 0;
   /// Sets the works of a run, which steps add to.

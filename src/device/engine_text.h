@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,14 +24,15 @@ inline std::int32_t tile_for(std::int64_t bodies) {
   return bodies < small ? 32 : bodies < large ? 64 : 128;
 }
 
-template <bool damped, template <class> class Frame>
+template <bool damped, bool breakable, template <class> class Frame>
 class TileEngine final : public Engine {
-  using Step = TileStep<damped, Frame>;
+  using Step = TileStep<damped, breakable, Frame>;
 
  public:
   TileEngine(std::vector<Lattice> lattices, std::int32_t tile) : lattices_(std::move(lattices)) {
     for (const Lattice& lattice : lattices_) {
       first_body_.push_back(first_body_.back() + lattice.bodies);
+      first_beam_.push_back(first_beam_.back() + static_cast<std::int32_t>(lattice.ends.size()));
       first_held_.push_back(first_held_.back() + lattice.held.size());
       first_loaded_.push_back(first_loaded_.back() + lattice.loaded.size());
     }
@@ -40,6 +42,12 @@ class TileEngine final : public Engine {
     constexpr std::size_t usual = 48U << 10;  // of shared memory that any device gives [bytes]
     tiles_ = make_tiles(lattices_, tile,
                         static_cast<std::int32_t>(usual / (sizeof(double) * Step::shares)));
+    first_slot_of_run_.assign(lattices_.size() + 1, 0);
+    for (std::size_t t = 0; t < tiles_.run.size(); ++t)
+      first_slot_of_run_[static_cast<std::size_t>(tiles_.run[t]) + 1] =
+          static_cast<std::size_t>(tiles_.first_slot[t + 1]);
+    for (std::size_t r = 0; r < lattices_.size(); ++r)  // runs without bodies have no tile
+      first_slot_of_run_[r + 1] = std::max(first_slot_of_run_[r + 1], first_slot_of_run_[r]);
     shared_ = sizeof(double) * Step::shares * static_cast<std::size_t>(tiles_.most_slots);
 
     first_body_of_tile_ = keep(tiles_.first_body);
@@ -54,11 +62,15 @@ class TileEngine final : public Engine {
     take_held(bodies);
     take_loads(bodies);
     take_water(bodies);
+    if constexpr (breakable) take_breaking();
     for (auto& records : records_) records = Array<double>(of_record * bodies);
     if (damped) beam_works_ = Array<double>(bodies);
     speed2_ = Array<std::uint64_t>(lattices_.size());
     spin2_ = Array<std::uint64_t>(lattices_.size());
     runs_ = Array<RunOfTiles>(lattices_.size());
+    last_ = Array<std::int32_t>(lattices_.size());
+    last_.put(std::vector<std::int32_t>(lattices_.size(), -1));
+    why_ = Array<std::uint32_t>(lattices_.size());
   }
 
   void put(std::size_t run, std::span<const double> records) override {
@@ -78,19 +90,51 @@ class TileEngine final : public Engine {
     get_numbers(expansions_, of_expansion, run, numbers);
   }
 
+  void put_damage(std::size_t run, const Damage& damage) override {
+    if constexpr (breakable) {
+      queue_.wait();
+      put_of_beams(cracks_, Damage::numbers, run, damage.cracks);
+      if (!damage.viscous.empty()) put_of_beams(viscous_, of_viscous, run, damage.viscous);
+      const std::uint64_t none = 0;
+      grown_.put({&none, 1}, run);
+    }
+  }
+  Damage get_damage(std::size_t run) override {
+    Damage damage;
+    if constexpr (breakable) {
+      queue_.wait();
+      std::uint64_t grown = 0;
+      grown_.get({&grown, 1}, run);
+      if (grown != 0) damage.cracks = get_of_beams(cracks_, Damage::numbers, run);
+      if (lattices_[run].damped) damage.viscous = get_of_beams(viscous_, of_viscous, run);
+    }
+    return damage;
+  }
+
   void step(std::span<const Steps> steps) override {
     int most = 0;
     std::vector<RunOfTiles> runs;
+    std::vector<std::int32_t> last;
     std::vector<double> motions, wrenches, water_motions;
     std::vector<WaterOfRun> waters;
+    std::vector<BreakingOfRun> breaking;
+    std::vector<double> times;
     for (std::size_t r = 0; r < lattices_.size(); ++r) {
       const Steps& of = steps[r];
       most = std::max(most, of.count);
-      runs.push_back({of.count, of.dt, of.before, static_cast<std::int64_t>(motions.size()),
+      last.push_back(of.count - 1);
+      runs.push_back({of.dt, of.before, static_cast<std::int64_t>(motions.size()),
                       lattices_[r].motions, static_cast<std::int64_t>(wrenches.size()),
                       lattices_[r].loads});
       motions.insert(motions.end(), of.motions.begin(), of.motions.end());
       wrenches.insert(wrenches.end(), of.wrenches.begin(), of.wrenches.end());
+      if constexpr (breakable) {
+        const Breaking none, &b = lattices_[r].breaking ? *lattices_[r].breaking : none;
+        breaking.push_back({b.general ? 1 : 0, b.crushes ? 1 : 0,
+                            lattices_[r].halts_at_breaks ? 1 : 0,
+                            static_cast<std::int64_t>(times.size())});
+        times.insert(times.end(), of.times.begin(), of.times.end());
+      }
       if (!has_water_) continue;
       const Water none, &w = lattices_[r].water ? *lattices_[r].water : none;
       waters.push_back({w.weight_density, w.linear, w.coefficient, w.drags ? 1 : 0, w.pace,
@@ -100,13 +144,17 @@ class TileEngine final : public Engine {
       if (!lattices_[r].water)
         water_motions.resize(water_motions.size() + 4 * static_cast<std::size_t>(of.count));
     }
-    if (most == 0 || tiles_.run.empty()) return;
     queue_.wait();
+    last_.put(last);
+    why_.put(std::vector<std::uint32_t>(lattices_.size()));
+    if (most == 0 || tiles_.run.empty()) return;
     bool grown = give(motions, motions_);
     grown = give(wrenches, wrenches_) || grown;
     grown = give(water_motions, water_motions_) || grown;
+    grown = give(times, times_) || grown;
     if (grown) queue_.forget();
     runs_.put(runs);
+    breaking_.put(breaking);
     waters_.put(waters);
     const Memory memory = all();
     const WaterMemory water = all_of_water();
@@ -124,6 +172,15 @@ class TileEngine final : public Engine {
       }
     });
     now_ = (now_ + static_cast<std::size_t>(most)) % 2;
+  }
+
+  Made made(std::size_t run) override {
+    queue_.wait();
+    std::int32_t last = 0;
+    std::uint32_t why = 0;
+    last_.get({&last, 1}, run);
+    why_.get({&why, 1}, run);
+    return {last + 1, why};
   }
 
   Findings findings(std::size_t run) override {
@@ -228,6 +285,57 @@ class TileEngine final : public Engine {
         constants[n * slots + s] = of[length + n - frame];
     }
     constants_ = keep(constants);
+  }
+
+  void take_breaking() {
+    const std::size_t slots = tiles_.beam.size();
+    std::vector<double> constants(slots * Breaking::numbers), limits(slots);
+    slot_of_.resize(static_cast<std::size_t>(first_beam_.back()));
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      const auto& of = lattices_[r].breaking;
+      for_slots(r, [&](std::size_t s, std::size_t m) {
+        slot_of_[static_cast<std::size_t>(first_beam_[r]) + m] = s;  // one of two, which are alike
+        limits[s] = of ? of->limits[m] : std::numeric_limits<double>::infinity();
+        for (std::size_t n = 0; of && n < Breaking::numbers; ++n)
+          constants[n * slots + s] = of->beams[m][n];
+      });
+    }
+    breakable_ = keep(constants);
+    limits_ = keep(limits);
+    cracks_ = Array<double>(slots * Damage::numbers);
+    if (damped) viscous_ = Array<float>(slots * of_viscous);
+    grown_ = Array<std::uint64_t>(lattices_.size());
+    breaking_ = Array<BreakingOfRun>(lattices_.size());
+  }
+  /// Calls visit(slot, beam of the run) for the slots of a run.
+  template <class Visit>
+  void for_slots(std::size_t run, const Visit& visit) const {
+    for (std::size_t s = first_slot_of_run_[run]; s < first_slot_of_run_[run + 1]; ++s)
+      visit(s, static_cast<std::size_t>(tiles_.beam[s] - first_beam_[run]));
+  }
+  /// Copies numbers of a run's beams, beam after beam, into memory that has them slot by slot.
+  template <class T>
+  void put_of_beams(Array<T>& memory, std::size_t count, std::size_t run,
+                    const std::vector<T>& numbers) {
+    const std::size_t first = first_slot_of_run_[run];
+    std::vector<T> row(first_slot_of_run_[run + 1] - first);
+    for (std::size_t n = 0; n < count; ++n) {
+      for_slots(run,
+                [&](std::size_t s, std::size_t m) { row[s - first] = numbers[m * count + n]; });
+      memory.put(std::span<const T>(row), n * tiles_.beam.size() + first);
+    }
+  }
+  template <class T>
+  std::vector<T> get_of_beams(const Array<T>& memory, std::size_t count, std::size_t run) const {
+    const std::size_t first = first_slot_of_run_[run], beams = lattices_[run].ends.size();
+    std::vector<T> row(first_slot_of_run_[run + 1] - first), numbers(beams * count);
+    for (std::size_t n = 0; n < count; ++n) {
+      memory.get(std::span<T>(row), n * tiles_.beam.size() + first);
+      for (std::size_t m = 0; m < beams; ++m)
+        numbers[m * count + n] =
+            row[slot_of_[static_cast<std::size_t>(first_beam_[run]) + m] - first];
+    }
+    return numbers;
   }
 
   void take_bodies(std::size_t bodies) {
@@ -362,13 +470,14 @@ class TileEngine final : public Engine {
     return array.size() == 0 ? nullptr : array.data();
   }
   Memory all() {
-    const auto bodies = static_cast<std::int64_t>(first_body_.back());
+    const auto bodies = static_cast<std::int64_t>(first_body_.back()),
+               slots = static_cast<std::int64_t>(tiles_.beam.size());
     return {first_body_of_tile_.data(),
             first_slot_.data(),
             run_.data(),
             i_.data(),
             j_.data(),
-            {constants_.data(), static_cast<std::int64_t>(tiles_.beam.size())},
+            {constants_.data(), slots},
             first_end_.data(),
             ends_.data(),
             {bodies_.data(), bodies},
@@ -389,8 +498,17 @@ class TileEngine final : public Engine {
             load_works_.data(),
             wrenches_.data(),
             runs_.data(),
+            {last_.data(), why_.data()},
             speed2_.data(),
-            spin2_.data()};
+            spin2_.data(),
+            {breaking_.data(),
+             times_.data(),
+             limits_.data(),
+             {breakable_.data(), slots},
+             {cracks_.data(), slots},
+             {or_null(viscous_), slots},
+             grown_.data(),
+             {last_.data(), why_.data()}}};
   }
 
   WaterMemory all_of_water() {
@@ -411,7 +529,7 @@ class TileEngine final : public Engine {
   }
 
   std::vector<Lattice> lattices_;
-  std::vector<std::int32_t> first_body_{0};
+  std::vector<std::int32_t> first_body_{0}, first_beam_{0};
   std::vector<std::size_t> first_held_{0}, first_loaded_{0};
   Tiles tiles_;
   std::size_t shared_ = 0, now_ = 0;
@@ -423,7 +541,16 @@ class TileEngine final : public Engine {
   Array<std::int32_t> held_row_, held_motions_, first_load_, load_;
   Array<std::uint8_t> held_bits_;
   Array<std::uint64_t> speed2_, spin2_;
+  // Beams that break.
+  static constexpr std::size_t of_viscous = 6;
+  std::vector<std::size_t> first_slot_of_run_, slot_of_;  ///< per run, and one more; per beam
+  Array<BreakingOfRun> breaking_;
+  Array<double> times_, limits_, breakable_, cracks_;
+  Array<float> viscous_;
+  Array<std::uint64_t> grown_;
   Array<RunOfTiles> runs_;
+  Array<std::int32_t> last_;
+  Array<std::uint32_t> why_;
   bool has_water_ = false;
   Array<WaterOfRun> waters_;
   Array<double> water_motions_, prisms_, wholes_, extents_, most2_, area_per_volume_, vertices_,
@@ -432,21 +559,26 @@ class TileEngine final : public Engine {
   std::vector<double> room_;
 };
 
-template <bool damped>
+template <bool damped, bool breakable>
 std::unique_ptr<Engine> make_engine_of(std::vector<Lattice> lattices, std::int32_t tile) {
   bool flat = true, eccentric = false;
   for (const Lattice& lattice : lattices)
     flat = flat && lattice.flat, eccentric = eccentric || lattice.eccentric;
-  if (eccentric)
-    return std::make_unique<TileEngine<damped, EccentricFrame>>(std::move(lattices), tile);
-  if (flat) return std::make_unique<TileEngine<damped, FlatFrame>>(std::move(lattices), tile);
-  return std::make_unique<TileEngine<damped, AnyFrame>>(std::move(lattices), tile);
+  const auto make = [&]<template <class> class Frame>() {
+    return std::make_unique<TileEngine<damped, breakable, Frame>>(std::move(lattices), tile);
+  };
+  if (eccentric) return make.template operator()<EccentricFrame>();
+  if (flat) return make.template operator()<FlatFrame>();
+  return make.template operator()<AnyFrame>();
 }
 std::unique_ptr<Engine> make_engine(std::vector<Lattice> lattices, std::int32_t tile) {
-  const bool damped = std::any_of(lattices.begin(), lattices.end(),
-                                  [](const Lattice& lattice) { return lattice.damped; });
-  return damped ? make_engine_of<true>(std::move(lattices), tile)
-                : make_engine_of<false>(std::move(lattices), tile);
+  const auto any = [&](auto has) { return std::any_of(lattices.begin(), lattices.end(), has); };
+  const bool damped = any([](const Lattice&lattice) { return lattice.damped; }),
+             breaks = any([](const Lattice&lattice) { return lattice.breaking.has_value(); });
+  const auto make = damped   ? breaks ? make_engine_of<true, true> : make_engine_of<true, false>
+                      : breaks ? make_engine_of<false, true>
+                             : make_engine_of<false, false>;
+  return make(std::move(lattices), tile);
 }
 
 }  // namespace

@@ -82,6 +82,14 @@ __device__ inline void raise(std::uint64_t* address, double value) {
   if (bits > *static_cast<volatile unsigned long long*>(largest)) atomicMax(largest, bits);
 }
 
+/// Lowers *address to value; adds bits to it.
+__device__ inline void lower(std::int32_t* address, std::int32_t value) {
+  atomicMin(address, value);
+}
+__device__ inline void add_bits(std::uint32_t* address, std::uint32_t bits) {
+  atomicOr(address, bits);
+}
+
 /// One block of threads per tile.
 constexpr int most_threads = 128;  ///< of a block
 template <class Work>
@@ -179,6 +187,11 @@ class Array {
 inline void raise(std::uint64_t* address, double value) {
   *address = std::max(*address, std::bit_cast<std::uint64_t>(value));
 }
+
+inline void lower(std::int32_t* address, std::int32_t value) {
+  *address = std::min(*address, value);
+}
+inline void add_bits(std::uint32_t* address, std::uint32_t bits) { *address |= bits; }
 
 constexpr int most_threads = 128;
 

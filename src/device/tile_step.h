@@ -7,33 +7,20 @@
 #include <cstdint>
 
 #include "beams/kernel.h"
+#include "device/breaking.h"
+#include "device/halts.h"
 #include "device/launch.h"
+#include "device/soa.h"
 #include "leapfrog/held_body.h"
 
 namespace floe::device {
 namespace {  // of each back end its own, as in launch.h
-
-/// Numbers of many bodies or beams, number by number: neighbouring threads read what lies side by
-/// side.
-struct Soa {
-  double* numbers;
-  std::int64_t size;  ///< of bodies or beams
-
-  constexpr double& at(int number, std::int64_t of) const { return numbers[number * size + of]; }
-  constexpr Vec3<double> vector(int number, std::int64_t of) const {
-    return {at(number, of), at(number + 1, of), at(number + 2, of)};
-  }
-  constexpr Quat<double> quaternion(int number, std::int64_t of) const {
-    return {at(number, of), at(number + 1, of), at(number + 2, of), at(number + 3, of)};
-  }
-};
 
 /// Where the records of bodies have what, as Spatial.
 enum Record : int { u_at = 0, q_at = 3, v_at = 7, w_at = 10, momentum_at = 13, of_record = 16 };
 
 /// One run among those that are stepped together.
 struct RunOfTiles {
-  int steps;             ///< of this launch; fewer than others make: its bodies then stay
   double dt, before;     ///< as Steps
   std::int64_t motions;  ///< where its motions begin in the table, of the first step
   std::int32_t motion_count;
@@ -72,7 +59,9 @@ struct Memory {
   const double* wrenches;
   // Runs.
   const RunOfTiles* runs;
+  Halts halts;
   std::uint64_t *speed2, *spin2;  ///< largest squares as bits, which are in the same order
+  BreakingMemory breaking;
 };
 
 /// Reads the frame of a beam at rest, as few numbers as it has.
@@ -102,7 +91,7 @@ struct FrameOf<EccentricFrame> {
 
 /// Step k of a launch, for one tile at a time: beam() for each of its beams, then body() for each
 /// of its bodies.
-template <bool damped, template <class> class Frame>
+template <bool damped, bool breakable, template <class> class Frame>
 struct TileStep {
   using Kernel = BeamKernel<Kinematics::corotational>;
   static constexpr int first = FrameOf<Frame>::size, of_beam = first + 7 + (damped ? 6 : 0);
@@ -122,7 +111,7 @@ struct TileStep {
   /// \param shared  room of a tile, number by number
   FLOE_KERNEL void beam(std::int32_t tile, std::int32_t k, double* shared) const {
     const RunOfTiles& run = memory.runs[memory.run[tile]];
-    if (step >= run.steps) return;
+    if (memory.halts.stands(memory.run[tile], step)) return;
     const std::int64_t slot = memory.first_slot[tile] + k;
     const Soa &c = memory.constants, &r = memory.records[step % 2];
     const BeamConstants<double, Frame> beam{FrameOf<Frame>::get(c, slot), c.at(first, slot),
@@ -130,23 +119,52 @@ struct TileStep {
                                             c.at(first + 3, slot),        c.at(first + 4, slot),
                                             c.at(first + 5, slot),        c.at(first + 6, slot)};
     const std::int32_t i = memory.i[slot], j = memory.j[slot];
+    const std::int64_t room = beams(tile);
+    bool cracked = false;
+    if constexpr (breakable) {
+      const Soa& cracks = memory.breaking.cracks;
+      cracked = cracks.at(Damage::kappa, slot) > 0;
+      if (cracked && cracks.at(Damage::damage, slot) == 1) {
+        for (int n = 0; n < shares; ++n) shared[n * room + k] = 0;
+        forget_dashpots(slot);
+        return;
+      }
+    }
     const BeamStrains<double> s =
         Kernel::strains(beam, Vec3<double>(r.vector(u_at, j) - r.vector(u_at, i)),
                         r.quaternion(q_at, i), r.quaternion(q_at, j));
     BeamStress<double> stress = elastic_stress(beam, s);
-    const std::int64_t room = beams(tile);
+    const auto rates = [&] {
+      return Kernel::rates(beam, s, Vec3<double>(r.vector(v_at, j) - r.vector(v_at, i)),
+                           r.vector(w_at, i), r.vector(w_at, j));
+    };
+    Softening left;
+    if constexpr (breakable) {
+      const BreakableBeam<Kernel, decltype(beam)> breaking{
+          memory.breaking, memory.breaking.runs[memory.run[tile]], slot, beam, s, stress};
+      if (cracked || !breaking.holds()) {
+        left = breaking.soften(cracked, rates, step, step == 0 ? run.before : run.dt,
+                               memory.run[tile], [&] { return middle(slot, i, j, r, s); });
+        auto soft = beam;
+        soft.kn *= left.axial;
+        soft.ksz *= left.rest, soft.ksy *= left.rest, soft.kt *= left.rest;
+        soft.kby *= left.rest, soft.kbz *= left.rest;
+        stress = elastic_stress(soft, s);
+      }
+    }
     if constexpr (damped) {
-      const BeamStress<double> rate =
-          Kernel::rates(beam, s, Vec3<double>(r.vector(v_at, j) - r.vector(v_at, i)),
-                        r.vector(w_at, i), r.vector(w_at, j));
-      const auto dashpot = [&](int d) { return c.at(first + 7 + d, slot); };
+      const BeamStress<double> rate = rates();
+      const auto dashpot = [&](int d) {
+        return (d == 0 ? left.axial : left.rest) * c.at(first + 7 + d, slot);
+      };
       const BeamStress<double> viscous{
           dashpot(0) * rate.n,
           dashpot(1) * rate.qy,
           dashpot(2) * rate.qz,
           {dashpot(3) * rate.c.x, dashpot(4) * rate.c.y, dashpot(5) * rate.c.z}};
-      shared[9 * room + k] =
-          viscous.n * rate.n + viscous.qy * rate.qy + viscous.qz * rate.qz + dot(viscous.c, rate.c);
+      double& lost = shared[9 * room + k];
+      lost = power(viscous, rate);
+      if constexpr (breakable) lost += power(remember_dashpots(slot, viscous), rate);
       stress = stress + viscous;
     }
     const BeamGradient<double> g = Kernel::gradient(beam, s, stress);
@@ -164,7 +182,7 @@ struct TileStep {
     const RunOfTiles& run = memory.runs[memory.run[tile]];
     const std::int64_t b = memory.first_body[tile] + k;
     const Soa &from = memory.records[step % 2], &to = memory.records[(step + 1) % 2];
-    if (step >= run.steps) {
+    if (memory.halts.stands(memory.run[tile], step)) {
       for (int n = 0; n < of_record; ++n) to.at(n, b) = from.at(n, b);
       return;
     }
@@ -173,7 +191,11 @@ struct TileStep {
                                  from.vector(v_at, b), from.vector(w_at, b),
                                  from.vector(momentum_at, b)};
     Vec3<double> force{0, 0, 0}, moment{0, 0, 0};
-    sum_beams(tile, b, shared, before > 0 ? dt : 0.25 * dt, force, moment);
+    sum_beams(tile, b, shared,
+              breakable    ? 0.5 * before
+              : before > 0 ? dt
+                           : 0.25 * dt,
+              force, moment);
     if (memory.weights != nullptr) force.z -= memory.weights[b];
     if (memory.water.numbers != nullptr) {
       force = force + memory.water.vector(0, b);
@@ -207,7 +229,35 @@ struct TileStep {
     to.at(number + 2, b) = v.z;
   }
 
-  /// \param time  by which the power that dashpots lose counts: LeapfrogWork, "never" [s]
+  FLOE_KERNEL static double power(const BeamStress<double>& stress,
+                                  const BeamStress<double>& rate) {
+    return stress.n * rate.n + stress.qy * rate.qy + stress.qz * rate.qz + dot(stress.c, rate.c);
+  }
+  /// Returns the forces of dashpots at the start of the last step, and keeps the present ones.
+  FLOE_KERNEL BeamStress<double> remember_dashpots(std::int64_t slot,
+                                                   const BeamStress<double>& now) const {
+    const SoaOf<float>& kept = memory.breaking.viscous;
+    const auto at = [&](int n) { return static_cast<double>(kept.at(n, slot)); };
+    const BeamStress<double> before{at(0), at(1), at(2), {at(3), at(4), at(5)}};
+    const auto put = [&](int n, double value) { kept.at(n, slot) = static_cast<float>(value); };
+    put(0, now.n), put(1, now.qy), put(2, now.qz), put(3, now.c.x), put(4, now.c.y);
+    put(5, now.c.z);
+    return before;
+  }
+  FLOE_KERNEL void forget_dashpots(std::int64_t slot) const {
+    if constexpr (damped)
+      for (int n = 0; n < 6; ++n) memory.breaking.viscous.at(n, slot) = 0;
+  }
+  /// Returns the middle between the ends of a beam [m].
+  FLOE_KERNEL Vec3<double> middle(std::int64_t slot, std::int32_t i, std::int32_t j, const Soa& r,
+                                  const BeamStrains<double>& s) const {
+    Vec3<double> both = r.vector(u_at, i) + r.vector(u_at, j);
+    if constexpr (is_eccentric_frame<Frame>) both = both + s.arm_i + s.arm_j;
+    return memory.breaking.constants.vector(Breaking::middle, slot) + 0.5 * both;
+  }
+
+  /// \param time  by which the power that dashpots lose counts: LeapfrogWork, "never", or where
+  ///              beams break "in_next_evaluation" [s]
   FLOE_KERNEL void sum_beams(std::int32_t tile, std::int64_t b, const double* shared, double time,
                              Vec3<double>& force, Vec3<double>& moment) const {
     const std::int64_t room = beams(tile);

@@ -90,7 +90,7 @@ struct WaterStep {
 
   FLOE_KERNEL void body(std::int32_t tile, std::int32_t k, const double*) const {
     const std::int32_t run = memory.run[tile];
-    if (step >= memory.runs[run].steps) return;
+    if (memory.halts.stands(run, step)) return;
     const std::int64_t b = memory.first_body[tile] + k;
     const WaterOfRun& of = water.waters[run];
     const double* motion = water.motions + of.motions + std::int64_t{4} * step;

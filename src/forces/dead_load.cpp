@@ -42,7 +42,7 @@ class DeadLoad final : public Force<Space>,
     return {.tangent = this, .work = this, .time = this, .device = linear_ ? nullptr : this};
   }
 
-  void describe(DeviceModel& model) const override {
+  void describe(DeviceModel& model) override {
     model.loads.push_back({model.next_work, bodies_, arm_, [this](double time) {
                              const Vec3<double> f = force(time), m = moment(time);
                              return std::array{f.x, f.y, f.z, m.x, m.y, m.z};

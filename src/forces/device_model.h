@@ -43,6 +43,31 @@ struct DeviceWater {
   const Shapes* shapes = nullptr;
 };
 
+/// Histories of beams that break.
+class KeptCracks {
+ public:
+  /// Numbers of each beam's crack after each other, kappa 0 where there is none, as
+  /// device::Damage; and the forces of dashpots at the start of the last step, six per beam, or
+  /// none.
+  virtual void read(std::vector<double>& cracks, std::vector<float>& viscous) const = 0;
+  /// \param cracks  empty: as they were
+  /// \param dt      length of the last step [s]
+  virtual void write(std::span<const double> cracks, std::span<const float> viscous, double dt) = 0;
+
+ protected:
+  ~KeptCracks() = default;
+};
+/// Beams that break, in the order of DeviceModel::beams.
+struct DeviceBreaking {
+  /// Of a beam: five strengths, area [m^2], G_f and G_s [J/m^2], the middle between its ends at
+  /// rest (3) [m], three further strengths of the general criterion (fracture_laws/law.h).
+  std::vector<std::array<double, 14>> beams;
+  std::vector<double> limits;  ///< twice the energy below which the strength does not matter [J]
+  bool general = false;        ///< by the general criterion
+  bool crushes = false;        ///< beams have a compressive strength
+  KeptCracks* kept = nullptr;
+};
+
 /// The numbers of forces, for a back end that keeps the state in memory of its own and steps it
 /// there (src/device). Bodies are those of a part that is the whole lattice.
 struct DeviceModel {
@@ -69,6 +94,7 @@ struct DeviceModel {
   std::vector<double> weights;  ///< per body: along -z [N]; empty: none
   std::vector<Load> loads;
   std::optional<DeviceWater> water;
+  std::optional<DeviceBreaking> breaking;
 
   /// Index of the first work of the force that is asked.
   std::size_t next_work = 0;

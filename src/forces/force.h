@@ -256,7 +256,7 @@ class OnDevice {
  public:
   /// Adds the numbers of the force.
   /// \throws InputError if a back end cannot compute it with these options
-  virtual void describe(DeviceModel& model) const = 0;
+  virtual void describe(DeviceModel& model) = 0;
 
  protected:
   ~OnDevice() = default;

@@ -12,7 +12,7 @@ class Gravity final : public Force<Spatial>, public OnDevice {
   std::string_view name() const override { return "gravity"; }
   Roles<Spatial> roles() override { return {.device = this}; }
 
-  void describe(DeviceModel& model) const override {
+  void describe(DeviceModel& model) override {
     model.weights.resize(static_cast<std::size_t>(part_.owned));
     for (std::int32_t b = 0; b < part_.owned; ++b)
       item(model.weights, b) = is_dry(part_.bodies, b) ? 0.0 : item(part_.bodies.mass, b) * g_;

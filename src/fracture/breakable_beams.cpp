@@ -66,6 +66,7 @@ template <Kinematics kinematics, bool damped, template <class> class Frame>
 class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
                              public Commits<Spatial>,
                              public Persists,
+                             public KeptCracks,
                              public Fracture {
   using Base = SpatialBeams<kinematics, damped, Frame>;
   using Base::blocks_, Base::dashpots_, Base::part_, Base::constants, Base::for_each, Base::record;
@@ -110,8 +111,28 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     Roles<Spatial> roles = Base::roles();
     roles.commits = this;
     roles.persists = this;
-    roles.device = nullptr;
+    if (tips_) roles.device = nullptr;
     return roles;
+  }
+
+  void describe(DeviceModel& model) override {
+    Base::describe(model);
+    DeviceBreaking breaking;
+    breaking.general = kind_ == Criterion::general;
+    breaking.crushes = crushes_;
+    breaking.kept = this;
+    for (std::int32_t m = 0; m < part_.beams.size(); ++m) {
+      const std::size_t b = this->slot(m) / lanes, lane = this->slot(m) % lanes;
+      const Strength<double> s = whole_strength(m);
+      const double of_ice = factor(part_.beams.energy, m);
+      const Vec3<double> middle = 0.5 * (centre_at_rest(m, 0) + centre_at_rest(m, 1));
+      breaking.beams.push_back({s.axial, s.bending_y, s.bending_z, s.shear, s.torsion, area(m),
+                                of_ice * options_.energy, of_ice * options_.energy_shear, middle.x,
+                                middle.y, middle.z, whole_further_.transverse,
+                                whole_further_.pressure, whole_further_.friction});
+      breaking.limits.push_back(limits_[b].values[lane]);
+    }
+    model.breaking = std::move(breaking);
   }
 
   /// A block with an overloaded or damaged beam is added as a whole, with softened stiffnesses. So
@@ -260,6 +281,54 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if (std::exchange(packed_, false)) order_blocks();
   }
 
+  // -- Histories that a back end keeps
+  void read(std::vector<double>& cracks, std::vector<float>& viscous) const override {
+    cracks.assign(crack_numbers * crack_of_.size(), 0.0);
+    for (const Crack& c : cracks_) {
+      const std::array<double, crack_numbers> all{
+          c.kappa,   c.damage,     c.ultimate,           c.mode_mix,
+          c.nominal, c.dissipated, c.at_tip ? 1.0 : 0.0, c.crushed ? 1.0 : 0.0,
+          c.time,    c.place[0],   c.place[1],           c.place[2]};
+      std::copy(all.begin(), all.end(),
+                cracks.begin() + static_cast<std::ptrdiff_t>(crack_numbers) * c.beam);
+    }
+    viscous.clear();
+    if constexpr (damped) {
+      for (std::size_t m = 0; m < crack_of_.size(); ++m)
+        for_viscous(static_cast<std::int32_t>(m),
+                    [&](const float& value) { viscous.push_back(value); });
+    }
+  }
+  void write(std::span<const double> cracks, std::span<const float> viscous, double dt) override {
+    growing_.clear();
+    dt_ = dt;
+    // The sum does not depend on how often somebody has asked.
+    if (!cracks.empty()) dissipated_ = 0;
+    for (std::size_t m = 0; m < crack_of_.size() && !cracks.empty(); ++m) {
+      const double* v = &cracks[crack_numbers * m];
+      const auto beam = static_cast<std::int32_t>(m);
+      const Crack* known = crack(beam);
+      dissipated_ += v[5];
+      if (!(v[0] > 0) || (known != nullptr && known->kappa == v[0] && known->damage == v[1]))
+        continue;
+      put({beam,
+           v[0],
+           v[1],
+           v[2],
+           v[3],
+           v[4],
+           v[5],
+           v[6] != 0,
+           v[8],
+           {v[9], v[10], v[11]},
+           v[7] != 0});
+    }
+    if (std::exchange(packed_, false)) order_blocks();
+    std::size_t next = 0;
+    for (std::size_t m = 0; m < crack_of_.size() && !viscous.empty(); ++m)
+      for_viscous(static_cast<std::int32_t>(m), [&](float& value) { value = viscous[next++]; });
+  }
+
   std::int64_t folded(const State<Spatial>& state) const override {
     std::int64_t count = 0;
     for_each([&](std::int32_t m, std::int32_t i, std::int32_t j) {
@@ -390,12 +459,19 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   static constexpr std::int32_t none = -1;
   static constexpr double boundless = std::numeric_limits<double>::infinity();
 
-  /// Growth of the damage of a beam whose s has passed its kappa in the last evaluation.
-  struct Growth {
-    Crack crack;        ///< after the growth
-    double released;    ///< decrease of the stored energy [J]
-    double dissipated;  ///< energy dissipated by the growth [J]
-  };
+  static constexpr std::size_t crack_numbers = 12;  ///< of KeptCracks
+
+  /// Visits the forces of a beam's dashpots at the start of the last step.
+  template <class Visit>
+  void for_viscous(std::int32_t m, Visit visit) {
+    for (auto& values : viscous_[this->slot(m) / lanes].values)
+      visit(values[this->slot(m) % lanes]);
+  }
+  template <class Visit>
+  void for_viscous(std::int32_t m, Visit visit) const {
+    for (const auto& values : viscous_[this->slot(m) / lanes].values)
+      visit(values[this->slot(m) % lanes]);
+  }
 
   bool counts_here(std::int32_t m) const { return item(part_.counts_here, m) != 0; }
   const Crack* crack(std::int32_t m) const {
@@ -542,54 +618,38 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     const BeamStress<double> strain = as_stress(e), force = elastic_stress(c, e);
     DamageEnergy energy = damage_energy(force, strain);
     const Crack* known = crack(m);
-    Growth g{known != nullptr ? *known : Crack{}, 0, 0};
-    Crack& next = g.crack;
-    const double before = next.damage, passed = next.kappa;
+    const double before = known != nullptr ? known->damage : 0, passed = kappa(m);
     const bool crushing = !at_tip && crushes(m, force);
-    // A beam that was damaged otherwise before is too weak to be crushed gradually.
-    const bool at_once = at_tip || (crushing && known != nullptr && !known->crushed);
-    if (known == nullptr) next.crushed = crushing;
-    if (next.crushed) energy.crush();
-    if (known == nullptr) {
-      next.beam = m;
-      const double of_ice = factor(part_.beams.energy, m);
-      initiate(next, energy, s, item(part_.beams.width, m) * item(part_.beams.height, m),
-               of_ice * options_.energy, of_ice * options_.energy_shear);
-    }
-    next.kappa = std::max(s, passed);
-    next.damage = at_once ? 1 : damage_at(next, s);
-    next.at_tip = at_tip;
+    const double of_ice = factor(part_.beams.energy, m);
+    Crack next = grown(known, s, crushing, at_tip, energy, area(m), of_ice * options_.energy,
+                       of_ice * options_.energy_shear);
+    next.beam = m;
     DamageEnergy path = energy;
-    BeamStress<double> rate{};
     if (options_.dynamic) {
-      rate = rates(c, e, record(state, i), record(state, j));
-      path = damage_energy(force, {strain.n - dt_ * rate.n, strain.qy - dt_ * rate.qy,
-                                   strain.qz - dt_ * rate.qz, strain.c - dt_ * rate.c});
-      if (next.crushed) path.crush();
-    } else if (!at_once) {
+      path = energy_over_step(next, force, strain, rates(c, e, record(state, i), record(state, j)),
+                              dt_);
+    } else if (!breaks_at_once(known, crushing, at_tip)) {
       // A beam that jumps beyond s_u dissipates what is left of G A; the rest is released.
       const double most = next.brittle() ? s : std::min(s, next.ultimate);
       for (double* part : {&path.stretch, &path.shear, &path.bending})
         *part *= most == s ? passed / s : passed * most / (s * s);
     }
-    g.dissipated = std::max(0.0, path.damaged() * (next.damage - before));
-    g.released = energy.damaged() * (next.damage - before);
     if (next.broken()) {
-      next.crushed = next.crushed || crushing;
-      g.dissipated += path.squeeze;
-      g.released += energy.squeeze;
       next.time = state.time;
       next.place = 0.5 * (end_of(m, 0, state) + end_of(m, 1, state));
     }
-    next.dissipated += g.dissipated;
-    return g;
+    return dissipating(next, before, crushing, energy, path);
   }
 
+  /// Returns where the centroid of a beam's body is at rest, on the beam's side of the period [m].
+  Vec3<double> centre_at_rest(std::int32_t m, std::size_t end) const {
+    const Vec3<double> at = item(part_.bodies.position, item(part_.beams.bodies, m)[end]);
+    return end == 1 && !part_.beams.image.empty() ? at + item(part_.beams.image, m) : at;
+  }
   /// Returns where an end of a beam is [m].
   Vec3<double> end_of(std::int32_t m, std::size_t end, const State<Spatial>& state) const {
     const auto body = static_cast<std::size_t>(item(part_.beams.bodies, m)[end]);
-    Vec3<double> at = part_.bodies.position[body] + displacement(state, body);
-    if (end == 1 && !part_.beams.image.empty()) at = at + item(part_.beams.image, m);
+    const Vec3<double> at = centre_at_rest(m, end) + displacement(state, body);
     if (part_.beams.offsets.empty()) return at;
     return at + rotate(normalised(rotation(state, body)), offset(part_.beams, m, end));
   }
@@ -649,10 +709,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     }
     std::vector<double> rows;
     const auto each = [&](auto visit) {
-      for (const std::int32_t m : beams) {
-        for (auto& values : viscous_[this->slot(m) / lanes].values)
-          visit(values[this->slot(m) % lanes]);
-      }
+      for (const std::int32_t m : beams) for_viscous(m, visit);
     };
     each([&](float value) { rows.push_back(static_cast<double>(value)); });
     archive.beam_rows("viscous", beams, rows, 6);

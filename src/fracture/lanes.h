@@ -6,10 +6,15 @@
 #include <algorithm>
 #include <array>
 
+#include "base/simd.h"
 #include "beams/lanes.h"
 #include "fracture_laws/law.h"
 
 namespace floe {
+
+inline void drop_tension_where_pressed(const Lanes& stretch, Criteria<Lanes>& s2) {
+  where(stretch < 0.0, s2.tension) = 0.0;
+}
 
 /// Strengths of a block of beams, number by number and lane by lane.
 struct alignas(64) StrengthBlock {

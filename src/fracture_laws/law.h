@@ -1,5 +1,7 @@
 /// \file
 /// The law of fracture for one beam, on any scalar where loops need it (model.md, "Fracture").
+/// This text is that of every back end: the lanes of a processor (src/fracture/lanes.h) and
+/// devices.
 ///
 ///     sigma = N/A + |M_2| h/(2 I_y) + |M_3| w/(2 I_z),  tau = |Q|/A + |T| (3 + 1.8 b/a)/(a b^2)
 ///     s^2 = (<sigma>/sigma_t)^2 + (tau/tau_c)^2         of the forces in an undamaged beam
@@ -17,7 +19,6 @@
 #include <cmath>
 #include <utility>
 
-#include "base/simd.h"
 #include "beams/kernel.h"
 #include "floe/geometry/polyhedron.h"
 
@@ -56,7 +57,7 @@ inline Strength<double> section_strength(double w, double h, double tension, dou
 
 /// s^2 of the given elastic section forces.
 template <class T>
-T criterion(const Strength<T>& c, const BeamStress<T>& e) {
+constexpr T criterion(const Strength<T>& c, const BeamStress<T>& e) {
   using std::abs;
   using std::max;
   using std::sqrt;
@@ -73,6 +74,11 @@ struct Criteria {
   T pressure;  ///< Mohr and Coulomb's; 0 if nothing is pressed or beams do not crush
 };
 
+/// Sets s2.tension to 0 where the most stretched fibre is pressed. \param stretch  of that fibre
+constexpr void drop_tension_where_pressed(double stretch, Criteria<double>& s2) {
+  if (stretch < 0.0) s2.tension = 0.0;
+}
+
 /// s^2 of the given elastic section forces, with weights and pressure. With a compressive strength
 /// a fibre in tension has the criterion of the plain law and a pressed one that of Mohr and Coulomb
 /// on the worst of all planes,
@@ -84,8 +90,8 @@ struct Criteria {
 /// p/sigma_c at tau = 0. It is convex in p, so the two extreme fibres decide.
 /// \param crushes  beams have a compressive strength
 template <class T>
-Criteria<T> criteria(const Strength<T>& c, const FurtherStrength<T>& f, const BeamStress<T>& e,
-                     bool crushes) {
+constexpr Criteria<T> criteria(const Strength<T>& c, const FurtherStrength<T>& f,
+                               const BeamStress<T>& e, bool crushes) {
   using std::abs;
   using std::max;
   using std::sqrt;
@@ -102,7 +108,7 @@ Criteria<T> criteria(const Strength<T>& c, const FurtherStrength<T>& f, const Be
   };
   const T least = max(T(0.0), T(-axial - bent)), most = max(T(0.0), T(bent - axial));
   s2.pressure = max(pressed(least), pressed(most));
-  s2.tension = where_not_negative(T(axial + bent), s2.tension);
+  drop_tension_where_pressed(T(axial + bent), s2);
   return s2;
 }
 
@@ -111,7 +117,7 @@ struct Softening {
   double axial = 1, rest = 1;
 };
 /// \param whole_axis  not stretched, and pressed beams keep their axial stiffness
-inline Softening softening(double damage, bool whole_axis, bool broken) {
+constexpr Softening softening(double damage, bool whole_axis, bool broken) {
   return {broken ? 0.0 : whole_axis ? 1.0 : 1 - damage, 1 - damage};
 }
 
@@ -119,14 +125,15 @@ inline Softening softening(double damage, bool whole_axis, bool broken) {
 struct DamageEnergy {
   double stretch, squeeze;  ///< axial: in tension, in compression
   double shear, bending;    ///< shear and torsion; bending
-  double damaged() const { return stretch + shear + bending; }
-  double whole() const { return damaged() + squeeze; }
+  constexpr double damaged() const { return stretch + shear + bending; }
+  constexpr double whole() const { return damaged() + squeeze; }
   /// Of a beam that is crushed: what it stores in compression counts as shear, on inclined planes.
-  void crush() { shear += std::exchange(squeeze, 0.0); }
+  constexpr void crush() { shear += std::exchange(squeeze, 0.0); }
 };
 /// Bilinear: the forces of one state on the strains of another. With both of one state it is the
 /// energy of that state.
-inline DamageEnergy damage_energy(const BeamStress<double>& e, const BeamStress<double>& strain) {
+constexpr DamageEnergy damage_energy(const BeamStress<double>& e,
+                                     const BeamStress<double>& strain) {
   const double axial = 0.5 * e.n * strain.n;
   const bool tension = e.n > 0 && strain.n > 0, pressure = e.n < 0 && strain.n < 0;
   return {tension ? axial : 0.0, pressure ? axial : 0.0,
@@ -147,16 +154,16 @@ struct Crack {
   double time = 0;        ///< when it broke [s]
   Point3 place{};         ///< where it broke [m]
   bool crushed = false;   ///< it yields to pressure, so its elongation softens in compression too
-  bool brittle() const { return ultimate <= 1; }
-  bool broken() const { return damage == 1; }
+  constexpr bool brittle() const { return ultimate <= 1; }
+  constexpr bool broken() const { return damage == 1; }
 };
 
 /// Sets mode mix, nominal energy and ultimate s of a crack when s has passed 1.
 /// \param energy      of the undamaged beam at this state
 /// \param area        A [m^2]
 /// \param g, g_shear  G_f, G_s [J/m^2]
-inline void initiate(Crack& crack, const DamageEnergy& energy, double s, double area, double g,
-                     double g_shear) {
+constexpr void initiate(Crack& crack, const DamageEnergy& energy, double s, double area, double g,
+                        double g_shear) {
   const double damaged = energy.damaged();
   crack.mode_mix = damaged > 0 ? energy.shear / damaged : 0;
   crack.nominal = area / ((1 - crack.mode_mix) / g + crack.mode_mix / g_shear);
@@ -164,9 +171,67 @@ inline void initiate(Crack& crack, const DamageEnergy& energy, double s, double 
 }
 
 /// Damage D at kappa >= 1.
-inline double damage_at(const Crack& crack, double kappa) {
+constexpr double damage_at(const Crack& crack, double kappa) {
   if (kappa >= crack.ultimate || crack.brittle()) return 1;
   return std::min(1.0, crack.ultimate / (crack.ultimate - 1) * (1 - 1 / kappa));
+}
+
+/// Growth of the damage of a beam whose s has passed its kappa.
+struct Growth {
+  Crack crack;            ///< after the growth
+  double released = 0;    ///< decrease of the stored energy [J]
+  double dissipated = 0;  ///< energy dissipated by the growth [J]
+};
+
+/// Whether a beam breaks whatever its kappa: at a tip, or crushed after it was damaged otherwise,
+/// since then it is too weak to be crushed gradually. \param crushing  pressure is the worst for it
+constexpr bool breaks_at_once(const Crack* known, bool crushing, bool at_tip) {
+  return at_tip || (crushing && known != nullptr && !known->crushed);
+}
+
+/// Returns the crack of a beam at s, which has passed its kappa.
+/// \param known    its crack before; null: none
+/// \param energy   of the undamaged beam at this state; becomes as it counts for the crack
+/// \param area     A [m^2]
+/// \param g, g_shear  G_f, G_s [J/m^2]
+constexpr Crack grown(const Crack* known, double s, bool crushing, bool at_tip,
+                      DamageEnergy& energy, double area, double g, double g_shear) {
+  Crack next = known != nullptr ? *known : Crack{};
+  if (known == nullptr) next.crushed = crushing;
+  if (next.crushed) energy.crush();
+  if (known == nullptr) initiate(next, energy, s, area, g, g_shear);
+  next.kappa = std::max(s, next.kappa);
+  next.damage = breaks_at_once(known, crushing, at_tip) ? 1 : damage_at(next, s);
+  next.at_tip = at_tip;
+  return next;
+}
+
+/// Adds what a growth dissipates.
+/// \param before  D before it \param energy  as grown() leaves it
+/// \param path    the same of the forces on the strains along the way to this state
+constexpr Growth dissipating(Crack next, double before, bool crushing, const DamageEnergy& energy,
+                             const DamageEnergy& path) {
+  Growth g;
+  g.dissipated = std::max(0.0, path.damaged() * (next.damage - before));
+  g.released = energy.damaged() * (next.damage - before);
+  if (next.broken()) {
+    next.crushed = next.crushed || crushing;
+    g.dissipated += path.squeeze;
+    g.released += energy.squeeze;
+  }
+  next.dissipated += g.dissipated;
+  g.crack = next;
+  return g;
+}
+
+/// In dynamics: damage energy of the forces of a state on the strains of the last one, dt before.
+constexpr DamageEnergy energy_over_step(const Crack& next, const BeamStress<double>& force,
+                                        const BeamStress<double>& strain,
+                                        const BeamStress<double>& rate, double dt) {
+  DamageEnergy path = damage_energy(force, {strain.n - dt * rate.n, strain.qy - dt * rate.qy,
+                                            strain.qz - dt * rate.qz, strain.c - dt * rate.c});
+  if (next.crushed) path.crush();
+  return path;
 }
 
 }  // namespace floe

@@ -63,7 +63,7 @@ class Buoyancy final : public Force<Spatial>,
     return roles;
   }
 
-  void describe(DeviceModel& model) const override {
+  void describe(DeviceModel& model) override {
     DeviceWater& water = submersion_->describe(model);
     water.weight_density = weight_;
     if (immersion_.has_level()) water.buoyancy_work = model.next_work;

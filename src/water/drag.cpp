@@ -126,7 +126,7 @@ class Drag final : public Force<Space>,
   Roles<Space> roles() override {
     return {.tangent = this, .damping = this, .work = this, .step = this, .device = this};
   }
-  void describe(DeviceModel& model) const override {
+  void describe(DeviceModel& model) override {
     if constexpr (std::is_same_v<Space, Spatial>) {
       DeviceWater& water = bodies_.describe(model);
       water.drag_work = model.next_work;

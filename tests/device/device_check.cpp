@@ -35,17 +35,21 @@ void say(const std::string& what, bool good, const char* format, double value) {
 }
 
 /// A damped or undamped sheet under its weight and a load, held at one edge, pulled at the other;
-/// or it floats in a current instead of being held.
+/// or it floats in a current instead of being held. Its beams may break.
 struct Sheet {
   Scene scene;
   std::unique_ptr<test::Dynamics> run;
   device::DescribedModel described;
   double dt = 1e-4;
 
-  Sheet(double bodies, double damping, bool floats = false, int pace = 1) {
+  /// \param strength  of its beams [Pa]; 0: they do not break
+  Sheet(double bodies, double damping, bool floats = false, int pace = 1, double strength = 0) {
     const double side = std::sqrt(bodies * std::sqrt(3.0) / 2);
     scene.forces.beam = scene.forces.gravity = true;
     scene.beam.damping_ratio = damping;
+    scene.forces.fracture = strength > 0;
+    scene.fracture.tensile_strength = scene.fracture.shear_strength = strength;
+    scene.fracture.weibull_modulus = 3;
     Boundary left, right;
     left.name = left.set = "left", left.fixed.fill(true);
     right.name = right.set = "right", right.fixed = {true, false, false, false, true, false};
@@ -71,6 +75,13 @@ struct Sheet {
   }
   Sheet(Sheet&&) = default;
 
+  /// The damage at the start: none.
+  device::Damage damage() const {
+    device::Damage none;
+    if (described.numbers.breaking)
+      described.numbers.breaking->kept->read(none.cracks, none.viscous);
+    return none;
+  }
   std::vector<double> records() const {
     std::vector<double> all;
     for (const std::int32_t b : described.order) {
@@ -94,6 +105,7 @@ struct Sheet {
         s.wrenches.insert(s.wrenches.end(), wrench.begin(), wrench.end());
       }
       if (described.numbers.water) s.water.insert(s.water.end(), {0, 0.3, 0.1, 0});
+      if (described.numbers.breaking) s.times.push_back(n * dt);
     }
     return s;
   }
@@ -101,6 +113,7 @@ struct Sheet {
 
 std::vector<double> stepped(Engine& engine, const Sheet& sheet, int count) {
   engine.put(0, sheet.records());
+  if (sheet.described.numbers.breaking) engine.put_damage(0, sheet.damage());
   for (int n = 0; n < count; n += 50) {
     const Steps steps = sheet.steps(n, std::min(50, count - n));
     engine.step({&steps, 1});
@@ -123,6 +136,7 @@ std::string name_of(const Sheet& sheet) {
   const auto& water = sheet.described.lattice.water;
   return std::to_string(sheet.described.lattice.bodies) + " bodies, " +
          (sheet.described.lattice.damped ? "damped" : "undamped") +
+         (sheet.described.lattice.breaking ? ", breaking" : "") +
          (water ? ", floating, pace " + std::to_string(water->pace) : "");
 }
 
@@ -140,6 +154,15 @@ void compare(const Sheet& sheet) {
   const bool same = works.beams == others.beams && works.held == others.held &&
                     works.loaded == others.loaded && works.drag == others.drag;
   say(name + ": works like those of loop", same, "%.0f", same ? 1 : 0);
+  if (sheet.described.numbers.breaking) {
+    const std::vector<double> cracks = loop->get_damage(0).cracks;
+    double broken = 0;
+    for (std::size_t m = device::Damage::damage; m < cracks.size(); m += device::Damage::numbers)
+      broken += cracks[m] == 1 ? 1 : 0;
+    say(name + ": broken beams", broken > 0, "%.0f", broken);
+    const bool alike = exact->get_damage(0).cracks == cracks;
+    say(name + ": damage like that of loop", alike, "%.0f", alike ? 1 : 0);
+  }
   const double fusion = largest_difference(a, c);
   say(name + ": largest difference, fused", fusion < 1e-11, "%.1e", fusion);
   say(name + ": the same bits in a second run", c == d, "%.0f", c == d ? 1 : 0);
@@ -229,6 +252,8 @@ int main(int argc, char** argv) {
   }
   compare(Sheet(1460, 0.1, true));
   compare(Sheet(1460, 0.1, true, 10));
+  compare(Sheet(1460, 0.1, false, 1, 3e5));
+  compare(Sheet(1460, 0, false, 1, 3e5));
   compare_together();
   constexpr double anything = 1e9;
   for (const double damping : {0.0, 0.1}) {
@@ -236,6 +261,11 @@ int main(int argc, char** argv) {
     time_steps(Sheet(29'561, damping), 1, 10);
     time_steps(Sheet(29'561, damping), 34, 300);
     time_steps(Sheet(1460, damping), 50, anything);
+  }
+  constexpr double holds = 1e9;
+  for (const double damping : {0.0, 0.1}) {
+    time_steps(Sheet(29'561, damping, false, 1, holds), 1, anything);
+    time_steps(Sheet(29'561, damping, false, 1, holds), 34, anything);
   }
   for (const int pace : {1, 10}) {
     time_steps(Sheet(29'561, 0.1, true, pace), 1, anything);

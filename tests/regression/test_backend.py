@@ -4,6 +4,7 @@ not there yet is refused by name."""
 import os
 import unittest
 
+import h5py
 import numpy as np
 
 from interposed import library
@@ -40,10 +41,20 @@ boundary: {names: [edge], edge: {set: left, fix: x y z rx ry rz, velocity: [1, 0
 supply: {strip: 8, length: 32}
 time: {end: 0.1}
 """
-BREAKING = HANGING.replace("[beam, gravity]", "[beam, gravity, fracture]") + """fracture:
-  tensile_strength: 1e6
-  shear_strength: 1e6
+# Its beams soften and break.
+BREAKING = HANGING.replace("[beam, gravity]", "[beam, gravity, fracture]").replace(
+    "-1e4", "-1e5") + """fracture:
+  tensile_strength: 5e5
+  shear_strength: 5e5
   energy: 15
+"""
+CRUSHED = HANGING.replace("[beam, gravity]", "[beam, gravity, fracture]").replace(
+    "[0.01, 0, 0]", "[-0.1, 0, 0]") + """fracture:
+  tensile_strength: 5e5
+  shear_strength: 5e5
+  compressive_strength: 1e6
+  flexural_strength: 6e5
+  energy: 150
 """
 # tools/check_gpu, on a machine with a device.
 HAS_DEVICE = os.environ.get("FLOE_HAS_DEVICE") == "1"
@@ -70,7 +81,9 @@ class Backend(RunningTest):
     def test_runs_are_those_of_the_processor(self):
         """The same samples, works and energies too."""
         for scene, works in ((HANGING, ("damping", "external", "boundary")),
-                             (FLOATING, ("damping", "external", "boundary", "drag"))):
+                             (FLOATING, ("damping", "external", "boundary", "drag")),
+                             (BREAKING, ("damping", "external", "boundary", "fracture")),
+                             (CRUSHED, ("damping", "boundary", "fracture"))):
             self.write(scene)
             for backend in ("cpu", *DEVICES):
                 self.floe("-backend", backend, "-output_dir", backend, "-output_overwrite")
@@ -84,6 +97,18 @@ class Backend(RunningTest):
                     self.assertGreater(np.abs(device[:, names.index(f"energy_{name}")]).max(), 0)
                 self.assertIn(f", steps by {backend}",
                               (self.folder / backend / "floe.log").read_text())
+                if "fracture" in works:
+                    self.same_breaks(backend, 5)
+
+    def same_breaks(self, backend, least):
+        with h5py.File(self.folder / "cpu/breaks.h5") as one, \
+                h5py.File(self.folder / backend / "breaks.h5") as other:
+            self.assertGreater(len(one["beam"]), least)
+            for name in ("beam", "bodies", "brittle", "time"):
+                self.assertTrue((one[name][()] == other[name][()]).all(), name)
+            for name in ("energy", "mode_mix", "nominal_energy", "place"):
+                a, b = one[name][()], other[name][()]
+                self.assertLess(np.abs(a - b).max(), 1e-9 * np.abs(a).max(), name)
 
     def test_steps_in_space(self):
         self.write(PULL)
@@ -94,20 +119,28 @@ class Backend(RunningTest):
     def test_goes_on_from_either(self):
         """Stopped on the way, a run ends in the bits of one in one piece; a run of the processor
         goes on by the device's text, and back."""
-        self.write(FLOATING)
+        for scene in (FLOATING, BREAKING):
+            self.write(scene)
+            self.go_on_from_either()
+
+    def go_on_from_either(self):
         for backend in ("cpu", *DEVICES):
-            self.floe("-backend", backend, "-output_dir", backend)
+            self.floe("-backend", backend, "-output_dir", backend, "-output_overwrite")
         for first, then in (pair for device in DEVICES
                             for pair in ((device, device), ("cpu", device), (device, "cpu"))):
             dir = f"{first}_{then}"
             with self.subTest(dir):
-                self.floe("-backend", first, "-output_dir", dir, "-checkpoint_every", "1000",
-                          "-ts_max_steps", "130")
+                self.floe("-backend", first, "-output_dir", dir, "-output_overwrite",
+                          "-checkpoint_every", "1000", "-ts_max_steps", "130")
                 self.floe("-backend", then, "-output_dir", dir, "-checkpoint_restart",
                           f"{dir}/checkpoint.h5")
                 (names, straight), (_, parts) = self.history(then), self.history(dir)
                 if first == then:
-                    self.assertTrue((parts[-1] == straight[-1]).all())
+                    # Sums of works begin anew at a restart, which rounding shows in the balance.
+                    error = names.index("energy_balance_error")
+                    self.assertLess(abs(parts[-1, error] - straight[-1, error]), 1e-12)
+                    self.assertTrue((np.delete(parts[-1], error) ==
+                                     np.delete(straight[-1], error)).all())
                 else:
                     self.alike(names, straight, parts[np.isin(parts[:, 0], straight[:, 0])])
 
@@ -131,7 +164,8 @@ class Backend(RunningTest):
 
     def test_what_is_refused(self):
         for scene, words, said in (
-                (BREAKING, (), "backend: loop has no beams that break yet"),
+                (BREAKING + "  propagation: energy\n", (),
+                 "backend: loop has no fracture: propagation: energy yet"),
                 (SUPPLIED, (), "supply: backend: loop steps a lattice that stays as it is"),
                 *(() if HAS_DEVICE else ((HANGING, ("-backend", "cuda"), "backend: cuda: "),)),
                 (HANGING, ("-backend", "loop", "-integrator", "implicit"),
