@@ -26,7 +26,10 @@ enum class Ask : std::uint32_t {
   get,
   put_submerged,
   get_submerged,
+  put_damage,
+  get_damage,
   step,
+  made,
   findings,
   works,
   put_works,
@@ -201,6 +204,15 @@ void Batch::answer(Member& member, Message& message) {
     case Ask::get_submerged:
       numbers(&Engine::get_submerged);
       break;
+    case Ask::put_damage:
+      engine.put_damage(member.run, question.get<Damage>());
+      break;
+    case Ask::get_damage:
+      reply(engine.get_damage(member.run));
+      break;
+    case Ask::made:
+      reply(engine.made(member.run));
+      break;
     case Ask::findings:
       reply(engine.findings(member.run));
       break;
@@ -303,7 +315,12 @@ class EngineOfBatch final : public Engine {
   void get_submerged(std::size_t /*run*/, std::span<double> values) override {
     numbers(Ask::get_submerged, values);
   }
+  void put_damage(std::size_t /*run*/, const Damage& damage) override {
+    (void)ask(Ask::put_damage, damage);
+  }
+  Damage get_damage(std::size_t /*run*/) override { return ask(Ask::get_damage).get<Damage>(); }
   void step(std::span<const Steps> steps) override { tell(Ask::step, steps.front()); }
+  Made made(std::size_t /*run*/) override { return ask(Ask::made).get<Made>(); }
   Findings findings(std::size_t /*run*/) override { return ask(Ask::findings).get<Findings>(); }
   Works works(std::size_t /*run*/) override { return ask(Ask::works).get<Works>(); }
   void put_works(std::size_t /*run*/, const Works& works) override {

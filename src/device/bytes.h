@@ -28,17 +28,27 @@ void visit_fields(Is<Water> auto& of, auto&& visit) {
   each(weight_density, linear, coefficient, drags, level_moves, by_points, pace, prisms, wholes,
        extents, most2, area_per_volume, first_vertex, first_face, first_corner, corners, vertices);
 }
+void visit_fields(Is<Breaking> auto& of, auto&& visit) {
+  auto& [general, crushes, beams, limits] = of;
+  const auto each = [&](auto&... fields) { (visit(fields), ...); };
+  each(general, crushes, beams, limits);
+}
+void visit_fields(Is<Damage> auto& of, auto&& visit) {
+  auto& [cracks, viscous] = of;
+  const auto each = [&](auto&... fields) { (visit(fields), ...); };
+  each(cracks, viscous);
+}
 void visit_fields(Is<Lattice> auto& of, auto&& visit) {
   auto& [bodies, constants, weights, ends, beams, damped, flat, eccentric, held, motions, loaded,
-         loads, water] = of;
+         loads, water, breaking, halts_at_breaks] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
   each(bodies, constants, weights, ends, beams, damped, flat, eccentric, held, motions, loaded,
-       loads, water);
+       loads, water, breaking, halts_at_breaks);
 }
 void visit_fields(Is<Steps> auto& of, auto&& visit) {
-  auto& [count, dt, before, motions, wrenches, water, since] = of;
+  auto& [count, dt, before, motions, wrenches, water, times, since] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
-  each(count, dt, before, motions, wrenches, water, since);
+  each(count, dt, before, motions, wrenches, water, times, since);
 }
 void visit_fields(Is<Works> auto& of, auto&& visit) {
   auto& [beams, held, loaded, drag, buoyancy] = of;

@@ -220,6 +220,9 @@ struct Broken : Engine {
   void get(std::size_t, std::span<double>) override {}
   void put_submerged(std::size_t, std::span<const double>) override {}
   void get_submerged(std::size_t, std::span<double>) override {}
+  void put_damage(std::size_t, const device::Damage&) override {}
+  device::Damage get_damage(std::size_t) override { return {}; }
+  device::Made made(std::size_t) override { return {}; }
   void step(std::span<const Steps>) override { throw device::Failed("CUDA: a kernel: broken"); }
   device::Findings findings(std::size_t) override { return {}; }
   device::Works works(std::size_t) override { return {}; }
