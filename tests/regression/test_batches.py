@@ -11,7 +11,7 @@ import unittest
 import h5py
 
 from launch import REPOSITORY
-from test_backend import DEVICES, FLOATING
+from test_backend import BREAKING, DEVICES, FLOATING
 from test_ensemble import EnsembleTest
 
 sys.path.insert(0, str(REPOSITORY / "python"))
@@ -58,8 +58,9 @@ class BatchTest(EnsembleTest):
             kept[f"{path.name} {group}"] = {name: value for name, value in
                                             self.arrays(path).items()
                                             if name.startswith(group.strip("/"))}
-        if (folder / "checkpoint.h5").exists():
-            kept["checkpoint"] = self.arrays(folder / "checkpoint.h5")
+        for name in ("checkpoint.h5", "breaks.h5"):
+            if (folder / name).exists():
+                kept[name] = self.arrays(folder / name)
         return kept
 
     def batches(self, said):
@@ -73,32 +74,44 @@ class Together(BatchTest):
     def test_runs_are_what_they_are_alone(self):
         for backend in DEVICES:
             with self.subTest(backend):
-                self.spec(f"options: {{backend: {backend}}}\n" + OTHERS, backend)
-                _, said = self.ensemble(name=backend, code=1)
-                folder = self.folder / f"out/ensemble_{backend}"
-                (runs, engines, launches, steps), = self.batches(said)
-                self.assertEqual((runs, engines), (8, 1))
-                rows = self.table(folder)
-                self.assertEqual([row["status"] for row in rows], ["done"] * 6 + ["failed"] * 2)
-                self.assertIn("(limit: velocity 3 m/s)", rows[-1]["message"])
-                counts = [int(row["steps"]) for row in rows]
-                self.assertGreater(len(set(counts)), 4)
-                # In a launch several runs make several steps.
-                self.assertGreaterEqual(steps, max(counts))
-                self.assertLess(steps, sum(counts) / 2)
-                self.assertLess(10 * launches, steps)
-                for row in rows:
-                    recorded = json.loads((folder / "ensemble.json").read_text())["runs"]
-                    words = [word for key, value in recorded[row["run"]]["options"].items()
-                             for word in (f"-{key}", value)]
-                    alone = self.folder / "alone" / row["run"]
-                    done = subprocess.run([self.environment["FLOE"], "scene.yaml", *words,
-                                           "-output_dir", str(alone), "-output_overwrite"],
-                                          cwd=self.folder, env=self.environment,
-                                          capture_output=True, text=True)
-                    self.assertEqual(done.returncode, 0 if row["status"] == "done" else 1)
-                    self.assertEqual(self.results(folder / "runs" / row["run"]),
-                                     self.results(alone), row["run"])
+                self.compare(backend)
+
+    def test_beams_that_break(self):
+        (self.folder / "scene.yaml").write_text(KEEPING.replace(FLOATING, BREAKING))
+        for backend in DEVICES:
+            with self.subTest(backend):
+                self.compare(backend)
+                breaks = [float(row["energy_fracture"])
+                          for row in self.table(f"out/ensemble_{backend}") if row["status"] == "done"]
+                self.assertGreater(min(breaks), 0)
+
+    def compare(self, backend):
+        """Runs an ensemble, and each of its runs alone."""
+        self.spec(f"options: {{backend: {backend}}}\n" + OTHERS, backend)
+        _, said = self.ensemble(name=backend, code=1)
+        folder = self.folder / f"out/ensemble_{backend}"
+        (runs, engines, launches, steps), = self.batches(said)
+        self.assertEqual((runs, engines), (8, 1))
+        rows = self.table(folder)
+        self.assertEqual([row["status"] for row in rows], ["done"] * 6 + ["failed"] * 2)
+        self.assertIn("(limit: velocity 3 m/s)", rows[-1]["message"])
+        counts = [int(row["steps"]) for row in rows]
+        self.assertGreater(len(set(counts)), 4)
+        # In a launch several runs make several steps.
+        self.assertGreaterEqual(steps, max(counts))
+        self.assertLess(steps, sum(counts) / 2)
+        self.assertLess(10 * launches, steps)
+        recorded = json.loads((folder / "ensemble.json").read_text())["runs"]
+        for row in rows:
+            words = [word for key, value in recorded[row["run"]]["options"].items()
+                     for word in (f"-{key}", value)]
+            alone = self.folder / "alone" / row["run"]
+            done = subprocess.run([self.environment["FLOE"], "scene.yaml", *words, "-output_dir",
+                                   str(alone), "-output_overwrite"], cwd=self.folder,
+                                  env=self.environment, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0 if row["status"] == "done" else 1)
+            self.assertEqual(self.results(folder / "runs" / row["run"]), self.results(alone),
+                             row["run"])
 
     def test_batches_of_few(self):
         """--jobs says how many are in a batch; the longest come first, one that is left is alone;

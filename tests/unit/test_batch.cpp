@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <functional>
@@ -24,28 +25,38 @@ namespace {
 using device::Engine;
 using device::Steps;
 
-/// A sheet that hangs from its left edge under its weight and a load, in an engine's form.
+enum class Also { nothing, floats, breaks, holds };
+
+/// A sheet that hangs from its left edge under its weight and a load, in an engine's form. Where
+/// its beams may break, it halts at breaks.
 struct Sheet {
   Scene scene;
   std::unique_ptr<test::Dynamics> run;
   device::DescribedModel described;
   double dt = 2e-4;
 
-  Sheet(double length, double width, double damping, bool floats = false) {
+  Sheet(double length, double width, double damping, Also also = Also::nothing) {
+    const bool floats = also == Also::floats, breaks = also == Also::breaks;
     scene.forces.beam = scene.forces.gravity = true;
     scene.beam.damping_ratio = damping;
     scene.forces.buoyancy = scene.forces.drag = floats;
     scene.drag.linear = 100;
     scene.water_pace = floats ? 3 : 1;
+    scene.forces.fracture = breaks || also == Also::holds;
+    scene.fracture.tensile_strength = 2e5, scene.fracture.shear_strength = 1e5;
+    scene.fracture.energy = scene.fracture.energy_shear = 1;
     Boundary left;
     left.name = left.set = "left", left.fixed = {true, true, true, false, true, false};
     left.velocity = Point3{0.1, 0, 0};
     scene.boundaries = {left};
     Load load;
-    load.name = load.set = "all", load.force = {1e3, -500, 2e3}, load.moment = {20, 0, -30};
+    const double factor = breaks ? 2e3 : 1;
+    load.name = load.set = "all", load.force = {1e3 * factor, -500 * factor, 2e3 * factor};
+    load.moment = {20, 0, -30};
     scene.loads = {load};
     run = std::make_unique<test::Dynamics>(scene, test::sheet(length, width, 1, floats));
     described = device::describe(run->model(), "loop");
+    described.lattice.halts_at_breaks = scene.forces.fracture;
   }
 
   std::vector<double> records() const {
@@ -65,6 +76,7 @@ struct Sheet {
       }
       const auto wrench = described.numbers.loads.front().wrench(n * dt);
       s.wrenches.insert(s.wrenches.end(), wrench.begin(), wrench.end());
+      if (described.lattice.breaking) s.times.push_back(n * dt);
       if (described.lattice.water) s.water.insert(s.water.end(), {0.01 * n, 0.2, 0.1, 0});
     }
     s.since = described.lattice.water ? first % described.lattice.water->pace : 0;
@@ -75,12 +87,16 @@ struct Sheet {
 /// What an engine has told a run.
 struct Asked {
   std::vector<double> records, submerged, speeds;
+  std::vector<int> steps;
   device::Works works;
+  device::Damage damage;
 
   bool operator==(const Asked& other) const {
     return records == other.records && submerged == other.submerged && speeds == other.speeds &&
-           works.beams == other.works.beams && works.held == other.works.held &&
-           works.loaded == other.works.loaded && works.drag == other.works.drag;
+           steps == other.steps && damage.cracks == other.damage.cracks &&
+           damage.viscous == other.damage.viscous && works.beams == other.works.beams &&
+           works.held == other.works.held && works.loaded == other.works.loaded &&
+           works.drag == other.works.drag;
   }
 };
 
@@ -92,24 +108,31 @@ Asked ask(Engine& engine, const Sheet& sheet, const std::vector<int>& counts) {
   const bool floats = sheet.described.lattice.water.has_value();
   asked.submerged.resize(floats ? 15 * sheet.described.order.size() : 0);
   if (floats) engine.put_submerged(0, asked.submerged);
+  if (const auto& breaking = sheet.described.numbers.breaking) {
+    breaking->kept->read(asked.damage.cracks, asked.damage.viscous);
+    engine.put_damage(0, asked.damage);
+  }
   const Steps early = sheet.steps(0, 2);
   engine.step({&early, 1});
   const device::Works works = engine.works(0);
   engine.forget_works(0);
   for (const double work : engine.works(0).loaded) EXPECT_EQ(work, 0);
   engine.put_works(0, works);
-  int done = 2;
+  int done = engine.made(0).steps;
   for (const int count : counts) {
     const Steps steps = sheet.steps(done, count);
     engine.step({&steps, 1});
+    const device::Made made = engine.made(0);
+    asked.steps.push_back(made.why == 0 ? made.steps : -made.steps);
     const device::Findings found = engine.findings(0);
     asked.speeds.push_back(found.speed2);
     asked.speeds.push_back(found.spin2);
-    done += count;
+    done += made.steps;
   }
   engine.get(0, asked.records);
   if (floats) engine.get_submerged(0, asked.submerged);
   asked.works = engine.works(0);
+  if (sheet.described.lattice.breaking) asked.damage = engine.get_damage(0);
   return asked;
 }
 
@@ -166,12 +189,41 @@ TEST(Batch, RunsAreWhatTheyAreAloneInFewLaunches) {
   EXPECT_EQ(batch.steps(), 2 + 5 + 4 + 7 + 4 + 5 + 6);
 }
 
+// A run that halts at breaks wants its other steps with the next ones of the others.
+TEST(Batch, RunsHaltAlone) {
+  std::vector<Sheet> sheets;
+  sheets.emplace_back(7, 6, 0.2, Also::breaks);
+  sheets.emplace_back(9, 5, 0.1, Also::holds);
+  const std::vector<int> counts(5, 8);
+  const Ends ends(2);
+  device::Batch batch(loop(), ends.here);
+  std::thread serving([&] { batch.serve(); });
+  std::vector<Asked> together(2);
+  std::vector<std::thread> runs;
+  for (std::size_t r = 0; r < 2; ++r) {
+    runs.emplace_back([&, r] {
+      const auto engine = device::join_batch(ends.there[r], sheets[r].described.lattice);
+      together[r] = ask(*engine, sheets[r], counts);
+    });
+  }
+  for (std::thread& run : runs) run.join();
+  serving.join();
+  for (std::size_t r = 0; r < 2; ++r) {
+    const auto alone = device::make_loop_engine({sheets[r].described.lattice});
+    EXPECT_TRUE(together[r] == ask(*alone, sheets[r], counts)) << r;
+  }
+  EXPECT_EQ(batch.engines(), 1U);
+  EXPECT_LT(*std::min_element(together[0].steps.begin(), together[0].steps.end()), 0);
+  EXPECT_EQ(together[1].steps, counts);
+}
+
 // Other forces would be other operations of a device.
 TEST(Batch, RunsOfOtherKindsHaveEnginesOfTheirOwn) {
   std::vector<Sheet> sheets;
   sheets.emplace_back(6, 5, 0.1);
   sheets.emplace_back(6, 5, 0);
-  sheets.emplace_back(7, 5, 0.2, true);
+  sheets.emplace_back(7, 5, 0.2, Also::floats);
+  sheets.emplace_back(7, 6, 0.2, Also::breaks);
   sheets.emplace_back(8, 5, 0.3);
   const Ends ends(sheets.size());
   device::Batch batch(loop(), ends.here);
@@ -187,12 +239,14 @@ TEST(Batch, RunsOfOtherKindsHaveEnginesOfTheirOwn) {
         EXPECT_NE(asked.works.drag.at(3), 0);
         EXPECT_NE(asked.submerged, std::vector<double>(asked.submerged.size()));
       }
+      EXPECT_TRUE(r != 3 || std::any_of(asked.damage.cracks.begin(), asked.damage.cracks.end(),
+                                        [](double number) { return number > 0; }));
     });
   }
   for (std::thread& run : runs) run.join();
   serving.join();
-  EXPECT_EQ(batch.engines(), 3U);
-  EXPECT_EQ(batch.launches(), 3 * 3);
+  EXPECT_EQ(batch.engines(), 4U);
+  EXPECT_EQ(batch.launches(), 4 * 3);
 }
 
 /// The error of a run that joins a batch and makes a step.
