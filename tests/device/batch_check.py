@@ -48,8 +48,9 @@ def main():
         print(f"one run by {backend}: {steps} steps, {alone:.1f} us each")
         found = ensemble(folder, backend, list(range(1, int(runs) + 1)))
         together = 1e6 * max(seconds for seconds, _ in found) / max(steps for _, steps in found)
-        print(f"{runs} runs in a batch: {together:.1f} us for a step of all, {together / alone:.2f} "
-              f"times that of one, {int(runs) * alone / together:.1f} times as many steps a second")
+        print(f"{runs} runs in a batch: {together:.1f} us for a step of all, "
+              f"{together / alone:.2f} times that of one, "
+              f"{int(runs) * alone / together:.1f} times as many steps a second")
         histories = [(folder / f"out/ensemble_{count}/runs/s001/history.csv").read_bytes()
                      for count in (1, int(runs))]
         same = histories[0] == histories[1]

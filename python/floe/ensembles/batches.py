@@ -1,7 +1,7 @@
 """Runs whose steps a device makes, many in one launch (docs/ensembles.md, "On a device").
 
-A run is a process as ever. Its engine is a further process, `floe -batch`, which the runs of a batch
-share: each has a connection to it, whose number is in FLOE_BATCH."""
+A run is a process as ever. Its engine is a further process, `floe -batch`, which the runs of a
+batch share: each has a connection to it, whose number is in FLOE_BATCH."""
 import os
 import re
 import socket
@@ -113,8 +113,8 @@ class BatchRunner(Runner):
         self.note(batch)
         for ours, _ in pairs:
             ours.close()
-        for run, (_, theirs) in zip(runs, pairs):  # an end that nobody holds says that a run is over
-            with theirs:
+        for run, (_, theirs) in zip(runs, pairs):
+            with theirs:  # once only the run has it, its end says that the run has ended
                 self.start(run, {"FLOE_BATCH": str(theirs.fileno())}, [theirs.fileno()])
 
     def end(self, process):

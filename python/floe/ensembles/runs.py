@@ -273,7 +273,8 @@ class Runner:
         making = {run.mesh for run in beside}
         making |= {process.run.mesh for process in self.running.values()}
         for run in self.waiting:
-            if (run.mesh is None or run.mesh not in making or Path(run.mesh).exists()) and suits(run):
+            has_mesh = run.mesh is None or run.mesh not in making or Path(run.mesh).exists()
+            if has_mesh and suits(run):
                 self.waiting.remove(run)
                 return run
         return None
