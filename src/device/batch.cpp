@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -83,6 +84,13 @@ Connection::~Connection() {
 
 bool Connection::send(std::uint32_t word, const Bytes& bytes) const {
   const Head head{word, bytes.size()};
+  constexpr std::size_t room = 4096;
+  std::array<std::byte, room> small;  // in one system call
+  if (sizeof head + bytes.size() <= room) {
+    std::memcpy(small.data(), &head, sizeof head);
+    std::copy(bytes.begin(), bytes.end(), small.begin() + sizeof head);
+    return send_all(file_, small.data(), sizeof head + bytes.size());
+  }
   return send_all(file_, &head, sizeof head) && send_all(file_, bytes.data(), bytes.size());
 }
 
