@@ -126,6 +126,16 @@ class ContactStore {
     works.obstacles.resize(4 * obstacles_of(run));
     obstacle_works_.get(works.obstacles, 4 * static_cast<std::size_t>(first_obstacle_[run]));
   }
+  void put_works(std::size_t run, const Works& works) {
+    const std::size_t bodies = bodies_of(run);
+    if (runs_.empty() || works.contacts.size() != 3 * bodies) return;
+    std::vector<double> row(bodies);
+    for (std::size_t n = 0; n < 3; ++n) {
+      for (std::size_t b = 0; b < bodies; ++b) row[b] = works.contacts[3 * b + n];
+      works_.put(row, n * bodies_ + static_cast<std::size_t>(first_body_[run]));
+    }
+    obstacle_works_.put(works.obstacles, 4 * static_cast<std::size_t>(first_obstacle_[run]));
+  }
   void forget_works(std::size_t run) {
     if (runs_.empty()) return;
     for (std::size_t n = 0; n < 3; ++n)

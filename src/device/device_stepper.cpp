@@ -211,9 +211,12 @@ DeviceStepper::DeviceStepper(const Model<Spatial>& model, DescribedModel describ
   static_assert(Engine::record == Spatial::record);
 }
 
-void DeviceStepper::put(const State<Spatial>& state, std::span<const double> works) {
-  works_.assign(works.begin(), works.end());
-  of_engine([&] { engine_->forget_works(0); });
+void DeviceStepper::put(const State<Spatial>& state, const WorkParts& works) {
+  works_ = works;
+  of_engine([&] {
+    engine_->forget_works(0);
+    engine_->put_works(0, works.since);
+  });
   constexpr std::size_t n = Engine::record;
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
@@ -424,32 +427,45 @@ void DeviceStepper::drop(int count) {
 }
 
 double DeviceStepper::take_works(std::span<double> works) {
-  const Works parts = of_engine([&] { return engine_->works(0); });
-  std::copy(works_.begin(), works_.end(), works.begin());
-  for (const double work : parts.beams) works[described_.numbers.beam_work] += work;
-  for (std::size_t l = 0; l < parts.loaded.size(); ++l) {
-    const DeviceModel::Load& load =
-        item(described_.numbers.loads, described_.lattice.loaded[l].load);
-    works[load.work] += parts.loaded[l];
-  }
-  for (const double work : parts.supports) works[described_.numbers.support_work] += work;
+  works_.since = of_engine([&] { return engine_->works(0); });
+  return sum(works_, works).value();
+}
+
+std::optional<double> DeviceStepper::sum(const WorkParts& parts, std::span<double> works) const {
+  const Lattice& lattice = described_.lattice;
+  const auto fits = [](const std::vector<double>& some, std::size_t size) {
+    return some.empty() || some.size() == size;
+  };
+  const auto bodies = static_cast<std::size_t>(lattice.bodies);
+  const Works& since = parts.since;
+  if (parts.until.size() != works.size() || !fits(since.beams, bodies) ||
+      !fits(since.held, lattice.held.size()) || !fits(since.loaded, lattice.loaded.size()) ||
+      !fits(since.drag, bodies) || !fits(since.buoyancy, bodies) ||
+      !fits(since.supports, lattice.supports.size()) || !fits(since.contacts, 3 * bodies) ||
+      !fits(since.obstacles, lattice.contacts ? 4 * static_cast<std::size_t>(lattice.contacts->obstacles) : 0))
+    return {};
+  std::copy(parts.until.begin(), parts.until.end(), works.begin());
+  for (const double work : since.beams) works[described_.numbers.beam_work] += work;
+  for (std::size_t l = 0; l < since.loaded.size(); ++l)
+    works[item(described_.numbers.loads, lattice.loaded[l].load).work] += since.loaded[l];
+  for (const double work : since.supports) works[described_.numbers.support_work] += work;
   const auto add = [&](const std::vector<double>& some, const std::optional<std::size_t>& force) {
     if (!force) return;  // of other runs in the launch
     for (const double work : some) works[*force] += work;
   };
   if (const auto& water = described_.numbers.water) {
-    add(parts.drag, water->drag_work);
-    add(parts.buoyancy, water->buoyancy_work);
+    add(since.drag, water->drag_work);
+    add(since.buoyancy, water->buoyancy_work);
   }
   if (const auto& contacts = described_.numbers.contacts) {
-    for (std::size_t k = 0; k < parts.contacts.size(); ++k)
-      works[contacts->work + k % 3] += parts.contacts[k];
-    for (std::size_t k = 0; k < parts.obstacles.size(); ++k)
-      works[contacts->work + k % 4] += parts.obstacles[k];
+    for (std::size_t k = 0; k < since.contacts.size(); ++k)
+      works[contacts->work + k % 3] += since.contacts[k];
+    for (std::size_t k = 0; k < since.obstacles.size(); ++k)
+      works[contacts->work + k % 4] += since.obstacles[k];
   }
   double boundaries = 0;
-  for (const double work : parts.held) boundaries += work;
-  return boundaries;
+  for (const double work : since.held) boundaries += work;
+  return parts.boundaries + boundaries;
 }
 
 }  // namespace floe::device

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,18 +33,27 @@ class DeviceStepper {
   DeviceStepper(const Model<Spatial>& model, DescribedModel described,
                 std::unique_ptr<Engine> engine);
 
+  /// Works of a run until put(), and since, part by part. Sums of them do not depend on how often
+  /// somebody asks; a checkpoint keeps the parts, so that they do not depend on restarts.
+  struct WorkParts {
+    std::vector<double> until;  ///< of all forces [J]
+    double boundaries = 0;      ///< until then [J]
+    Works since;
+  };
   /// Hands the records to the engine.
-  /// \param works  of all forces until then [J]
-  void put(const State<Spatial>& state, std::span<const double> works);
+  void put(const State<Spatial>& state, const WorkParts& works);
   /// Copies the records; nothing may be queued. Times of the state are the caller's.
   void get(State<Spatial>& state);
   /// Queues a step. \param time  of its start [s] \param before  length of the step before it [s]
   void queue(double time, double dt, double before);
   /// Makes the queued steps. Returns the square of the largest speed in them [m^2/s^2].
   double flush();
-  /// Sets the works of all forces, those until put() and since [J]: sums that do not depend on how
-  /// often somebody asks. Returns the boundaries' work since put() [J].
+  /// Sets the works of all forces [J]. Returns that of the boundaries [J].
   double take_works(std::span<double> works);
+  /// The parts of what take_works() found last, and the sums of such parts as take_works() gives
+  /// them; nothing if the parts are not those of this model.
+  const WorkParts& work_parts() const { return works_; }
+  std::optional<double> sum(const WorkParts& parts, std::span<double> works) const;
   /// Largest speed and spin of the steps of the last flush [m/s, rad/s].
   double fastest() const { return fastest_; }
   double fastest_spin() const { return fastest_spin_; }
@@ -82,7 +92,8 @@ class DeviceStepper {
   DescribedModel described_;
   std::unique_ptr<Engine> engine_;
   Steps steps_;
-  std::vector<double> room_, kept_, works_;
+  std::vector<double> room_, kept_;
+  WorkParts works_;
   std::int64_t since_ = 0;  ///< steps since all submerged parts were found
   double fastest_ = 0, fastest_spin_ = 0;
   double last_dt_ = 0;                ///< of the last step that was queued [s]

@@ -211,6 +211,8 @@ class Engine {
   virtual Made made(std::size_t run) = 0;
   virtual Findings findings(std::size_t run) = 0;
   virtual Works works(std::size_t run) = 0;
+  /// Sets the works of a run, which steps add to.
+  virtual void put_works(std::size_t run, const Works& works) = 0;
   /// Lets the works of a run begin anew.
   virtual void forget_works(std::size_t run) = 0;
   virtual std::int32_t tiles() const = 0;

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -74,7 +77,8 @@ class TileEngine final : public Engine {
     spin2_ = Array<std::uint64_t>(lattices_.size());
     runs_ = Array<RunOfTiles>(lattices_.size());
     last_ = Array<std::int32_t>(lattices_.size());
-    last_.put(std::vector<std::int32_t>(lattices_.size(), -1));
+    made_.resize(lattices_.size());
+    found_.resize(lattices_.size());
     why_ = Array<std::uint32_t>(lattices_.size());
   }
 
@@ -167,6 +171,7 @@ class TileEngine final : public Engine {
         water_motions.resize(water_motions.size() + 4 * static_cast<std::size_t>(of.count));
     }
     queue_.wait();
+    has_looked_ = false;
     last_.put(last);
     why_.put(std::vector<std::uint32_t>(lattices_.size()));
     if (most == 0 || tiles_.run.empty()) return;
@@ -211,24 +216,13 @@ class TileEngine final : public Engine {
   }
 
   Made made(std::size_t run) override {
-    queue_.wait();
-    std::int32_t last = 0;
-    std::uint32_t why = 0;
-    last_.get({&last, 1}, run);
-    why_.get({&why, 1}, run);
-    return {last + 1, why};
+    look();
+    return made_[run];
   }
-
   Findings findings(std::size_t run) override {
-    queue_.wait();
-    const auto take = [&](Array<std::uint64_t>& largest) {
-      std::uint64_t bits = 0;
-      const std::uint64_t none = 0;
-      largest.get({&bits, 1}, run);
-      largest.put({&none, 1}, run);
-      return std::bit_cast<double>(bits);
-    };
-    return {take(speed2_), take(spin2_)};
+    look();
+    const auto [speed2, spin2] = std::exchange(found_[run], {});
+    return {std::bit_cast<double>(speed2), std::bit_cast<double>(spin2)};
   }
 
   Works works(std::size_t run) override {
@@ -251,6 +245,20 @@ class TileEngine final : public Engine {
     return works;
   }
 
+  void put_works(std::size_t run, const Works& works) override {
+    queue_.wait();
+    const auto put = [](Array<double>& memory, const std::vector<double>& values, auto first) {
+      if (memory.size() > 0) memory.put(values, static_cast<std::size_t>(first));
+    };
+    put(beam_works_, works.beams, first_body_[run]);
+    put(held_works_, works.held, first_held_[run]);
+    put(load_works_, works.loaded, first_loaded_[run]);
+    put(support_works_, works.supports, first_support_[run]);
+    put(drag_works_, works.drag, first_body_[run]);
+    put(buoyancy_works_, works.buoyancy, first_body_[run]);
+    contacts_.put_works(run, works);
+  }
+
   void forget_works(std::size_t run) override {
     queue_.wait();
     const auto forget = [](Array<double>& works, std::size_t first, std::size_t end) {
@@ -268,6 +276,26 @@ class TileEngine final : public Engine {
   std::int32_t tiles() const override { return static_cast<std::int32_t>(tiles_.run.size()); }
 
  private:
+  /// Brings what the steps since the last look have done, of all runs at once.
+  void look() {
+    queue_.wait();
+    if (has_looked_) return;
+    has_looked_ = true;
+    const std::size_t runs = lattices_.size();
+    std::vector<std::int32_t> last(runs);
+    std::vector<std::uint32_t> why(runs);
+    last_.get(last);
+    why_.get(why);
+    for (std::size_t r = 0; r < runs; ++r) made_[r] = {last[r] + 1, why[r]};
+    for (const std::size_t k : {0U, 1U}) {
+      Array<std::uint64_t>& largest = k == 0 ? speed2_ : spin2_;
+      std::vector<std::uint64_t> bits(runs);
+      largest.get(bits);
+      largest.put(std::vector<std::uint64_t>(runs));
+      for (std::size_t r = 0; r < runs; ++r) found_[r][k] = std::max(found_[r][k], bits[r]);
+    }
+  }
+
   template <class T>
   static Array<T> keep(const std::vector<T>& values) {
     return Array<T>(std::span<const T>(values));
@@ -595,6 +623,10 @@ class TileEngine final : public Engine {
   Array<std::int32_t> held_row_, held_motions_, first_load_, load_;
   Array<std::uint8_t> held_bits_;
   Array<std::uint64_t> speed2_, spin2_;
+  // What has been brought of them and of halts.
+  bool has_looked_ = true;
+  std::vector<Made> made_;
+  std::vector<std::array<std::uint64_t, 2>> found_;  ///< squares of speed and spin, as bits
   // Beams that break.
   static constexpr std::size_t of_viscous = 6;
   std::vector<std::size_t> first_slot_of_run_, slot_of_;  ///< per run, and one more; per beam

@@ -117,7 +117,7 @@ Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7
   auto engine = device::make_loop_engine({described.lattice}, tile);
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   Stepped out;
   double before = 0;
   const auto flush = [&] {
@@ -394,6 +394,46 @@ TEST(Device, TilesAndQueuesChangeNoBit) {
   }
 }
 
+// The parts of works that a checkpoint keeps: sums do not depend on where a run was interrupted.
+TEST(Device, WorksGoOnFromTheirParts) {
+  const Case c = floating_case(1, true, true);
+  const auto make = [](Dynamics& run) {
+    device::DescribedModel described = device::describe(run.model(), "loop");
+    auto engine = device::make_loop_engine({described.lattice});
+    return DeviceStepper(run.model(), std::move(described), std::move(engine));
+  };
+  const auto steps = [&](DeviceStepper& stepper, int first, int end) {
+    for (int n = first; n < end; ++n) stepper.queue(n * c.dt, c.dt, n > 0 ? c.dt : 0);
+    (void)stepper.flush();
+  };
+  for (const bool keeps : {true, false}) {
+    const auto run = at_start(c);
+    WorkLedger ledger(run->model());
+    const std::vector<double> zeros(ledger.all().begin(), ledger.all().end());
+    DeviceStepper whole = make(*run), first = make(*run), second = make(*run);
+    whole.put(run->state(), {zeros, 0, {}});
+    first.put(run->state(), {zeros, 0, {}});
+    steps(whole, 0, 60);
+    steps(first, 0, 23);
+    first.get(run->state());
+    const double boundaries = first.take_works(ledger.all());
+    DeviceStepper::WorkParts parts = first.work_parts();
+    std::vector<double> sums = zeros;
+    EXPECT_EQ(first.sum(parts, sums), boundaries);
+    EXPECT_TRUE(std::equal(sums.begin(), sums.end(), ledger.all().begin()));
+    second.put(run->state(), keeps ? parts : DeviceStepper::WorkParts{sums, boundaries, {}});
+    steps(second, 23, 60);
+    (void)second.take_works(sums);
+    (void)whole.take_works(ledger.all());
+    // Else they are the same to rounding only.
+    EXPECT_EQ(std::equal(sums.begin(), sums.end(), ledger.all().begin()), keeps);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      EXPECT_NEAR(sums[k], ledger.all()[k], 1e-12 * std::abs(sums[k]));
+    parts.since.drag.pop_back();
+    EXPECT_FALSE(first.sum(parts, sums));
+  }
+}
+
 TEST(Device, RunsTogetherAreWhatTheyAreAlone) {
   const std::vector<Case> cases{sheet_case(), floating_case(3), sheet_case()};
   std::vector<std::unique_ptr<Dynamics>> runs;
@@ -499,7 +539,7 @@ TEST(Device, FindsASpeedThatIsNotFinite) {
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   run->state().record(3)[Spatial::velocity] = std::nan("");
   const WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   for (int n = 0; n < 3; ++n) stepper.queue(n * c.dt, c.dt, c.dt);
   EXPECT_FALSE(std::isfinite(stepper.flush()));
 }
