@@ -442,7 +442,8 @@ std::optional<double> DeviceStepper::sum(const WorkParts& parts, std::span<doubl
       !fits(since.held, lattice.held.size()) || !fits(since.loaded, lattice.loaded.size()) ||
       !fits(since.drag, bodies) || !fits(since.buoyancy, bodies) ||
       !fits(since.supports, lattice.supports.size()) || !fits(since.contacts, 3 * bodies) ||
-      !fits(since.obstacles, lattice.contacts ? 4 * static_cast<std::size_t>(lattice.contacts->obstacles) : 0))
+      !fits(since.obstacles,
+            lattice.contacts ? 4 * static_cast<std::size_t>(lattice.contacts->obstacles) : 0))
     return {};
   std::copy(parts.until.begin(), parts.until.end(), works.begin());
   for (const double work : since.beams) works[described_.numbers.beam_work] += work;

@@ -188,7 +188,7 @@ class DeviceRun final : public ExplicitRun<Spatial> {
   bool is_on_engine_ = false, is_here_ = true;
   bool forces_are_of_other_velocities_ = false;
   bool contacts_are_possible_ = true;  ///< at the last step
-  double last_dt_ = 0;  ///< length of the last step, also if it is queued [s]
+  double last_dt_ = 0;                 ///< length of the last step, also if it is queued [s]
   LeapfrogStep make_step_ = [this](double) { return guarded([this] { return step(); }); };
 };
 
