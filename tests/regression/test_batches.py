@@ -12,6 +12,7 @@ import h5py
 
 from launch import REPOSITORY
 from test_backend import BREAKING, DEVICES, FLOATING
+from test_backend_contact import FLOES
 from test_ensemble import EnsembleTest
 
 sys.path.insert(0, str(REPOSITORY / "python"))
@@ -85,6 +86,18 @@ class Together(BatchTest):
                         if row["status"] == "done"]
                 self.assertGreater(min(float(row["energy_fracture"]) for row in done), 0)
 
+    def test_contacts(self):
+        """Floes of three meshes that collide; their lists of pairs expire at other steps."""
+        (self.folder / "scene.yaml").write_text(FLOES + "checkpoint: {every: 1000}\n")
+        for backend in DEVICES:
+            self.spec(f"seeds: 3\noptions: {{backend: {backend}}}\n", backend)
+            _, said = self.ensemble(name=backend)
+            self.assertEqual([batch[:2] for batch in self.batches(said)], [(3, 1)])
+            folder = self.folder / f"out/ensemble_{backend}"
+            rows = self.table(folder)
+            self.assertGreater(min(float(row["energy_contact_viscous"]) for row in rows), 0)
+            self.compare_alone(folder, rows)
+
     def compare(self, backend):
         """Runs an ensemble, and each of its runs alone."""
         self.spec(f"options: {{backend: {backend}}}\n" + OTHERS, backend)
@@ -101,6 +114,9 @@ class Together(BatchTest):
         self.assertGreaterEqual(steps, max(counts))
         self.assertLess(steps, sum(counts) / 2)
         self.assertLess(10 * launches, steps)
+        self.compare_alone(folder, rows)
+
+    def compare_alone(self, folder, rows):
         recorded = json.loads((folder / "ensemble.json").read_text())["runs"]
         for row in rows:
             words = [word for key, value in recorded[row["run"]]["options"].items()

@@ -276,6 +276,10 @@ struct Broken : Engine {
   void get_submerged(std::size_t, std::span<double>) override {}
   void put_damage(std::size_t, const device::Damage&) override {}
   device::Damage get_damage(std::size_t) override { return {}; }
+  void put_pairs(std::size_t, device::Pairs) override {}
+  void get_pairs(std::size_t, device::Pairs&) override {}
+  void put_obstacles(std::size_t, std::span<const double>) override {}
+  void get_obstacles(std::size_t, std::span<double>) override {}
   device::Made made(std::size_t) override { return {}; }
   void step(std::span<const Steps>) override { throw device::Failed("CUDA: a kernel: broken"); }
   device::Findings findings(std::size_t) override { return {}; }
