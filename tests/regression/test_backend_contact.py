@@ -26,10 +26,10 @@ HEAP = """integrator: explicit
 forces: [gravity, buoyancy, drag, contact]
 lattice_file: heap.h5
 water: {drag_linear: 200, drag_coefficient: 1}
-contact: {law: potential, young: 5e6, friction: 0.3, friction_wet: 0.1, restitution: 0.3}
+contact: {law: potential, young: 5e6, friction: 0.3, restitution: 0.3}
 obstacle:
   names: [slope, wall]
-  slope: {shape: halfspace, point: [0, 0, 1.2], normal: [0.4, 0, -1]}
+  slope: {shape: halfspace, point: [0, 0, 0.55], normal: [0.4, 0, -1]}
   wall: {shape: box, centre: [-3.5, 0, 0], size: [1, 8, 8], velocity: [2, 0, 0], ramp: 0.2}
 time: {end: 1}
 output: {history: 0.02, fields: 0.5}
@@ -61,7 +61,7 @@ output: {history: 0.01}
 """
 MADE = {"block.h5": ("block", "--size", "1", "1", "0.2", "--height", "0.1"),
         "heap.h5": ("rubble", "--columns", "3", "2", "2", "--size", "1", "1", "0.5", "--spacing",
-                    "1.3")}
+                    "1.6")}
 # tools/check_gpu, on a machine with a device.
 HAS_DEVICE = os.environ.get("FLOE_HAS_DEVICE") == "1"
 DEVICES = ("loop", "cuda") if HAS_DEVICE else ("loop",)
@@ -140,8 +140,8 @@ class BackendContact(RunningTest):
             self.assertEqual(self.summary(backend)["steps"], self.summary("cpu")["steps"])
 
     def test_goes_on_from_either(self):
-        """Stopped on the way, a run ends in the bits of one in one piece; a run of the processor
-        goes on by the device's text, and back."""
+        """Stopped on the way, a run ends as one in one piece; a run of the processor goes on by the
+        device's text, and back."""
         self.runs(HEAP)
         for first, then in (pair for device in DEVICES
                             for pair in ((device, device), ("cpu", device), (device, "cpu"))):
@@ -152,10 +152,8 @@ class BackendContact(RunningTest):
                 self.floe("-backend", then, "-output_dir", dir, "-checkpoint_restart",
                           f"{dir}/checkpoint.h5")
                 (names, straight), (_, parts) = self.history(then), self.history(dir)
-                if first == then:
-                    self.assertTrue((parts[-1] == straight[-1]).all())
-                else:
-                    self.alike(names, straight, parts[np.isin(parts[:, 0], straight[:, 0])], 1e-5)
+                rows = parts[np.isin(parts[:, 0], straight[:, 0])]
+                self.alike(names, straight, rows, 1e-10 if first == then else 1e-5)
 
     def test_what_is_refused(self):
         for scene, said in (
