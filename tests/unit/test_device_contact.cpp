@@ -136,7 +136,7 @@ Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7
   auto engine = device::make_loop_engine({described.lattice}, tile);
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   const double begin = run->state().time;
   const auto bring = [&](int made) {
     stepper.get(run->state());
