@@ -1,5 +1,5 @@
-# Run by ctest before it looks at its tests: adds an entry for each suite of the GoogleTest programs,
-# those for several ranks at 1 and 2, in the long form at 3 as well (some at one more), and for each
+# Run by ctest before it looks at its tests: adds an entry for each suite of the GoogleTest
+# programs, those for several ranks at 1 and 2, in the long form at 3 as well (some at one more), and for each
 # group of cases of the Python tests. A suite is one process: to start one takes longer than most
 # cases. What is set here comes from CMakeLists.txt: source, serial_tests and mpi_tests (folder and
 # program, by a blank), mpiexec, environment, floe, hangs [s].
@@ -11,8 +11,8 @@ if("$ENV{FLOE_FULL}")
   set(most_ranks 3)
 endif()
 
-# suites_of(TEST): sets folder and program, and suites to those of the program; where it is not built
-# adds an entry that fails.
+# suites_of(TEST): sets folder and program, and suites to those of the program; where it is not
+# built adds an entry that fails.
 macro(suites_of test)
   string(REGEX MATCH "^([^ ]+) (.+)$" _ "${test}")
   set(folder ${CMAKE_MATCH_1})

@@ -209,7 +209,8 @@ class Scenes(PythonTest):
             assert "seed: 3" in floe.Scene("s.yaml", sheet_seed=3.0).yaml
             from floe.loads.statements import settings_of
             for wrong in (lambda: settings_of(filter=0.1), lambda: settings_of(draws=2.5),
-                          lambda: settings_of(start="1"), lambda: floe.Scene(keys, name=""), lambda: floe.open(3),
+                          lambda: settings_of(start="1"),
+                          lambda: floe.Scene(keys, name=""), lambda: floe.open(3),
                           lambda: floe.open(""), lambda: floe.run_ensemble(3),
                           lambda: floe.run_ensemble({"scene": "s.yaml", "seeds": 2}, 3)):
                 try:
