@@ -1,8 +1,8 @@
 # Run by ctest before it looks at its tests: adds an entry for each suite of the GoogleTest
-# programs, those for several ranks at 1 and 2, in the long form at 3 as well (some at one more), and for each
-# group of cases of the Python tests. A suite is one process: to start one takes longer than most
-# cases. What is set here comes from CMakeLists.txt: source, serial_tests and mpi_tests (folder and
-# program, by a blank), mpiexec, environment, floe, hangs [s].
+# programs, those for several ranks at 1 and 2, in the long form at 3 as well (some at one more),
+# and for each group of cases of the Python tests. A suite is one process: to start one takes
+# longer than most cases. What is set here comes from CMakeLists.txt: source, serial_tests and
+# mpi_tests (folder and program, by a blank), mpiexec, environment, floe, hangs [s].
 
 # Long forms take long.
 set(most_ranks 2)

@@ -393,6 +393,7 @@ void DeviceStepper::make_steps() {
           "(backend: cpu has)");
     const double time = item(times_, made.steps - 1) + steps_.dt;
     drop(made.steps);
+    if (!described_.numbers.contacts) continue;
     if ((made.why & Made::beam_broke) != 0) release_broken();
     if ((made.why & (Made::list_expired | Made::beam_broke)) != 0) renew_pairs(time);
   }
