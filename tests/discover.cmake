@@ -1,50 +1,55 @@
-# Run by ctest before it looks at its tests: adds an entry for each case of the GoogleTest programs
-# for several ranks, at 1 and 2 ranks, in the long form at 3 as well (some at one more), and for
-# each group of cases of the Python tests. What is set here comes from CMakeLists.txt: source,
+# Run by ctest before it looks at its tests: adds an entry for each suite of the GoogleTest
+# programs, those for several ranks at 1 and 2, in the long form at 3 as well (some at one more),
+# and for each group of cases of the Python tests. A suite is one process: to start one takes
+# longer than most cases. What is set here comes from CMakeLists.txt: source, serial_tests and
 # mpi_tests (folder and program, by a blank), mpiexec, environment, floe, hangs [s].
 
-# Long forms take long. (CMake's own function, which comes first, leaves the names of its tests in
-# PROGRAM_TESTS.)
+# Long forms take long.
 set(most_ranks 2)
 if("$ENV{FLOE_FULL}")
   set(hangs 36000)
   set(most_ranks 3)
-  foreach(test IN LISTS unit_tests_TESTS verification_tests_TESTS)
-    set_tests_properties(${test} PROPERTIES TIMEOUT ${hangs})
-  endforeach()
 endif()
 
-foreach(test IN LISTS mpi_tests)
+# suites_of(TEST): sets folder and program, and suites to those of the program; where it is not
+# built adds an entry that fails.
+macro(suites_of test)
   string(REGEX MATCH "^([^ ]+) (.+)$" _ "${test}")
   set(folder ${CMAKE_MATCH_1})
   set(program ${CMAKE_MATCH_2})
-  if(NOT EXISTS ${program})
-    foreach(ranks RANGE 1 ${most_ranks})
-      add_test(${folder}.np${ranks}_NOT_BUILT ${program})
-    endforeach()
-    continue()
+  set(suites)
+  if(EXISTS ${program})
+    execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed
+                    COMMAND_ERROR_IS_FATAL ANY TIMEOUT 600)
+    string(REGEX REPLACE " +#[^\n]*" "" listed "${listed}")
+    string(REGEX MATCHALL "[^ \n]+\\.\n" suites "${listed}")
+    list(TRANSFORM suites REPLACE "\\.\n$" "")
+  else()
+    add_test(${folder}_NOT_BUILT ${program})
   endif()
-  execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed
-                  COMMAND_ERROR_IS_FATAL ANY TIMEOUT 600)
-  string(REGEX REPLACE " +#[^\n]*" "" listed "${listed}")
-  string(REPLACE "\n" ";" listed "${listed}")
-  foreach(line IN LISTS listed)
-    if(line MATCHES "^  (.+)$")
-      set(case ${CMAKE_MATCH_1})
-      set(most ${most_ranks})
-      if(suite MATCHES "^OnOneRank")
-        math(EXPR most "${most} + 1")
-      endif()
-      foreach(ranks RANGE 1 ${most})
-        set(name ${folder}.np${ranks}.${suite}${case})
-        add_test(${name} ${mpiexec} -n ${ranks} ${program} --gtest_filter=${suite}${case})
-        set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks} TIMEOUT ${hangs}
-                             ENVIRONMENT "${environment}"
-                             SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
-      endforeach()
-    elseif(line MATCHES "\\.$")
-      set(suite ${line})
+endmacro()
+
+foreach(test IN LISTS serial_tests)
+  suites_of("${test}")
+  foreach(suite IN LISTS suites)
+    add_test(${folder}.${suite} ${program} --gtest_filter=${suite}.*)
+    set_tests_properties(${folder}.${suite} PROPERTIES TIMEOUT ${hangs})
+  endforeach()
+endforeach()
+
+foreach(test IN LISTS mpi_tests)
+  suites_of("${test}")
+  foreach(suite IN LISTS suites)
+    set(most ${most_ranks})
+    if(suite MATCHES "^OnOneRank")
+      math(EXPR most "${most} + 1")
     endif()
+    foreach(ranks RANGE 1 ${most})
+      set(name ${folder}.np${ranks}.${suite})
+      add_test(${name} ${mpiexec} -n ${ranks} ${program} --gtest_filter=${suite}.*)
+      set_tests_properties(${name} PROPERTIES PROCESSORS ${ranks} TIMEOUT ${hangs}
+                           ENVIRONMENT "${environment}")
+    endforeach()
   endforeach()
 endforeach()
 

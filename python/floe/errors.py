@@ -2,7 +2,9 @@
 import contextlib
 import csv
 from collections.abc import Iterator
-from os import PathLike
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
 
 
 class InputError(ValueError):
@@ -20,3 +22,10 @@ def reading(path: str | PathLike) -> Iterator[None]:
     except (OSError, LookupError, ValueError, TypeError, RuntimeError, csv.Error) as error:
         why = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise InputError(f"{path}: cannot be read: {' '.join(why.split())}") from error
+
+
+def path_of(what: str, value: Any) -> Path:
+    """A path that an argument gives. InputError names the argument if it is no path."""
+    if not isinstance(value, (str, PathLike)) or not fspath(value):
+        raise InputError(f"{what}: {value!r} must be a path")
+    return Path(value)

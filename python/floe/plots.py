@@ -94,7 +94,8 @@ def energies(table: Any, axes: Axes | None = None) -> Axes:
                   linestyle="-" if k < 10 else "--",
                       label=name.removeprefix("energy_").replace("_", " "))
     axes.set(xlabel="time [s]", ylabel=f"energy since the first row [{unit}]")
-    axes.legend(frameon=False, fontsize=8, ncols=2)
+    if shown:
+        axes.legend(frameon=False, fontsize=8, ncols=2)
     return axes
 
 

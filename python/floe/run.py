@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Callable
 
 import numpy as np
 
-from floe.errors import InputError, reading
+from floe.errors import InputError, reading, path_of
 from floe.results.output import Lattice, Output, has_changes, options_of, summary_of
 
 if TYPE_CHECKING:
@@ -325,7 +325,7 @@ def is_ensemble(folder: Path) -> bool:
 def open_run(folder: str | os.PathLike[str]) -> Run:
     """The results in an output folder, or in the folder of an ensemble (Run.ensemble). InputError
     if it is neither."""
-    path = Path(folder)
+    path = path_of("folder", folder)
     if not path.exists():
         raise InputError(f"{path}: no such folder")
     if not path.is_dir():

@@ -49,6 +49,8 @@ class Scene:
         library.start()
         text = None
         path = name
+        if not isinstance(name, str) or not name:
+            raise InputError(f"name: {name!r} must be a text, which is not empty")
         if isinstance(scene, Mapping):
             text = _as_yaml(scene)
         elif isinstance(scene, (str, os.PathLike)):
@@ -109,6 +111,8 @@ def _scalar(key: str, value: Any) -> str:
         value = value.item()
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        value = int(value)  # 20.0 for a whole number; a number is the same without a point
     if isinstance(value, (int, float)):
         return repr(value)
     if isinstance(value, (str, os.PathLike)):

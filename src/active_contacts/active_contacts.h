@@ -13,6 +13,7 @@
 #include "contact/pair_list.h"
 #include "contact/places.h"
 #include "contact_laws/response.h"
+#include "contact_laws/trial.h"
 
 namespace floe {
 
@@ -46,14 +47,6 @@ struct TermWrenchesOf {
   }
 };
 using TermWrenches = TermWrenchesOf<double>;
-
-/// Whether the mean elastic depth (V - V_p)/|S| of a contact exceeds a quarter of the least width
-/// of the thinner one of A and B [m].
-template <class T>
-MaskOf<T> is_deep(const T& thinner, const ContactTrialOf<T>& contact) {
-  constexpr double holds = 0.25;
-  return contact.volume - contact.memory.plastic > holds * thinner * contact.area;
-}
 
 /// Contacts of an evaluation, one per lane.
 struct alignas(64) ContactBlock {

@@ -196,6 +196,13 @@ class Contacts {
   /// Returns bounds of M^-1 K and M^-1 C for all contacts that may form.
   ContactRates rates() const { return contact_rates(solids_, options_, law_); }
 
+  /// Takes over the histories of steps that were made elsewhere; the next build assigns them.
+  /// \param rows  of ContactHistory::width numbers, sorted by pair
+  void take_steps(std::span<const double> rows) {
+    history_.restore(rows);
+    list_.end_step();
+    active_.clear();
+  }
   /// Returns rows of ContactHistory::width numbers for the counted pairs with history.
   std::vector<double> history_rows() const { return history_.rows(list_.pairs()); }
   /// Empties the pair list and sets the histories that the next build takes over.

@@ -19,6 +19,7 @@
 #include <immintrin.h>
 #endif
 
+#include "base/scalar.h"
 #include "floe/base/rotation.h"
 
 /// Attributes of a function of which there must be one copy: contraction to fused operations may
@@ -80,41 +81,14 @@ double sign_of(const T& x) {
   return x < 0.0 ? -1.0 : 1.0;
 }
 
-/// Answers of a comparison: one bool, or one per lane.
-template <class T>
-using MaskOf = decltype(T{} < T{});
-
 /// Returns a where the mask is true, else b.
-inline double chosen(bool mask, double a, double b) { return mask ? a : b; }
 inline Lanes chosen(const Lanes::mask_type& mask, const Lanes& a, Lanes b) {
   where(mask, b) = a;
   return b;
 }
-
-template <class Mask, class T>
-Vec3<T> chosen(const Mask& mask, const Vec3<T>& a, const Vec3<T>& b) {
-  return {chosen(mask, a.x, b.x), chosen(mask, a.y, b.y), chosen(mask, a.z, b.z)};
-}
-
-/// Return the smaller (larger) one, as std::min and std::max do: a if neither is.
-template <class T>
-T smaller_of(const T& a, const T& b) {
-  return chosen(b < a, b, a);
-}
-template <class T>
-T larger_of(const T& a, const T& b) {
-  return chosen(a < b, b, a);
-}
-
-/// Whether no answer is true.
-inline bool none_of(bool mask) { return !mask; }
 using std::experimental::none_of;
 
 /// Calls a function of doubles lane by lane.
-template <class Function>
-double by_lane(Function function, double a, double b) {
-  return function(a, b);
-}
 template <class Function>
 Lanes by_lane(Function function, const Lanes& a, const Lanes& b) {
   return Lanes([&](auto k) { return function(double{a[k]}, double{b[k]}); });
@@ -277,16 +251,6 @@ template <class At>
 /// Number of the numbers of a struct whose members are all of one type T.
 template <template <class> class Struct>
 inline constexpr std::size_t numbers_of = sizeof(Struct<double>) / sizeof(double);
-
-/// Returns struct a where the mask is true, else b.
-template <template <class> class Struct, class T>
-Struct<T> chosen_of(const MaskOf<T>& mask, const Struct<T>& a, const Struct<T>& b) {
-  using Members = std::array<T, sizeof(Struct<T>) / sizeof(T)>;
-  const auto from = std::bit_cast<Members>(a);
-  auto to = std::bit_cast<Members>(b);
-  for (std::size_t k = 0; k < to.size(); ++k) to[k] = chosen(mask, from[k], to[k]);
-  return std::bit_cast<Struct<T>>(to);
-}
 
 /// Returns a struct of lanes, of one struct of doubles per lane: at least four numbers.
 /// \param at  function from the lane to the address of its struct

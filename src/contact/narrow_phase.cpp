@@ -9,10 +9,6 @@
 namespace floe {
 namespace {
 
-/// Gaps below this part of the radius of a body, and overlaps below this part of its cube, are
-/// rounding.
-constexpr double rounding = 1e-13, rounding_volume = 1e-15;
-
 /// Places vertices in another frame.
 /// \param axes, x      axes and origin of the frame of the vertices in the other frame
 /// \param[out] placed  in the other frame
@@ -83,12 +79,6 @@ double gap_along_axis(const Solids& solids, const Pair& pair, const Placed& a, c
   return low + dot(pair.axis, a.x - b.x) - high;
 }
 
-void to_world(Patch& p, const Triad<double>& axes, const Vec3<double>& origin) {
-  p.middle = axes.to_world(p.middle) + origin;
-  p.u = axes.to_world(p.u);
-  p.v = axes.to_world(p.v);
-}
-
 }  // namespace
 
 Reaches reaches(const Solids& solids, const Pair& pair, const Placed& a, const Placed& b,
@@ -125,7 +115,7 @@ double NarrowPhase::gap(const Solids& solids, Pair& pair, const Placed& a, const
 bool NarrowPhase::has_gap(const Solids& solids, Pair& pair, const Placed& a, const Placed& b) {
   constexpr int tries = 8;
   constexpr double margin = 1e-6;  // for the rounding of travels
-  const double least = rounding * solids.radius(pair.a);
+  const double least = rounding_of_gaps * solids.radius(pair.a);
   const double found = gap(solids, pair, a, b, least, tries);
   if (!(found > least)) return false;
   pair.safe = (a.travelled + b.travelled) + (1 - margin) * found;
@@ -172,19 +162,8 @@ void NarrowPhase::overlap(const Solids& solids, const Wear& wear, Pair& pair, co
   worn_.clear();
   for (const HalfSpace& left : wear.of(pair.a)) worn_.push_back(placed(left, turn, x));
   met = {};
-  Overlap& o = met.overlap;
-  clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)}, o);
-  const double radius = solids.radius(pair.a);
-  if (o.volume <= rounding_volume * radius * radius * radius) {
-    o.volume = 0;
-    return;
-  }
-  const HalfSpace& face = solids.planes(pair.b)[0];
-  met.depth = face.offset - dot(face.normal, o.centroid);
-  o.centroid = b.axes.to_world(o.centroid) + (b.x - a.x);
-  o.area = b.axes.to_world(o.area);
-  o.moment = b.axes.to_world(o.moment);
-  if (with_patch_) to_world(o.patch, b.axes, b.x - a.x);
+  clip(solids, pair, turn, x, {.a = worn_, .b = wear.of(pair.b)}, met.overlap);
+  take_to_world(met, solids.planes(pair.b)[0], solids.radius(pair.a), a, b, with_patch_);
 }
 
 }  // namespace floe

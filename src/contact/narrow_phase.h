@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "contact/pair.h"
+#include "contact/pair_overlap.h"
 #include "contact/places.h"
 #include "contact/solids.h"
 #include "contact/wear.h"
@@ -12,14 +13,6 @@
 #include "geometry/overlap.h"
 
 namespace floe {
-
-/// The overlap of a pair, in world axes from the centroid of A; no overlap: volume 0.
-template <class T>
-struct PairOverlapOf {
-  OverlapOf<T> overlap;
-  T depth = 0;  ///< of the centroid of the overlap below the first face of B [m]
-};
-using PairOverlap = PairOverlapOf<double>;
 
 /// How far A reaches down and B reaches up along an axis from B to A, each from its own origin.
 struct Reaches {

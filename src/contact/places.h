@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contact/pair.h"
+#include "contact/placed.h"
 #include "contact/solids.h"
 #include "contact_laws/mobility.h"
 #include "contact_laws/response.h"
@@ -26,25 +27,6 @@ struct MovingPose {
   Vec3<double> velocity, spin;  ///< [m/s, rad/s], world axes
 };
 
-/// Place and motion of a body or obstacle in an evaluation.
-struct Placed {
-  Vec3<double> x;           ///< centroid, or origin of the frame of an obstacle [m]
-  Triad<double> axes;       ///< of its frame
-  Vec3<double> velocity{};  ///< [m/s]
-  Vec3<double> spin{};      ///< [rad/s]
-  double travelled = 0;     ///< bound of the travel of its points since the last build [m]
-};
-
-/// Axes and origin of the frame of A in that of B.
-struct Relative {
-  Triad<double> turn;
-  Vec3<double> x;
-
-  Relative(const Placed& a, const Placed& b)
-      : turn{b.axes.to_local(a.axes.e1), b.axes.to_local(a.axes.e2), b.axes.to_local(a.axes.e3)},
-        x(b.axes.to_local(a.x - b.x)) {}
-};
-
 /// Returns an obstacle on its motion.
 /// \param position  time of its place [s]
 /// \param motion    time of its velocities [s]
@@ -53,28 +35,10 @@ Placed place_of(const Obstacle& obstacle, double position, double motion);
 /// Returns the image of B that is nearest to A, made in `room`.
 const Placed& nearest_image(const Placed& a, const Placed& b, const Periods& periods, Placed& room);
 
-/// Velocity and spin of a body or obstacle [m/s, rad/s].
-template <class T>
-struct BodyVelocityOf {
-  Vec3<T> velocity{}, spin{};
-};
-using BodyVelocity = BodyVelocityOf<double>;
-
 /// Acceleration of a body [m/s^2, rad/s^2].
 struct Acceleration {
   Vec3<double> linear{}, angular{};
 };
-
-/// Returns the motion of A relative to B at a point.
-/// \param centre  the point, from the centroid of A [m]
-/// \param apart   x_A - x_B [m]
-template <class T>
-RelativeMotionOf<T> relative_motion(const BodyVelocityOf<T>& a, const BodyVelocityOf<T>& b,
-                                    const Vec3<T>& centre, const Vec3<T>& apart) {
-  return {.velocity =
-              (a.velocity + cross(a.spin, centre)) - (b.velocity + cross(b.spin, centre + apart)),
-          .spin = a.spin - b.spin};
-}
 
 /// The places of the involved bodies, by slot, and of all parts of obstacles in the last
 /// evaluation.

@@ -14,6 +14,7 @@
 #include "contact_force/halo.h"
 #include "contact_force/load_balance.h"
 #include "contact_force/obstacle_forces.h"
+#include "contact_force/on_device.h"
 #include "contact_force/patch_forces.h"
 #include "contact_laws/restitution.h"
 #include "floe/base/item.h"
@@ -80,7 +81,9 @@ class DistributedContact final : public Contact,
                                  public TakesBrokenPairs,
                                  public Remarks,
                                  public BearsLoad<Spatial>,
-                                 public ActsOnPatches {
+                                 public ActsOnPatches,
+                                 public OnDevice,
+                                 public KeptContacts {
  public:
   DistributedContact(const Part& part, const Lattice& lattice, const ContactOptions& options,
                      std::vector<Obstacle> obstacles, PrescribedMotion prescribed)
@@ -110,7 +113,8 @@ class DistributedContact final : public Contact,
             .broken_pairs = this,
             .remarks = this,
             .load = this,
-            .patches = patch_forces_.is_on() ? this : nullptr};
+            .patches = patch_forces_.is_on() ? this : nullptr,
+            .device = this};
   }
 
   void add_load(const State<Spatial>& state, std::span<double> load) const override;
@@ -247,6 +251,34 @@ class DistributedContact final : public Contact,
   }
 
   void persist(Archive& archive) override;
+
+  void describe(DeviceModel& model) override {
+    model.missing = patch_forces_.is_on() ? "output: pressure" : missing_on_devices(contacts_);
+    if (!model.missing.empty()) return;
+    model.contacts = on_device(contacts_, part_);
+    model.contacts->work = model.next_work;
+    model.contacts->kept = this;
+  }
+  DevicePairs list(const State<Spatial>& state) override {
+    build(state);
+    return pairs_on_device(contacts_, part_);
+  }
+  /// The next evaluation makes a new list, on which results do not depend.
+  void take(const DevicePairs& pairs, std::int64_t steps, double dt) override {
+    if (steps == 0) return;
+    contacts_.take_steps(history_rows(pairs, part_));
+    expiry_ = PairListExpiry(contacts_.solids(), part_);
+    for (std::int64_t n = 0; n < steps; ++n) obstacle_forces_.add_time(dt);
+    dt_ = dt;
+  }
+  std::vector<std::array<double, 6>> obstacle_forces() const override {
+    return obstacle_forces_.numbers();
+  }
+  void set_obstacle_forces(std::span<const std::array<double, 6>> forces) override {
+    obstacle_forces_.set_numbers(forces);
+  }
+  bool are_possible() const override { return possible_; }
+  bool watches() const override { return !possible_ && (near_ || obstacle_near_); }
 
  private:
   const std::vector<Obstacle>& obstacles() const { return contacts_.solids().obstacles(); }

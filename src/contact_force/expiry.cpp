@@ -14,7 +14,19 @@ std::array<double, 2> largest(std::array<double, 2> mine, MPI_Comm comm) {
   return mine;
 }
 
+double radius_of(const Solids& solids, std::size_t obstacle) {
+  return solids.radius(part_index(solids.parts_of(obstacle)[0]));
+}
+
 }  // namespace
+
+double obstacle_travel(const Solids& solids, std::size_t k, double from, double to) {
+  const ObstacleMotion& m = solids.obstacles()[k].motion;
+  if (m.at_rest()) return 0;
+  const Quat<double> turn = product(m.turn(to), conjugate(m.turn(from)));
+  return length(m.way(to) - m.way(from)) +
+         2 * radius_of(solids, k) * length(Vec3<double>{turn.x, turn.y, turn.z});
+}
 
 PairListExpiry::PairListExpiry(const Solids& solids, const Part& part) {
   for (std::int32_t b = 0; b < solids.bodies(); ++b)
@@ -75,11 +87,8 @@ std::array<double, 2> PairListExpiry::of_obstacles(const Solids& solids, double 
   for (std::size_t k = 0; k < solids.obstacles().size(); ++k) {
     const ObstacleMotion& m = solids.obstacles()[k].motion;
     if (m.at_rest()) continue;
-    const double radius = solids.radius(part_index(solids.parts_of(k)[0]));
-    const Quat<double> turn = product(m.turn(time), conjugate(m.turn(time_)));
-    most[0] = std::max(most[0], length(m.way(time) - m.way(time_)) +
-                                    2 * radius * length(Vec3<double>{turn.x, turn.y, turn.z}));
-    most[1] = std::max(most[1], m.largest_speed(radius));
+    most[0] = std::max(most[0], obstacle_travel(solids, k, time_, time));
+    most[1] = std::max(most[1], m.largest_speed(radius_of(solids, k)));
   }
   return most;
 }

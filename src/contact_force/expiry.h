@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,9 @@
 #include "lattice/partition.h"
 
 namespace floe {
+
+/// Returns a bound of the travel of the vertices of obstacle k between two times [m].
+double obstacle_travel(const Solids& solids, std::size_t k, double from, double to);
 
 /// A pair list expires before any vertex has travelled by its slack. The largest speed times dt,
 /// summed over the steps, bounds the travel of every vertex; the true travels are computed only

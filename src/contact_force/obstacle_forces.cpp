@@ -37,6 +37,23 @@ void ObstacleForces::take(const Contacts& contacts, double dt, MPI_Comm comm) {
   time_ += dt;
 }
 
+std::vector<std::array<double, 6>> ObstacleForces::numbers() const {
+  std::vector<std::array<double, 6>> all;
+  for (std::size_t k = 0; k < peak_.size(); ++k) {
+    const Vec3<double>&p = peak_[k], &i = impulse_[k];
+    all.push_back({p.x, p.y, p.z, i.x, i.y, i.z});
+  }
+  return all;
+}
+
+void ObstacleForces::set_numbers(std::span<const std::array<double, 6>> numbers) {
+  for (std::size_t k = 0; k < peak_.size(); ++k) {
+    const auto& n = numbers[k];
+    peak_[k] = {n[0], n[1], n[2]};
+    impulse_[k] = {n[3], n[4], n[5]};
+  }
+}
+
 void ObstacleForces::report(const Contacts& contacts, bool first, Columns& columns) const {
   const double share = first && time_ > 0 ? 1 / time_ : 0.0;
   for (std::size_t k = 0; k < peak_.size(); ++k) {

@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,12 @@ class ObstacleForces {
   /// Collective.
   /// \param dt  length of the step [s]
   void take(const Contacts& contacts, double dt, MPI_Comm comm);
+  /// Per obstacle: the largest force so far and the impulse, as steps that are made elsewhere count
+  /// them on.
+  std::vector<std::array<double, 6>> numbers() const;
+  void set_numbers(std::span<const std::array<double, 6>> numbers);
+  /// Adds the time of such a step [s].
+  void add_time(double dt) { time_ += dt; }
   /// Reports per obstacle NAME_force_x.., NAME_moment_x.. (in the last evaluation),
   /// NAME_peak_force_x.. and NAME_mean_force_x.. .
   /// \param first  whether this rank reports what is alike on all ranks

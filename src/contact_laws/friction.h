@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/simd.h"
+#include "base/choices.h"
 #include "floe/base/rotation.h"
 
 namespace floe {
@@ -22,7 +22,7 @@ using FrictionSprings = FrictionSpringsOf<double>;
 
 /// Returns the factor by which a spring is scaled down if its stiffness has fallen.
 template <class T>
-T fall(const T& stiffness, const T& before) {
+constexpr T fall(const T& stiffness, const T& before) {
   const auto falls = stiffness < before;
   return chosen(falls, T(stiffness / chosen(falls, before, T(1.0))), T(1.0));
 }
@@ -33,7 +33,8 @@ T fall(const T& stiffness, const T& before) {
 /// \param normal     of the contact, a unit vector
 /// \param stiffness  present k_t [N/m]
 template <class T>
-Vec3<T> carried(const FrictionSpringsOf<T>& last, const Vec3<T>& normal, const T& stiffness) {
+constexpr Vec3<T> carried(const FrictionSpringsOf<T>& last, const Vec3<T>& normal,
+                          const T& stiffness) {
   const Vec3<T>& f = last.force;
   const T before2 = dot(f, f);
   const Vec3<T> in_plane = f - dot(f, normal) * normal;
@@ -57,7 +58,7 @@ using TwistSpring = TwistSpringOf<double>;
 
 /// Returns the couple of the spring, scaled down if the stiffness has fallen [N m].
 template <class T>
-T carried(const TwistSpringOf<T>& last, const T& stiffness) {
+constexpr T carried(const TwistSpringOf<T>& last, const T& stiffness) {
   return last.couple * fall(stiffness, last.stiffness);
 }
 
@@ -74,7 +75,7 @@ using Friction = FrictionOf<double>;
 /// \param most   mu F_n [N]
 /// \param reach  r_eff [m]
 template <class T>
-FrictionOf<T> within(const FrictionOf<T>& friction, const T& most, const T& reach) {
+constexpr FrictionOf<T> within(const FrictionOf<T>& friction, const T& most, const T& reach) {
   using std::sqrt;
   const auto none = most <= 0.0, turns = reach > 0.0;
   const T couple = chosen(turns, friction.couple, T(0.0)),
@@ -91,7 +92,7 @@ FrictionOf<T> within(const FrictionOf<T>& friction, const T& most, const T& reac
 /// which errs by 5e-8 of the angle at 0.2 rad, far more than a step's.
 /// \param turn  mean angle of the bodies about the normal in the last step [rad]
 template <class T>
-Vec3<T> turned(const Vec3<T>& force, const Vec3<T>& normal, const T& turn) {
+constexpr Vec3<T> turned(const Vec3<T>& force, const Vec3<T>& normal, const T& turn) {
   const T h = 0.5 * turn, t = h * (1.0 + h * h * (1.0 / 3 + h * h * (2.0 / 15)));
   const T share = 1.0 / (1.0 + t * t);
   return share * ((1.0 - t * t) * force + (2.0 * t) * cross(normal, force));

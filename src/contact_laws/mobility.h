@@ -18,7 +18,7 @@ struct SymmetricMatrixOf {
   T xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 
   /// Returns the matrix with principal values along axes.
-  static SymmetricMatrixOf along(const Triad<T>& axes, const Vec3<T>& principal) {
+  static constexpr SymmetricMatrixOf along(const Triad<T>& axes, const Vec3<T>& principal) {
     const auto& [e, f, g] = axes;
     const Vec3<T> a = principal.x * e, b = principal.y * f, c = principal.z * g;
     return {.xx = a.x * e.x + b.x * f.x + c.x * g.x,
@@ -28,14 +28,14 @@ struct SymmetricMatrixOf {
             .xz = a.x * e.z + b.x * f.z + c.x * g.z,
             .yz = a.y * e.z + b.y * f.z + c.y * g.z};
   }
-  Vec3<T> operator*(const Vec3<T>& v) const {
+  constexpr Vec3<T> operator*(const Vec3<T>& v) const {
     return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z,
             xz * v.x + yz * v.y + zz * v.z};
   }
-  SymmetricMatrixOf operator+(const SymmetricMatrixOf& m) const {
+  constexpr SymmetricMatrixOf operator+(const SymmetricMatrixOf& m) const {
     return {xx + m.xx, yy + m.yy, zz + m.zz, xy + m.xy, xz + m.xz, yz + m.yz};
   }
-  T trace() const { return xx + yy + zz; }
+  constexpr T trace() const { return xx + yy + zz; }
 };
 using SymmetricMatrix = SymmetricMatrixOf<double>;
 
@@ -58,22 +58,22 @@ struct MobilityOf {
   /// the relative acceleration at a point per force, along the force [1/kg].
   /// \param r  the point, from x_A [m]
   /// \param d  a unit vector
-  T along(const Vec3<T>& r, const Vec3<T>& d) const {
+  constexpr T along(const Vec3<T>& r, const Vec3<T>& d) const {
     return a.mass + b.mass + form(a, cross(r, d)) + form(b, cross(r + apart, d));
   }
   /// Returns the mean of along() over the directions across a unit vector [1/kg]. Over three
   /// directions at right angles the terms of a body add up to tr(I^-1) r.r - r.I^-1 r.
-  T across(const Vec3<T>& r, const Vec3<T>& d) const {
+  constexpr T across(const Vec3<T>& r, const Vec3<T>& d) const {
     return 0.5 * (3.0 * (a.mass + b.mass) + all(a, r) + all(b, r + apart) - along(r, d));
   }
   /// Returns I_a^-1 + I_b^-1, the relative angular acceleration per couple [1/(kg m^2)].
-  SymmetricMatrixOf<T> turning() const { return a.turning + b.turning; }
+  constexpr SymmetricMatrixOf<T> turning() const { return a.turning + b.turning; }
 
  private:
-  static T form(const BodyMobilityOf<T>& body, const Vec3<T>& v) {
+  static constexpr T form(const BodyMobilityOf<T>& body, const Vec3<T>& v) {
     return dot(v, body.turning * v);
   }
-  static T all(const BodyMobilityOf<T>& body, const Vec3<T>& r) {
+  static constexpr T all(const BodyMobilityOf<T>& body, const Vec3<T>& r) {
     return body.turning.trace() * dot(r, r) - form(body, r);
   }
 };

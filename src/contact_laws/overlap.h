@@ -13,9 +13,10 @@ struct OverlapLaw {
   SharedConstants constants;
 
   explicit OverlapLaw(const ContactOptions& options) : constants(options) {}
+  explicit constexpr OverlapLaw(const SharedConstants& shared) : constants(shared) {}
 
   template <class T>
-  ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
+  constexpr ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
     return {
         .rate = state.pair.stiffness, .couple = {}, .stiffness = state.pair.stiffness * state.area};
   }

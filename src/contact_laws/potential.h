@@ -17,9 +17,10 @@ struct PotentialLaw {
   SharedConstants constants;
 
   explicit PotentialLaw(const ContactOptions& options) : constants(options) {}
+  explicit constexpr PotentialLaw(const SharedConstants& shared) : constants(shared) {}
 
   template <class T>
-  ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
+  constexpr ElasticTermOf<T> term(const ContactStateOf<T>& state) const {
     const T stiffness = state.pair.stiffness, reference = state.pair.area;
     return {.rate = stiffness * state.area / reference,
             .couple = (stiffness / reference) * state.overlap.moment,

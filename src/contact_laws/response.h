@@ -84,7 +84,9 @@ struct ContactStateOf {
   Vec3<T> normal{};  ///< n = S/|S|, from B to A
 
   /// Returns the part of the overlap that presses, V - V_p [m^3].
-  T elastic_volume(T plastic) const { return larger_of(T(overlap.volume - plastic), T(0.0)); }
+  constexpr T elastic_volume(T plastic) const {
+    return larger_of(T(overlap.volume - plastic), T(0.0));
+  }
 };
 using ContactState = ContactStateOf<double>;
 
@@ -143,9 +145,11 @@ struct ContactForceOf {
   FrictionOf<T> friction;      ///< of springs and dashpots
   FrictionOf<T> springs;       ///< of springs alone, for the commit
 
-  Vec3<T> force() const { return (elastic + viscous) * normal + friction.force; }
+  constexpr Vec3<T> force() const { return (elastic + viscous) * normal + friction.force; }
   /// Returns the couple of all terms [N m].
-  Vec3<T> whole_couple() const { return couple + viscous_couple + friction.couple * normal; }
+  constexpr Vec3<T> whole_couple() const {
+    return couple + viscous_couple + friction.couple * normal;
+  }
 };
 using ContactForce = ContactForceOf<double>;
 

@@ -15,6 +15,7 @@ struct SharedConstants {
   double damping_ratio = 0;    ///< zeta of the viscous term
   PlasticLimit plastic_limit;  ///< sigma_p
 
+  SharedConstants() = default;
   explicit SharedConstants(const ContactOptions& options)
       : damping_ratio(options.damping_ratio), plastic_limit(options.plastic_limit) {}
 };
@@ -22,8 +23,9 @@ struct SharedConstants {
 /// Returns sigma_p of a contact [Pa].
 /// \param area      of the contact [m^2]
 /// \param approach  speed of approach [m/s]
-inline double plastic_pressure(const PlasticLimit& limit, double area, double approach) {
-  double pressure = limit.pressure;
+template <class T = double>
+constexpr T plastic_pressure(const PlasticLimit& limit, T area, T approach) {
+  T pressure = limit.pressure;
   if (limit.exponent != 0)
     pressure = std::clamp(pressure * std::pow(area / limit.area, -limit.exponent), limit.least,
                           limit.most);
@@ -33,7 +35,7 @@ inline double plastic_pressure(const PlasticLimit& limit, double area, double ap
 }
 /// The same lane by lane.
 template <class T>
-T plastic_pressures(const PlasticLimit& limit, const T& area, const T& approach) {
+constexpr T plastic_pressures(const PlasticLimit& limit, const T& area, const T& approach) {
   if (limit.exponent == 0 && limit.fast == 1) return limit.pressure;
   return by_lane([&](double a, double v) { return plastic_pressure(limit, a, v); }, area, approach);
 }
@@ -43,7 +45,7 @@ T plastic_pressures(const PlasticLimit& limit, const T& area, const T& approach)
 /// a step ago.
 /// \param approach  speed of approach in the middle of the last step [m/s]
 template <class T>
-T touched_for(const ContactStateOf<T>& state, const T& approach) {
+constexpr T touched_for(const ContactStateOf<T>& state, const T& approach) {
   const T& dt = state.last.dt;
   const auto begins = !state.last.touched && dt > 0.0 && approach > 0.0;
   const T since = state.overlap.volume / chosen(begins, T(state.area * approach), T(1.0));
@@ -58,7 +60,7 @@ struct StepDashpot {
   T over_step = 0;  ///< c/slows
 
   /// \param yields  relative acceleration per force of the dashpot
-  StepDashpot(double damping_ratio, const T& stiffness, const T& yields, const T& dt) {
+  constexpr StepDashpot(double damping_ratio, const T& stiffness, const T& yields, const T& dt) {
     using std::sqrt;
     const T rate = 2 * damping_ratio * sqrt(T(stiffness * yields));  // c yields
     slows = 1.0 + 0.5 * dt * rate;
@@ -74,9 +76,9 @@ struct StepDashpot {
 /// \param touched       part of the last step in which the pair touched [s]
 /// \param inverse_area  1/|S|
 template <class T>
-DashpotsOf<T> dashpots_of(double damping_ratio, const ContactStateOf<T>& state, const T& stiffness,
-                          const PairHistoryOf<T>& springs, const T& touched,
-                          const T& inverse_area) {
+constexpr DashpotsOf<T> dashpots_of(double damping_ratio, const ContactStateOf<T>& state,
+                                    const T& stiffness, const PairHistoryOf<T>& springs,
+                                    const T& touched, const T& inverse_area) {
   using std::sqrt;
   const PatchOf<T>& patch = state.overlap.patch;
   const T& dt = state.last.dt;
@@ -106,8 +108,9 @@ DashpotsOf<T> dashpots_of(double damping_ratio, const ContactStateOf<T>& state, 
 /// Returns the springs of friction advanced by the slip of the last step, before their limit.
 /// \param stiffness  k_t [N/m], and that against spin about n [N m]
 template <class T>
-FrictionOf<T> advanced_springs(const ContactStateOf<T>& state, const T& stiffness, const T& twist,
-                               const PairHistoryOf<T>& memory, const T& touched) {
+constexpr FrictionOf<T> advanced_springs(const ContactStateOf<T>& state, const T& stiffness,
+                                         const T& twist, const PairHistoryOf<T>& memory,
+                                         const T& touched) {
   const Vec3<T>& n = state.normal;
   const Vec3<T>& v = state.motion.velocity;
   const Vec3<T> before = turned(carried(memory.springs, n, stiffness), n, state.last.mean_turn);
@@ -120,9 +123,9 @@ FrictionOf<T> advanced_springs(const ContactStateOf<T>& state, const T& stiffnes
 /// \param memory  history of the pair
 /// \param trial   filled
 template <class T>
-void find_trial_along(const SharedConstants& constants, const ContactStateOf<T>& state,
-                      const ElasticTermOf<T>& term, const PairHistoryOf<T>& memory,
-                      ContactTrialOf<T>& trial) {
+constexpr void find_trial_along(const SharedConstants& constants, const ContactStateOf<T>& state,
+                                const ElasticTermOf<T>& term, const PairHistoryOf<T>& memory,
+                                ContactTrialOf<T>& trial) {
   const T approach = -dot(state.motion.velocity, state.normal);
   const T yield = plastic_pressures(constants.plastic_limit, state.area, approach) * state.area;
   const T volume = state.overlap.volume;
@@ -158,7 +161,7 @@ void find_trial_along(const SharedConstants& constants, const ContactStateOf<T>&
 
 /// Returns the force of a contact without its dashpots.
 template <class T>
-ContactForceOf<T> without_dashpots(const ContactTrialOf<T>& trial) {
+constexpr ContactForceOf<T> without_dashpots(const ContactTrialOf<T>& trial) {
   const T pressing = smaller_of(trial.elastic, trial.yield);
   const FrictionOf<T> springs = within(trial.springs, T(trial.friction * pressing), trial.reach);
   return {.normal = trial.normal,
@@ -174,7 +177,7 @@ ContactForceOf<T> without_dashpots(const ContactTrialOf<T>& trial) {
 /// down itself. The spin of a body that comes to rest falls for ever; below 1e-75 rad/s, where its
 /// fourth power is no longer a number, it counts as 0.
 template <class T>
-Vec3<T> rocking_couple(const ContactTrialOf<T>& trial, const Vec3<T>& across) {
+constexpr Vec3<T> rocking_couple(const ContactTrialOf<T>& trial, const Vec3<T>& across) {
   constexpr double least = 1e-150;
   const T w2 = dot(across, across);
   const auto rocks = w2 > least;
@@ -189,8 +192,8 @@ Vec3<T> rocking_couple(const ContactTrialOf<T>& trial, const Vec3<T>& across) {
 /// cut, couples are cut by the same factor; none exceeds what the force can carry over the facets.
 /// \param viscous  before any limit: force along n and couple of the pressure
 template <class T>
-Vec3<T> limited_couple(const ContactTrialOf<T>& trial, const T& viscous, const Vec3<T>& rocking,
-                       const T& pressing) {
+constexpr Vec3<T> limited_couple(const ContactTrialOf<T>& trial, const T& viscous,
+                                 const Vec3<T>& rocking, const T& pressing) {
   using std::sqrt;
   const T raw = trial.elastic + viscous;
   const auto presses = pressing > 0.0, cut = pressing < raw;
@@ -209,8 +212,8 @@ Vec3<T> limited_couple(const ContactTrialOf<T>& trial, const T& viscous, const V
 /// Returns the force of a contact with its dashpots.
 /// \param predicted  motion of A relative to B at c on which dashpots act
 template <class T>
-ContactForceOf<T> with_dashpots(const ContactTrialOf<T>& trial,
-                                const RelativeMotionOf<T>& predicted) {
+constexpr ContactForceOf<T> with_dashpots(const ContactTrialOf<T>& trial,
+                                          const RelativeMotionOf<T>& predicted) {
   const Vec3<T>&n = trial.normal, &v = predicted.velocity, &w = predicted.spin;
   const DashpotsOf<T>& d = trial.dashpots;
   const T about = dot(w, n);

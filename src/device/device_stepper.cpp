@@ -12,12 +12,11 @@ namespace {
 
 /// What the engines have, for messages.
 constexpr auto they_have =
-    "it has beams, gravity, loads, boundaries, and buoyancy and drag of bodies in water without "
-    "waves";
+    "it has beams, gravity, loads, boundaries, buoyancy and drag of bodies in water without waves, "
+    "and contact of convex bodies with each other and with convex obstacles";
 
 /// Returns what a user calls a force that a back end does not have.
 std::string in_words(std::string_view force, const Model<Spatial>& model) {
-  if (force == "support") return "structures";
   if (force == "line") return "mooring lines";
   if (force == "far_edge") return "supply: pressure";
   if (force == "program" || force == "applied") return "forces of programs";
@@ -127,6 +126,33 @@ Water in_order(const DeviceWater& of, const std::vector<std::int32_t>& order) {
   return water;
 }
 
+Contacts in_order(const DeviceContacts& of, const Part& part,
+                  const std::vector<std::int32_t>& order) {
+  Contacts c;
+  c.potential = of.potential, c.with_patch = of.with_patch;
+  c.damping_ratio = of.damping_ratio, c.plastic_limit = of.plastic_limit;
+  c.periods = {of.periods.length.x, of.periods.length.y, of.periods.length.z};
+  c.slack = of.slack;
+  c.obstacles = static_cast<std::int32_t>(of.obstacles);
+  c.graphs = of.graphs;
+  const auto add = [&](const DeviceContacts::Solid& solid) {
+    for (const Vec3<double>& x : solid.vertices) c.vertices.push_back({x.x, x.y, x.z});
+    c.planes.insert(c.planes.end(), solid.planes.begin(), solid.planes.end());
+    c.first_vertex.push_back(static_cast<std::int32_t>(c.vertices.size()));
+    c.first_plane.push_back(static_cast<std::int32_t>(c.planes.size()));
+    c.graph.push_back(solid.graph);
+    c.radius.push_back(solid.radius);
+  };
+  for (const std::int32_t b : order) {
+    add(item(of.solids, b));
+    c.inverse.push_back(item(of.solids, b).inverse);
+    const Point3& x = item(part.bodies.position, b);
+    c.rest.push_back({x.x, x.y, x.z});
+  }
+  for (std::size_t k = 0; k < of.obstacles; ++k) add(of.solids[order.size() + k]);
+  return c;
+}
+
 }  // namespace
 
 DescribedModel describe(const Model<Spatial>& model, const std::string& backend) {
@@ -143,6 +169,7 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
     const Roles<Spatial> roles = force->roles();
     if (roles.device == nullptr) refuse(in_words(force->name(), model));
     roles.device->describe(numbers);
+    if (!numbers.missing.empty()) refuse(numbers.missing);
     if (roles.work != nullptr) numbers.next_work += roles.work->works();
   }
 
@@ -162,9 +189,15 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   add_beams(numbers, place, lattice);
   add_held(model, place, lattice);
   add_loads(numbers, place, lattice);
+  for (const DeviceModel::Support& one : numbers.supports)
+    lattice.supports.push_back(
+        {item(place, one.body), {one.arm.x, one.arm.y, one.arm.z}, one.stiffness, one.damping});
   if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
   if (const auto& b = numbers.breaking)
     lattice.breaking = Breaking{b->general, b->crushes, b->beams, b->limits};
+  if (numbers.contacts) lattice.contacts = in_order(*numbers.contacts, part, described.order);
+  lattice.halts_at_breaks = numbers.contacts && numbers.breaking;
+  described.place = std::move(place);
   return described;
 }
 
@@ -173,13 +206,17 @@ DeviceStepper::DeviceStepper(const Model<Spatial>& model, DescribedModel describ
     : model_(model),
       described_(std::move(described)),
       engine_(std::move(engine)),
-      room_(described_.order.size() * Engine::record) {
+      room_(described_.order.size() * Engine::record),
+      listed_(static_cast<std::size_t>(model.part().local)) {
   static_assert(Engine::record == Spatial::record);
 }
 
-void DeviceStepper::put(const State<Spatial>& state, std::span<const double> works) {
-  works_.assign(works.begin(), works.end());
-  of_engine([&] { engine_->forget_works(0); });
+void DeviceStepper::put(const State<Spatial>& state, const WorkParts& works) {
+  works_ = works;
+  of_engine([&] {
+    engine_->forget_works(0);
+    engine_->put_works(0, works.since);
+  });
   constexpr std::size_t n = Engine::record;
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(state.record(static_cast<std::size_t>(described_.order[d])), n, &room_[d * n]);
@@ -188,6 +225,16 @@ void DeviceStepper::put(const State<Spatial>& state, std::span<const double> wor
     Damage damage;
     breaking->kept->read(damage.cracks, damage.viscous);
     of_engine([&] { engine_->put_damage(0, damage); });
+    std::vector<std::array<std::int32_t, 2>> known;
+    broken_.assign(described_.numbers.beams.size(), 0);
+    note_broken(damage.cracks, known);
+  }
+  if (const auto& contacts = described_.numbers.contacts) {
+    std::vector<double> forces;
+    for (const auto& of : contacts->kept->obstacle_forces())
+      forces.insert(forces.end(), of.begin(), of.end());
+    of_engine([&] { engine_->put_obstacles(0, forces); });
+    list_pairs(state);
   }
   const KeptParts* kept = kept_parts();
   if (kept == nullptr) return;
@@ -199,17 +246,81 @@ void DeviceStepper::put(const State<Spatial>& state, std::span<const double> wor
   of_engine([&] { engine_->put_submerged(0, ordered); });
 }
 
-void DeviceStepper::get(State<Spatial>& state) {
+void DeviceStepper::get_records(State<Spatial>& state) {
   constexpr std::size_t n = Engine::record;
   of_engine([&] { engine_->get(0, room_); });
   for (std::size_t d = 0; d < described_.order.size(); ++d)
     std::copy_n(&room_[d * n], n, state.record(static_cast<std::size_t>(described_.order[d])));
+}
+
+/// Makes the list of pairs for a state, which the engine has.
+void DeviceStepper::list_pairs(const State<Spatial>& state) {
+  const DeviceContacts& contacts = *described_.numbers.contacts;
+  pairs_ = contacts.kept->list(state);
+  listed_at_ = state.time;
+  Pairs pairs{{}, pairs_.numbers, pairs_.histories, pairs_.states};
+  const auto solid = [&](std::int32_t index) {
+    return index >= 0 ? item(described_.place, index)
+                      : static_cast<std::int32_t>(described_.place.size()) - 1 - index;
+  };
+  for (const auto& [a, b] : pairs_.bodies) pairs.solids.push_back({solid(a), solid(b)});
+  of_engine([&] { engine_->put_pairs(0, std::move(pairs)); });
+}
+
+/// Hands what the engine has of contacts back to the processor.
+void DeviceStepper::keep_contacts() {
+  const DeviceContacts& contacts = *described_.numbers.contacts;
+  Pairs now;
+  of_engine([&] { engine_->get_pairs(0, now); });
+  pairs_.histories = now.histories;
+  pairs_.states = now.states;
+  contacts.kept->take(pairs_, steps_of_list_, last_dt_);
+  steps_of_list_ = 0;
+  std::vector<double> numbers(6 * contacts.obstacles);
+  of_engine([&] { engine_->get_obstacles(0, numbers); });
+  std::vector<std::array<double, 6>> forces(contacts.obstacles);
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(6 * k), 6, forces[k].begin());
+  contacts.kept->set_obstacle_forces(forces);
+}
+
+/// Notes the broken beams; appends the bodies of those that were not broken before.
+void DeviceStepper::note_broken(std::span<const double> cracks,
+                                std::vector<std::array<std::int32_t, 2>>& fresh) {
+  for (std::size_t m = 0; m < broken_.size() && !cracks.empty(); ++m) {
+    if (broken_[m] != 0 || cracks[m * Damage::numbers + Damage::damage] != 1) continue;
+    broken_[m] = 1;
+    const auto [i, j] = described_.numbers.beams[m].bodies;
+    fresh.push_back({item(model_.part().global, i), item(model_.part().global, j)});
+  }
+}
+
+/// Lets bodies touch whose beams have broken since the last call.
+void DeviceStepper::release_broken() {
+  std::vector<std::array<std::int32_t, 2>> pairs;
+  const Damage damage = of_engine([&] { return engine_->get_damage(0); });
+  note_broken(damage.cracks, pairs);
+  for (const auto& force : model_.forces())
+    if (auto* role = force->roles().broken_pairs) role->release(pairs);
+}
+
+/// Makes a new list of pairs between two steps. \param time  of the state of the engine [s]
+void DeviceStepper::renew_pairs(double time) {
+  keep_contacts();
+  get_records(listed_);
+  listed_.time = time;
+  list_pairs(listed_);
+}
+
+void DeviceStepper::get(State<Spatial>& state) {
+  get_records(state);
   state.fastest = fastest_;
   state.fastest_spin = fastest_spin_;
   if (const auto& breaking = described_.numbers.breaking) {
     const Damage damage = of_engine([&] { return engine_->get_damage(0); });
     breaking->kept->write(damage.cracks, damage.viscous, last_dt_);
   }
+  if (described_.numbers.contacts) keep_contacts();
   KeptParts* kept = kept_parts();
   if (kept == nullptr) return;
   std::vector<double> ordered(described_.order.size() * of_kept);
@@ -222,6 +333,11 @@ void DeviceStepper::get(State<Spatial>& state) {
 }
 
 void DeviceStepper::queue(double time, double dt, double before) {
+  const auto& contacts = described_.numbers.contacts;
+  if (contacts && contacts->obstacle_travel(listed_at_, time) > contacts->slack) {
+    make_steps();
+    renew_pairs(time);
+  }
   if (steps_.count == 0) {
     steps_ = {.count = 0, .dt = dt, .before = before, .since = static_cast<int>(since_)};
   } else if (dt != steps_.dt) {
@@ -229,6 +345,8 @@ void DeviceStepper::queue(double time, double dt, double before) {
   }
   ++steps_.count;
   last_dt_ = dt;
+  times_.push_back(time);
+  if (contacts) queue_contacts(*contacts, time, dt, before);
   if (described_.numbers.breaking) steps_.times.push_back(time);
   for (const double at : {time, time + dt}) {
     for (const PlacedBoundary& placed : model_.boundaries()) {
@@ -248,16 +366,43 @@ void DeviceStepper::queue(double time, double dt, double before) {
   }
 }
 
-double DeviceStepper::flush() {
-  if (steps_.count == 0) return 0;
-  Made made;
-  do {
-    made = of_engine([&] {
+void DeviceStepper::queue_contacts(const DeviceContacts& contacts, double time, double dt,
+                                   double before) {
+  for (std::size_t k = 0; k < contacts.obstacles; ++k) {
+    const DeviceContacts::ObstacleStep numbers = contacts.obstacle(k, time, before, dt);
+    steps_.obstacles.insert(steps_.obstacles.end(), numbers.begin(), numbers.end());
+  }
+  if (!(contacts.damping_ratio > 0)) return;
+  for (const PlacedBoundary& placed : model_.boundaries()) {
+    const std::array<double, 6> values = placed.boundary.acceleration(time);
+    steps_.accelerations.insert(steps_.accelerations.end(), values.begin(), values.end());
+  }
+}
+
+/// Makes the queued steps, with new lists of pairs where these expire.
+void DeviceStepper::make_steps() {
+  while (steps_.count > 0) {
+    const Made made = of_engine([&] {
       engine_->step({&steps_, 1});
       return engine_->made(0);
     });
+    steps_of_list_ += made.steps;
+    if ((made.why & Made::no_room) != 0)
+      throw RunFailed(
+          "an overlap of two bodies has more corners than a back end has room for "
+          "(backend: cpu has)");
+    const double time = item(times_, made.steps - 1) + steps_.dt;
     drop(made.steps);
-  } while (steps_.count > 0);
+    if (!described_.numbers.contacts) continue;
+    if ((made.why & Made::beam_broke) != 0) release_broken();
+    if ((made.why & (Made::list_expired | Made::beam_broke)) != 0) renew_pairs(time);
+  }
+}
+
+double DeviceStepper::flush() {
+  make_steps();
+  if (made_ == 0) return 0;
+  made_ = 0;
   const Findings found = of_engine([&] { return engine_->findings(0); });
   fastest_ = std::sqrt(found.speed2);
   fastest_spin_ = std::sqrt(found.spin2);
@@ -271,7 +416,11 @@ void DeviceStepper::drop(int count) {
     const std::size_t each = table.size() / static_cast<std::size_t>(steps_.count);
     table.erase(table.begin(), table.begin() + static_cast<std::ptrdiff_t>(each) * count);
   };
-  for (auto* table : {&steps_.motions, &steps_.wrenches, &steps_.water, &steps_.times}) of(*table);
+  for (auto* table : {&steps_.motions, &steps_.wrenches, &steps_.water, &steps_.times,
+                      &steps_.accelerations, &steps_.obstacles})
+    of(*table);
+  times_.erase(times_.begin(), times_.begin() + count);
+  made_ += count;
   if (const auto& water = described_.numbers.water)
     steps_.since = static_cast<int>((steps_.since + count) % water->pace);
   steps_.before = steps_.dt;
@@ -279,25 +428,46 @@ void DeviceStepper::drop(int count) {
 }
 
 double DeviceStepper::take_works(std::span<double> works) {
-  const Works parts = of_engine([&] { return engine_->works(0); });
-  std::copy(works_.begin(), works_.end(), works.begin());
-  for (const double work : parts.beams) works[described_.numbers.beam_work] += work;
-  for (std::size_t l = 0; l < parts.loaded.size(); ++l) {
-    const DeviceModel::Load& load =
-        item(described_.numbers.loads, described_.lattice.loaded[l].load);
-    works[load.work] += parts.loaded[l];
-  }
+  works_.since = of_engine([&] { return engine_->works(0); });
+  return sum(works_, works).value();
+}
+
+std::optional<double> DeviceStepper::sum(const WorkParts& parts, std::span<double> works) const {
+  const Lattice& lattice = described_.lattice;
+  const auto fits = [](const std::vector<double>& some, std::size_t size) {
+    return some.empty() || some.size() == size;
+  };
+  const auto bodies = static_cast<std::size_t>(lattice.bodies);
+  const Works& since = parts.since;
+  if (parts.until.size() != works.size() || !fits(since.beams, bodies) ||
+      !fits(since.held, lattice.held.size()) || !fits(since.loaded, lattice.loaded.size()) ||
+      !fits(since.drag, bodies) || !fits(since.buoyancy, bodies) ||
+      !fits(since.supports, lattice.supports.size()) || !fits(since.contacts, 3 * bodies) ||
+      !fits(since.obstacles,
+            lattice.contacts ? 4 * static_cast<std::size_t>(lattice.contacts->obstacles) : 0))
+    return {};
+  std::copy(parts.until.begin(), parts.until.end(), works.begin());
+  for (const double work : since.beams) works[described_.numbers.beam_work] += work;
+  for (std::size_t l = 0; l < since.loaded.size(); ++l)
+    works[item(described_.numbers.loads, lattice.loaded[l].load).work] += since.loaded[l];
+  for (const double work : since.supports) works[described_.numbers.support_work] += work;
   const auto add = [&](const std::vector<double>& some, const std::optional<std::size_t>& force) {
     if (!force) return;  // of other runs in the launch
     for (const double work : some) works[*force] += work;
   };
   if (const auto& water = described_.numbers.water) {
-    add(parts.drag, water->drag_work);
-    add(parts.buoyancy, water->buoyancy_work);
+    add(since.drag, water->drag_work);
+    add(since.buoyancy, water->buoyancy_work);
+  }
+  if (const auto& contacts = described_.numbers.contacts) {
+    for (std::size_t k = 0; k < since.contacts.size(); ++k)
+      works[contacts->work + k % 3] += since.contacts[k];
+    for (std::size_t k = 0; k < since.obstacles.size(); ++k)
+      works[contacts->work + k % 4] += since.obstacles[k];
   }
   double boundaries = 0;
-  for (const double work : parts.held) boundaries += work;
-  return boundaries;
+  for (const double work : since.held) boundaries += work;
+  return parts.boundaries + boundaries;
 }
 
 }  // namespace floe::device

@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "floe/geometry/half_space.h"
+#include "geometry/edge_graph.h"
+
 namespace floe::device {
 
 /// An error of a device or of its library.
@@ -62,6 +65,32 @@ struct Damage {
   std::vector<float> viscous;  ///< beam after beam: forces of dashpots at the last step's start
 };
 
+/// Contacts of a lattice: shapes of its bodies, then of obstacles, and the law (DeviceContacts).
+struct Contacts {
+  bool potential = false, with_patch = false;
+  double damping_ratio = 0;
+  std::array<double, 7> plastic_limit{};
+  std::array<double, 3> periods{};  ///< [m]; 0: none
+  double slack = 0;                 ///< [m]
+  std::int32_t obstacles = 0;
+  // Per solid, and one more: where its vertices and planes begin.
+  std::vector<std::int32_t> first_vertex{0}, first_plane{0};
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<HalfSpace> planes;
+  std::vector<std::int32_t> graph;
+  std::vector<EdgeGraph> graphs;
+  std::vector<double> radius;
+  std::vector<std::array<double, 4>> inverse;  ///< per body
+  std::vector<std::array<double, 3>> rest;     ///< per body: centroid at rest [m]
+};
+/// Pairs that may touch, sorted as bodies sum them; obstacle k of the run is `bodies` + k.
+struct Pairs {
+  std::vector<std::array<std::int32_t, 2>> solids;
+  std::vector<std::array<double, 6>> numbers;    ///< as DevicePairs
+  std::vector<std::array<double, 7>> histories;  ///< likewise
+  std::vector<std::uint8_t> states;              ///< likewise
+};
+
 /// One run's lattice for an engine. Bodies are in the engine's order, in which those of a tile
 /// follow each other.
 struct Lattice {
@@ -93,9 +122,18 @@ struct Lattice {
   std::vector<Loaded> loaded;
   std::int32_t loads = 0;
 
+  /// Springs and dashpots on bodies, one on a body at most (forces/support_law.h).
+  struct Supported {
+    std::int32_t body;
+    std::array<double, 3> arm;
+    std::array<double, 36> stiffness, damping;
+  };
+  std::vector<Supported> supports;
+
   std::optional<Water> water;
   std::optional<Breaking> breaking;
   bool halts_at_breaks = false;  ///< a run halts at a step in which a beam breaks
+  std::optional<Contacts> contacts;
 };
 
 /// Steps to be made of one run.
@@ -107,14 +145,20 @@ struct Steps {
   std::vector<double> wrenches{};  ///< per step and load: force and moment on each body [N, N m]
   std::vector<double> water{};     ///< per step: level [m] and current [m/s] of the water
   std::vector<double> times{};     ///< per step: at its start, where beams break [s]
-  int since = 0;                   ///< steps since all submerged parts were found, at a pace
+  std::vector<double> accelerations{};  ///< per step: of prescribed motions, where contacts damp
+  std::vector<double> obstacles{};      ///< per step and obstacle, as DeviceContacts::ObstacleStep
+  int since = 0;                        ///< steps since all submerged parts were found, at a pace
 };
 
 /// The steps that a run has made. Where it halted at one, those after it stood still, so that they
 /// can be given again.
 struct Made {
   /// Reasons to halt, in bits.
-  enum Why : std::uint32_t { beam_broke = 1 };
+  enum Why : std::uint32_t {
+    beam_broke = 1,
+    list_expired = 2,  ///< vertices have moved by the slack of the list of pairs
+    no_room = 4        ///< an overlap has more corners than an engine has room for
+  };
   int steps = 0;
   std::uint32_t why = 0;  ///< 0: it did not halt
 };
@@ -127,7 +171,11 @@ struct Works {
   std::vector<double> beams;           ///< per body: by dashpots of beams of which it is the first
   std::vector<double> held;            ///< per held body: by boundaries
   std::vector<double> loaded;          ///< per load on a body
+  std::vector<double> supports;        ///< per support: by its dashpots
   std::vector<double> drag, buoyancy;  ///< per body; empty: none
+  /// By contacts: per body those of elastic, viscous and friction's terms; per obstacle these, and
+  /// that of the obstacle.
+  std::vector<double> contacts, obstacles;
 };
 
 /// Steps several runs at once. Each run's numbers are those that it would have alone, to the last
@@ -151,12 +199,20 @@ class Engine {
   /// Sets, or returns, the damage of a run whose beams break.
   virtual void put_damage(std::size_t run, const Damage& damage) = 0;
   virtual Damage get_damage(std::size_t run) = 0;
+  /// Sets the pairs of a run at its present state; returns their histories and states of now.
+  virtual void put_pairs(std::size_t run, Pairs pairs) = 0;
+  virtual void get_pairs(std::size_t run, Pairs& pairs) = 0;
+  /// Sets, or returns, largest forces and impulses of the obstacles of a run, six numbers each.
+  virtual void put_obstacles(std::size_t run, std::span<const double> numbers) = 0;
+  virtual void get_obstacles(std::size_t run, std::span<double> numbers) = 0;
   /// Makes steps of each run, which may differ in number; returns perhaps before they are made.
   virtual void step(std::span<const Steps> steps) = 0;
   /// Returns what the last step() has made of a run's steps.
   virtual Made made(std::size_t run) = 0;
   virtual Findings findings(std::size_t run) = 0;
   virtual Works works(std::size_t run) = 0;
+  /// Sets the works of a run, which steps add to.
+  virtual void put_works(std::size_t run, const Works& works) = 0;
   /// Lets the works of a run begin anew.
   virtual void forget_works(std::size_t run) = 0;
   virtual std::int32_t tiles() const = 0;

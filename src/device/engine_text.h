@@ -4,12 +4,17 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "device/contact_store.h"
 #include "device/engine.h"
 #include "device/launch.h"
+#include "device/move_step.h"
 #include "device/tile_step.h"
 #include "device/tiles.h"
 #include "device/water_step.h"
@@ -35,6 +40,7 @@ class TileEngine final : public Engine {
       first_beam_.push_back(first_beam_.back() + static_cast<std::int32_t>(lattice.ends.size()));
       first_held_.push_back(first_held_.back() + lattice.held.size());
       first_loaded_.push_back(first_loaded_.back() + lattice.loaded.size());
+      first_support_.push_back(first_support_.back() + lattice.supports.size());
     }
     const auto bodies = static_cast<std::size_t>(first_body_.back());
     if (tile == 0) tile = tile_for(first_body_.back());
@@ -61,15 +67,18 @@ class TileEngine final : public Engine {
     take_bodies(bodies);
     take_held(bodies);
     take_loads(bodies);
+    take_supports(bodies);
     take_water(bodies);
     if constexpr (breakable) take_breaking();
+    contacts_.take(lattices_, first_body_);
     for (auto& records : records_) records = Array<double>(of_record * bodies);
     if (damped) beam_works_ = Array<double>(bodies);
     speed2_ = Array<std::uint64_t>(lattices_.size());
     spin2_ = Array<std::uint64_t>(lattices_.size());
     runs_ = Array<RunOfTiles>(lattices_.size());
     last_ = Array<std::int32_t>(lattices_.size());
-    last_.put(std::vector<std::int32_t>(lattices_.size(), -1));
+    made_.resize(lattices_.size());
+    found_.resize(lattices_.size());
     why_ = Array<std::uint32_t>(lattices_.size());
   }
 
@@ -111,6 +120,23 @@ class TileEngine final : public Engine {
     return damage;
   }
 
+  void put_pairs(std::size_t run, Pairs pairs) override {
+    queue_.wait();
+    if (contacts_.put_pairs(run, std::move(pairs), records_[now_])) queue_.forget();
+  }
+  void get_pairs(std::size_t run, Pairs& pairs) override {
+    queue_.wait();
+    contacts_.get_pairs(run, pairs);
+  }
+  void put_obstacles(std::size_t run, std::span<const double> numbers) override {
+    queue_.wait();
+    contacts_.put_obstacles(run, numbers);
+  }
+  void get_obstacles(std::size_t run, std::span<double> numbers) override {
+    queue_.wait();
+    contacts_.get_obstacles(run, numbers);
+  }
+
   void step(std::span<const Steps> steps) override {
     int most = 0;
     std::vector<RunOfTiles> runs;
@@ -145,6 +171,7 @@ class TileEngine final : public Engine {
         water_motions.resize(water_motions.size() + 4 * static_cast<std::size_t>(of.count));
     }
     queue_.wait();
+    has_looked_ = false;
     last_.put(last);
     why_.put(std::vector<std::uint32_t>(lattices_.size()));
     if (most == 0 || tiles_.run.empty()) return;
@@ -152,6 +179,7 @@ class TileEngine final : public Engine {
     grown = give(wrenches, wrenches_) || grown;
     grown = give(water_motions, water_motions_) || grown;
     grown = give(times, times_) || grown;
+    if (contacts_.any()) grown = contacts_.put_steps(steps) || grown;
     if (grown) queue_.forget();
     runs_.put(runs);
     breaking_.put(breaking);
@@ -168,31 +196,33 @@ class TileEngine final : public Engine {
       if (parity == 1) std::swap(of_step.records[0], of_step.records[1]);
       for (int k = 0; k < most; ++k) {
         if (has_water_) launch(WaterStep{of_step, water, k}, tiles, threads, 0);
+        if (contacts_.room() > 0) {
+          launch(OverlapStep<Memory>{of_step, k}, contacts_.room(), threads, 0);
+          launch(TrialStep<Memory>{of_step, k}, contacts_.blocks(), most_threads, 0);
+        }
         launch(Step{of_step, k}, tiles, threads, shared_);
+        if (!contacts_.any()) continue;
+        if (contacts_.room() > 0 && contacts_.damps()) {
+          launch(PredictStep{of_step, k}, tiles, threads, 0);
+          launch(DashpotStep<Memory>{of_step, k}, contacts_.blocks(), most_threads, 0);
+        }
+        if (contacts_.obstacles() > 0)
+          launch(ObstacleStep<Memory>{of_step, k}, static_cast<std::int32_t>(contacts_.obstacles()),
+                 most_threads, 0);
+        launch(MoveStep{of_step, k}, tiles, threads, 0);
       }
     });
     now_ = (now_ + static_cast<std::size_t>(most)) % 2;
   }
 
   Made made(std::size_t run) override {
-    queue_.wait();
-    std::int32_t last = 0;
-    std::uint32_t why = 0;
-    last_.get({&last, 1}, run);
-    why_.get({&why, 1}, run);
-    return {last + 1, why};
+    look();
+    return made_[run];
   }
-
   Findings findings(std::size_t run) override {
-    queue_.wait();
-    const auto take = [&](Array<std::uint64_t>& largest) {
-      std::uint64_t bits = 0;
-      const std::uint64_t none = 0;
-      largest.get({&bits, 1}, run);
-      largest.put({&none, 1}, run);
-      return std::bit_cast<double>(bits);
-    };
-    return {take(speed2_), take(spin2_)};
+    look();
+    const auto [speed2, spin2] = std::exchange(found_[run], {});
+    return {std::bit_cast<double>(speed2), std::bit_cast<double>(spin2)};
   }
 
   Works works(std::size_t run) override {
@@ -203,11 +233,30 @@ class TileEngine final : public Engine {
       return values;
     };
     const auto body = [&](std::size_t r) { return static_cast<std::size_t>(first_body_[r]); };
-    return {take(beam_works_, body(run), body(run + 1)),
-            take(held_works_, first_held_[run], first_held_[run + 1]),
-            take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
-            take(drag_works_, body(run), body(run + 1)),
-            take(buoyancy_works_, body(run), body(run + 1))};
+    Works works{take(beam_works_, body(run), body(run + 1)),
+                take(held_works_, first_held_[run], first_held_[run + 1]),
+                take(load_works_, first_loaded_[run], first_loaded_[run + 1]),
+                take(support_works_, first_support_[run], first_support_[run + 1]),
+                take(drag_works_, body(run), body(run + 1)),
+                take(buoyancy_works_, body(run), body(run + 1)),
+                {},
+                {}};
+    contacts_.add_works(run, works);
+    return works;
+  }
+
+  void put_works(std::size_t run, const Works& works) override {
+    queue_.wait();
+    const auto put = [](Array<double>& memory, const std::vector<double>& values, auto first) {
+      if (memory.size() > 0) memory.put(values, static_cast<std::size_t>(first));
+    };
+    put(beam_works_, works.beams, first_body_[run]);
+    put(held_works_, works.held, first_held_[run]);
+    put(load_works_, works.loaded, first_loaded_[run]);
+    put(support_works_, works.supports, first_support_[run]);
+    put(drag_works_, works.drag, first_body_[run]);
+    put(buoyancy_works_, works.buoyancy, first_body_[run]);
+    contacts_.put_works(run, works);
   }
 
   void forget_works(std::size_t run) override {
@@ -220,11 +269,33 @@ class TileEngine final : public Engine {
     for (auto* works : {&beam_works_, &drag_works_, &buoyancy_works_}) forget(*works, first, end);
     forget(held_works_, first_held_[run], first_held_[run + 1]);
     forget(load_works_, first_loaded_[run], first_loaded_[run + 1]);
+    forget(support_works_, first_support_[run], first_support_[run + 1]);
+    contacts_.forget_works(run);
   }
 
   std::int32_t tiles() const override { return static_cast<std::int32_t>(tiles_.run.size()); }
 
  private:
+  /// Brings what the steps since the last look have done, of all runs at once.
+  void look() {
+    queue_.wait();
+    if (has_looked_) return;
+    has_looked_ = true;
+    const std::size_t runs = lattices_.size();
+    std::vector<std::int32_t> last(runs);
+    std::vector<std::uint32_t> why(runs);
+    last_.get(last);
+    why_.get(why);
+    for (std::size_t r = 0; r < runs; ++r) made_[r] = {last[r] + 1, why[r]};
+    for (const std::size_t k : {0U, 1U}) {
+      Array<std::uint64_t>& largest = k == 0 ? speed2_ : spin2_;
+      std::vector<std::uint64_t> bits(runs);
+      largest.get(bits);
+      largest.put(std::vector<std::uint64_t>(runs));
+      for (std::size_t r = 0; r < runs; ++r) found_[r][k] = std::max(found_[r][k], bits[r]);
+    }
+  }
+
   template <class T>
   static Array<T> keep(const std::vector<T>& values) {
     return Array<T>(std::span<const T>(values));
@@ -384,6 +455,24 @@ class TileEngine final : public Engine {
     load_works_ = Array<double>(all);
   }
 
+  void take_supports(std::size_t bodies) {
+    if (first_support_.back() == 0) return;
+    std::vector<std::int32_t> of(bodies, -1);
+    std::vector<double> numbers;
+    std::int32_t next = 0;
+    for (std::size_t r = 0; r < lattices_.size(); ++r) {
+      for (const Lattice::Supported& one : lattices_[r].supports) {
+        of[static_cast<std::size_t>(first_body_[r] + one.body)] = next++;
+        numbers.insert(numbers.end(), one.arm.begin(), one.arm.end());
+        numbers.insert(numbers.end(), one.stiffness.begin(), one.stiffness.end());
+        numbers.insert(numbers.end(), one.damping.begin(), one.damping.end());
+      }
+    }
+    support_of_ = keep(of);
+    supports_ = keep(numbers);
+    support_works_ = Array<double>(first_support_.back());
+  }
+
   /// What the water needs. Runs without water, beside others with it, have bodies without shape.
   void take_water(std::size_t bodies) {
     has_water_ = std::any_of(lattices_.begin(), lattices_.end(),
@@ -485,6 +574,9 @@ class TileEngine final : public Engine {
             {arms_.data(), static_cast<std::int64_t>(first_loaded_.back())},
             load_works_.data(),
             wrenches_.data(),
+            or_null(support_of_),
+            supports_.data(),
+            support_works_.data(),
             runs_.data(),
             {last_.data(), why_.data()},
             speed2_.data(),
@@ -496,7 +588,8 @@ class TileEngine final : public Engine {
              {cracks_.data(), slots},
              {or_null(viscous_), slots},
              grown_.data(),
-             {last_.data(), why_.data()}}};
+             {last_.data(), why_.data()}},
+            contacts_.memory()};
   }
 
   WaterMemory all_of_water() {
@@ -518,17 +611,22 @@ class TileEngine final : public Engine {
 
   std::vector<Lattice> lattices_;
   std::vector<std::int32_t> first_body_{0}, first_beam_{0};
-  std::vector<std::size_t> first_held_{0}, first_loaded_{0};
+  std::vector<std::size_t> first_held_{0}, first_loaded_{0}, first_support_{0};
   Tiles tiles_;
   std::size_t shared_ = 0, now_ = 0;
   Queue queue_;
   Array<std::int32_t> first_body_of_tile_, first_slot_, run_, i_, j_, first_end_, ends_;
   Array<double> constants_, bodies_, weights_, beam_works_, held_works_, motions_, arms_,
-      load_works_, wrenches_;
+      load_works_, wrenches_, supports_, support_works_;
+  Array<std::int32_t> support_of_;
   Array<double> records_[2];  // NOLINT: pairs of memory
   Array<std::int32_t> held_row_, held_motions_, first_load_, load_;
   Array<std::uint8_t> held_bits_;
   Array<std::uint64_t> speed2_, spin2_;
+  // What has been brought of them and of halts.
+  bool has_looked_ = true;
+  std::vector<Made> made_;
+  std::vector<std::array<std::uint64_t, 2>> found_;  ///< squares of speed and spin, as bits
   // Beams that break.
   static constexpr std::size_t of_viscous = 6;
   std::vector<std::size_t> first_slot_of_run_, slot_of_;  ///< per run, and one more; per beam
@@ -544,6 +642,7 @@ class TileEngine final : public Engine {
   Array<double> water_motions_, prisms_, wholes_, extents_, most2_, area_per_volume_, vertices_,
       expansions_, water_forces_, drag_works_, buoyancy_works_;
   Array<std::int32_t> first_vertex_, first_face_, first_corner_, corners_;
+  ContactStore contacts_;
   std::vector<double> room_;
 };
 

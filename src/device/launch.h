@@ -67,6 +67,13 @@ class Array {
           "cudaMemcpy");
   }
 
+  /// Copies numbers of another array.
+  void take(const Array& other, std::size_t from, std::size_t count, std::size_t at) {
+    if (count == 0) return;
+    check(cudaMemcpy(data_ + at, other.data_ + from, count * sizeof(T), cudaMemcpyDeviceToDevice),
+          "cudaMemcpy");
+  }
+
  private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
@@ -104,6 +111,55 @@ __global__ void __launch_bounds__(most_threads) run_tile(const Work work) {
     work.body(tile, k, shared);
 }
 
+/// Counts bits; returns the number of the lowest bit of a mask that is not 0.
+__device__ inline int count_bits(std::uint64_t mask) { return __popcll(mask); }
+__device__ inline int lowest_bit(std::uint64_t mask) {
+  return __ffsll(static_cast<long long>(mask)) - 1;
+}
+
+/// Lanes that work together: the threads of a warp. What is outside of calls is done by all of them
+/// alike.
+struct Warp {
+  static constexpr int lanes = 32;
+
+  __device__ static int lane() { return static_cast<int>(threadIdx.x % lanes); }
+  /// Calls work(lane) in all lanes, which see what it has written.
+  template <class Work>
+  __device__ void each(const Work& work) const {
+    __syncwarp();
+    work(lane());
+    __syncwarp();
+  }
+  /// Returns a mask of the lanes in which is(lane) is true.
+  template <class Is>
+  __device__ std::uint32_t ballot(const Is& is) const {
+    __syncwarp();
+    const std::uint32_t bits = __ballot_sync(~0U, is(lane()));
+    __syncwarp();
+    return bits;
+  }
+  /// Sums n numbers over the lanes, in a fixed order. \param add  add(lane, numbers) adds to zeros
+  template <int n, class Add>
+  __device__ void sums(double* numbers, const Add& add) const {
+    for (int k = 0; k < n; ++k) numbers[k] = 0;
+    add(lane(), numbers);
+    for (int k = 0; k < n; ++k) {
+      for (int d = lanes / 2; d > 0; d /= 2) numbers[k] += __shfl_xor_sync(~0U, numbers[k], d);
+    }
+    __syncwarp();
+  }
+};
+
+/// One warp per item, with room in shared memory.
+template <class Work>
+__global__ void __launch_bounds__(most_threads) run_warps(const Work work, std::int32_t items) {
+  extern __shared__ double shared[];
+  const auto warp = static_cast<std::int32_t>(threadIdx.x / Warp::lanes);
+  const std::int32_t item =
+      static_cast<std::int32_t>(blockIdx.x) * (most_threads / Warp::lanes) + warp;
+  if (item < items) work.warp(item, Warp{}, reinterpret_cast<typename Work::Room*>(shared)[warp]);
+}
+
 /// Work that is queued in order.
 class Queue {
  public:
@@ -121,8 +177,8 @@ class Queue {
   }
 
   /// Makes the launches of record(launch), where launch(work, tiles, threads, shared) runs the work
-  /// for all tiles; one after the other. The same key stands for the same launches, which are
-  /// recorded once, as a graph.
+  /// for all tiles, or for all items of which each has a warp; one after the other. The same key
+  /// stands for the same launches, which are recorded once, as a graph.
   template <class Record>
   void run(std::uint64_t key, const Record& record) {
     auto found = std::find_if(graphs_.begin(), graphs_.end(),
@@ -133,12 +189,19 @@ class Queue {
       try {
         record([this](const auto& work, std::int32_t tiles, int threads, std::size_t shared) {
           using Work = std::decay_t<decltype(work)>;
-          constexpr std::size_t without_asking = 48U << 10;
-          if (shared > without_asking)
-            check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+          if constexpr (requires { typename Work::Room; }) {
+            constexpr int of_block = most_threads / Warp::lanes;
+            run_warps<<<static_cast<unsigned>((tiles + of_block - 1) / of_block), most_threads,
+                        of_block * sizeof(typename Work::Room), stream_>>>(work, tiles);
+          } else {
+            constexpr std::size_t without_asking = 48U << 10;
+            if (shared > without_asking)
+              check(
+                  cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                        static_cast<int>(shared)),
                   "shared memory of a tile");
-          run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
+            run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
+          }
           check(cudaGetLastError(), "launch");
         });
       } catch (...) {
@@ -180,6 +243,10 @@ class Array {
     std::copy_n(values_.begin() + static_cast<std::ptrdiff_t>(at), values.size(), values.begin());
   }
 
+  void take(const Array& other, std::size_t from, std::size_t count, std::size_t at) {
+    put(std::span<const T>(other.values_).subspan(from, count), at);
+  }
+
  private:
   std::vector<T> values_;
 };
@@ -193,6 +260,36 @@ inline void lower(std::int32_t* address, std::int32_t value) {
 }
 inline void add_bits(std::uint32_t* address, std::uint32_t bits) { *address |= bits; }
 
+inline int count_bits(std::uint64_t mask) { return std::popcount(mask); }
+inline int lowest_bit(std::uint64_t mask) { return std::countr_zero(mask); }
+
+/// Lanes one after the other, with the sums of a warp.
+struct Warp {
+  static constexpr int lanes = 32;
+
+  template <class Work>
+  void each(const Work& work) const {
+    for (int lane = 0; lane < lanes; ++lane) work(lane);
+  }
+  template <class Is>
+  std::uint32_t ballot(const Is& is) const {
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < lanes; ++lane) bits |= std::uint32_t{is(lane) ? 1U : 0U} << lane;
+    return bits;
+  }
+  template <int n, class Add>
+  void sums(double* numbers, const Add& add) const {
+    double of[lanes][n] = {};  // NOLINT: as the registers of a warp
+    for (int lane = 0; lane < lanes; ++lane) add(lane, of[lane]);
+    for (int d = lanes / 2; d > 0; d /= 2) {
+      for (int lane = 0; lane < d; ++lane) {
+        for (int k = 0; k < n; ++k) of[lane][k] += of[lane + d][k];
+      }
+    }
+    for (int k = 0; k < n; ++k) numbers[k] = of[0][k];
+  }
+};
+
 constexpr int most_threads = 128;
 
 class Queue {
@@ -200,10 +297,16 @@ class Queue {
   template <class Record>
   void run(std::uint64_t /*key*/, const Record& record) {
     record([this](const auto& work, std::int32_t tiles, int /*threads*/, std::size_t shared) {
-      shared_.resize(std::max(shared_.size(), shared / sizeof(double)));
-      for (std::int32_t tile = 0; tile < tiles; ++tile) {
-        for (std::int32_t b = 0; b < work.beams(tile); ++b) work.beam(tile, b, shared_.data());
-        for (std::int32_t b = 0; b < work.bodies(tile); ++b) work.body(tile, b, shared_.data());
+      using Work = std::decay_t<decltype(work)>;
+      if constexpr (requires { typename Work::Room; }) {
+        typename Work::Room room{};
+        for (std::int32_t item = 0; item < tiles; ++item) work.warp(item, Warp{}, room);
+      } else {
+        shared_.resize(std::max(shared_.size(), shared / sizeof(double)));
+        for (std::int32_t tile = 0; tile < tiles; ++tile) {
+          for (std::int32_t b = 0; b < work.beams(tile); ++b) work.beam(tile, b, shared_.data());
+          for (std::int32_t b = 0; b < work.bodies(tile); ++b) work.body(tile, b, shared_.data());
+        }
       }
     });
   }

@@ -8,9 +8,11 @@
 
 #include "beams/kernel.h"
 #include "device/breaking.h"
+#include "device/contact_step.h"
 #include "device/halts.h"
 #include "device/launch.h"
 #include "device/soa.h"
+#include "forces/support_law.h"
 #include "leapfrog/held_body.h"
 
 namespace floe::device {
@@ -57,11 +59,16 @@ struct Memory {
   Soa arms;
   double* load_works;
   const double* wrenches;
+  // Supports of bodies.
+  const std::int32_t* support_of;  ///< per body, -1: none; null: no body has one
+  const double* supports;          ///< arm, stiffness, damping of each
+  double* support_works;
   // Runs.
   const RunOfTiles* runs;
   Halts halts;
   std::uint64_t *speed2, *spin2;  ///< largest squares as bits, which are in the same order
   BreakingMemory breaking;
+  ContactMemory contacts;
 };
 
 /// Reads the frame of a beam at rest, as few numbers as it has.
@@ -89,17 +96,154 @@ struct FrameOf<EccentricFrame> {
   }
 };
 
+inline constexpr int of_matrix = 36, of_support = 3 + 2 * of_matrix;
+
+/// The end of a step, for one body at a time.
+struct BodyStep {
+  Memory memory;
+  int step;
+
+  FLOE_KERNEL BodyMotion<double> motion(std::int64_t b) const {
+    const Soa& from = memory.records[step % 2];
+    return {from.vector(u_at, b), from.quaternion(q_at, b), from.vector(v_at, b),
+            from.vector(w_at, b), from.vector(momentum_at, b)};
+  }
+  /// A body of a run that stands still.
+  FLOE_KERNEL void stay(std::int64_t b) const {
+    const Soa &from = memory.records[step % 2], &to = memory.records[(step + 1) % 2];
+    for (int n = 0; n < of_record; ++n) to.at(n, b) = from.at(n, b);
+  }
+  /// Moves a body of run r by all that acts on it; returns its motion after the step.
+  FLOE_KERNEL BodyMotion<double> move(std::int32_t r, std::int64_t b, const BodyMotion<double>& old,
+                                      const Vec3<double>& force, const Vec3<double>& moment) const {
+    const RunOfTiles& run = memory.runs[r];
+    const Soa& to = memory.records[(step + 1) % 2];
+    const double dt = run.dt, before = step == 0 ? run.before : run.dt;
+    const BodyConstants<double> c{memory.bodies.at(0, b), memory.bodies.vector(1, b),
+                                  memory.bodies.quaternion(4, b)};
+    BodyMotion<double> now = old;
+    leap(c, now, force, moment, dt);
+    hold(run, b, c, old, moment, now);
+    add_works_of_loads(run, b, old, now, dt, before);
+    add_works_of_support(b, old, now, dt, before);
+    add_works_of_water(b, old, now, dt, before);
+    put(to, u_at, b, now.u);
+    to.at(q_at, b) = now.q.w;
+    put(to, q_at + 1, b, {now.q.x, now.q.y, now.q.z});
+    put(to, v_at, b, now.v);
+    put(to, w_at, b, now.w);
+    put(to, momentum_at, b, now.momentum);
+    raise(&memory.speed2[r], dot(now.v, now.v));
+    raise(&memory.spin2[r], dot(now.w, now.w));
+    return now;
+  }
+
+  FLOE_KERNEL static void put(const Soa& to, int number, std::int64_t b, const Vec3<double>& v) {
+    to.at(number, b) = v.x;
+    to.at(number + 1, b) = v.y;
+    to.at(number + 2, b) = v.z;
+  }
+
+  FLOE_KERNEL const double* wrench_of(const RunOfTiles& run, std::int32_t load) const {
+    return memory.wrenches + run.wrenches +
+           6 * (static_cast<std::int64_t>(step) * run.load_count + memory.load[load]);
+  }
+  /// The arm of a load goes with its body (src/forces/dead_load.cpp).
+  FLOE_KERNEL void add_loads(const RunOfTiles& run, std::int64_t b, const BodyMotion<double>& m,
+                             Vec3<double>& force, Vec3<double>& moment) const {
+    if (memory.first_load == nullptr) return;
+    for (std::int32_t l = memory.first_load[b]; l < memory.first_load[b + 1]; ++l) {
+      const double* w = wrench_of(run, l);
+      const Vec3<double> f{w[0], w[1], w[2]}, arm = rotate(m.q, memory.arms.vector(0, l));
+      force = force + f;
+      moment = moment + (Vec3<double>{w[3], w[4], w[5]} + cross(arm, f));
+    }
+  }
+  /// Half of the step before with the velocities there, and half of this one: LeapfrogWork,
+  /// "at_once".
+  FLOE_KERNEL void add_works_of_loads(const RunOfTiles& run, std::int64_t b,
+                                      const BodyMotion<double>& old, const BodyMotion<double>& now,
+                                      double dt, double before) const {
+    if (memory.first_load == nullptr) return;
+    for (std::int32_t l = memory.first_load[b]; l < memory.first_load[b + 1]; ++l) {
+      const double* w = wrench_of(run, l);
+      const Vec3<double> f{w[0], w[1], w[2]}, arm = rotate(old.q, memory.arms.vector(0, l));
+      const Vec3<double> moment = Vec3<double>{w[3], w[4], w[5]} + cross(arm, f);
+      memory.load_works[l] += 0.5 * (before * (dot(f, old.v) + dot(moment, old.w)) +
+                                     dt * (dot(f, now.v) + dot(moment, now.w)));
+    }
+  }
+
+  FLOE_KERNEL bool is_supported(std::int64_t b) const {
+    return memory.support_of != nullptr && memory.support_of[b] >= 0;
+  }
+  FLOE_KERNEL SupportedBody<double> supported_body(std::int64_t b,
+                                                   const BodyMotion<double>& m) const {
+    const double* s = memory.supports + std::int64_t{of_support} * memory.support_of[b];
+    return supported(s + 3, s + 3 + of_matrix, Vec3<double>{s[0], s[1], s[2]}, m.u, m.q, m.v, m.w);
+  }
+  FLOE_KERNEL void add_support(std::int64_t b, const BodyMotion<double>& m, Vec3<double>& force,
+                               Vec3<double>& moment) const {
+    if (!is_supported(b)) return;
+    const SupportedBody<double> s = supported_body(b, m);
+    force = force + s.wrench.force;
+    moment = moment + s.moment;
+  }
+  FLOE_KERNEL void add_works_of_support(std::int64_t b, const BodyMotion<double>& old,
+                                        const BodyMotion<double>& now, double dt,
+                                        double before) const {
+    if (!is_supported(b)) return;
+    const SupportWrenchOf<double> lost = supported_body(b, old).damping;
+    memory.support_works[memory.support_of[b]] +=
+        0.5 * (before * (dot(lost.force, old.v) + dot(lost.moment, old.w)) +
+               dt * (dot(lost.force, now.v) + dot(lost.moment, now.w)));
+  }
+
+  FLOE_KERNEL void add_works_of_water(std::int64_t b, const BodyMotion<double>& old,
+                                      const BodyMotion<double>& now, double dt,
+                                      double before) const {
+    if (memory.drag_works != nullptr) {
+      const Vec3<double> drag = memory.water.vector(0, b);
+      memory.drag_works[b] += 0.5 * (before * dot(drag, old.v) + dt * dot(drag, now.v));
+    }
+    if (memory.buoyancy_works != nullptr) {
+      const double f = memory.water.at(3, b), x = memory.water.at(4, b), y = memory.water.at(5, b);
+      const auto power = [&](const BodyMotion<double>& m) {
+        return f * m.v.z + x * m.w.x + y * m.w.y;
+      };
+      memory.buoyancy_works[b] += 0.5 * (before * power(old) + dt * power(now));
+    }
+  }
+
+  FLOE_KERNEL void hold(const RunOfTiles& run, std::int64_t b, const BodyConstants<double>& c,
+                        const BodyMotion<double>& old, const Vec3<double>& moment,
+                        BodyMotion<double>& now) const {
+    if (memory.held_row == nullptr || memory.held_row[b] < 0) return;
+    const std::int64_t row = memory.held_row[b];
+    const double* at_start =
+        memory.motions + run.motions + std::int64_t{2} * step * run.motion_count;
+    double starts[6] = {}, ends[6] = {};  // NOLINT: std::array is no type of kernels everywhere
+    for (int n = 0; n < 6; ++n) {
+      const std::int32_t motion = memory.held_motions[6 * row + n];
+      if (motion < 0) continue;
+      starts[n] = at_start[motion];
+      ends[n] = at_start[run.motion_count + motion];
+    }
+    const HeldBody<double> held{memory.held_bits[row], starts, ends, run.dt};
+    double work = hold_displacements(held, c.inverse_mass, old, now);
+    if (held.bits >> 3 != 0) work += hold_rotations(held, c, old, moment, now);
+    memory.held_works[row] += work;
+  }
+};
+
 /// Step k of a launch, for one tile at a time: beam() for each of its beams, then body() for each
 /// of its bodies.
 template <bool damped, bool breakable, template <class> class Frame>
-struct TileStep {
+struct TileStep : BodyStep {
   using Kernel = BeamKernel<Kinematics::corotational>;
   static constexpr int first = FrameOf<Frame>::size, of_beam = first + 7 + (damped ? 6 : 0);
   /// What a beam leaves for its bodies: force, moments, and the power that its dashpots lose.
   static constexpr int shares = damped ? 10 : 9;
-
-  Memory memory;
-  int step;
 
   FLOE_KERNEL std::int32_t beams(std::int32_t tile) const {
     return memory.first_slot[tile + 1] - memory.first_slot[tile];
@@ -179,17 +323,16 @@ struct TileStep {
   }
 
   FLOE_KERNEL void body(std::int32_t tile, std::int32_t k, const double* shared) const {
-    const RunOfTiles& run = memory.runs[memory.run[tile]];
+    const std::int32_t r = memory.run[tile];
+    const RunOfTiles& run = memory.runs[r];
     const std::int64_t b = memory.first_body[tile] + k;
-    const Soa &from = memory.records[step % 2], &to = memory.records[(step + 1) % 2];
-    if (memory.halts.stands(memory.run[tile], step)) {
-      for (int n = 0; n < of_record; ++n) to.at(n, b) = from.at(n, b);
+    const bool has_contacts = memory.contacts.others.numbers != nullptr;
+    if (memory.halts.stands(r, step)) {
+      if (!has_contacts) stay(b);
       return;
     }
     const double dt = run.dt, before = step == 0 ? run.before : run.dt;
-    const BodyMotion<double> old{from.vector(u_at, b), from.quaternion(q_at, b),
-                                 from.vector(v_at, b), from.vector(w_at, b),
-                                 from.vector(momentum_at, b)};
+    const BodyMotion<double> old = motion(b);
     Vec3<double> force{0, 0, 0}, moment{0, 0, 0};
     sum_beams(tile, b, shared,
               breakable    ? 0.5 * before
@@ -204,31 +347,16 @@ struct TileStep {
       moment.y += memory.water.at(5, b);
     }
     add_loads(run, b, old, force, moment);
-
-    const BodyConstants<double> c{memory.bodies.at(0, b), memory.bodies.vector(1, b),
-                                  memory.bodies.quaternion(4, b)};
-    BodyMotion<double> now = old;
-    leap(c, now, force, moment, dt);
-    hold(run, b, c, old, moment, now);
-    add_works_of_loads(run, b, old, now, dt, before);
-    add_works_of_water(b, old, now, dt, before);
-    put(to, u_at, b, now.u);
-    to.at(q_at, b) = now.q.w;
-    put(to, q_at + 1, b, {now.q.x, now.q.y, now.q.z});
-    put(to, v_at, b, now.v);
-    put(to, w_at, b, now.w);
-    put(to, momentum_at, b, now.momentum);
-    raise(&memory.speed2[memory.run[tile]], dot(now.v, now.v));
-    raise(&memory.spin2[memory.run[tile]], dot(now.w, now.w));
+    add_support(b, old, force, moment);
+    if (has_contacts) {  // which are yet to come
+      put(memory.contacts.others, 0, b, force);
+      put(memory.contacts.others, 3, b, moment);
+      return;
+    }
+    (void)move(r, b, old, force, moment);
   }
 
  private:
-  FLOE_KERNEL static void put(const Soa& to, int number, std::int64_t b, const Vec3<double>& v) {
-    to.at(number, b) = v.x;
-    to.at(number + 1, b) = v.y;
-    to.at(number + 2, b) = v.z;
-  }
-
   FLOE_KERNEL static double power(const BeamStress<double>& stress,
                                   const BeamStress<double>& rate) {
     return stress.n * rate.n + stress.qy * rate.qy + stress.qz * rate.qz + dot(stress.c, rate.c);
@@ -278,72 +406,6 @@ struct TileStep {
       }
     }
     if constexpr (damped) memory.beam_works[b] -= time * lost;
-  }
-
-  FLOE_KERNEL const double* wrench_of(const RunOfTiles& run, std::int32_t load) const {
-    return memory.wrenches + run.wrenches +
-           6 * (static_cast<std::int64_t>(step) * run.load_count + memory.load[load]);
-  }
-  /// The arm of a load goes with its body (src/forces/dead_load.cpp).
-  FLOE_KERNEL void add_loads(const RunOfTiles& run, std::int64_t b, const BodyMotion<double>& m,
-                             Vec3<double>& force, Vec3<double>& moment) const {
-    if (memory.first_load == nullptr) return;
-    for (std::int32_t l = memory.first_load[b]; l < memory.first_load[b + 1]; ++l) {
-      const double* w = wrench_of(run, l);
-      const Vec3<double> f{w[0], w[1], w[2]}, arm = rotate(m.q, memory.arms.vector(0, l));
-      force = force + f;
-      moment = moment + (Vec3<double>{w[3], w[4], w[5]} + cross(arm, f));
-    }
-  }
-  /// Half of the step before with the velocities there, and half of this one: LeapfrogWork,
-  /// "at_once".
-  FLOE_KERNEL void add_works_of_loads(const RunOfTiles& run, std::int64_t b,
-                                      const BodyMotion<double>& old, const BodyMotion<double>& now,
-                                      double dt, double before) const {
-    if (memory.first_load == nullptr) return;
-    for (std::int32_t l = memory.first_load[b]; l < memory.first_load[b + 1]; ++l) {
-      const double* w = wrench_of(run, l);
-      const Vec3<double> f{w[0], w[1], w[2]}, arm = rotate(old.q, memory.arms.vector(0, l));
-      const Vec3<double> moment = Vec3<double>{w[3], w[4], w[5]} + cross(arm, f);
-      memory.load_works[l] += 0.5 * (before * (dot(f, old.v) + dot(moment, old.w)) +
-                                     dt * (dot(f, now.v) + dot(moment, now.w)));
-    }
-  }
-
-  FLOE_KERNEL void add_works_of_water(std::int64_t b, const BodyMotion<double>& old,
-                                      const BodyMotion<double>& now, double dt,
-                                      double before) const {
-    if (memory.drag_works != nullptr) {
-      const Vec3<double> drag = memory.water.vector(0, b);
-      memory.drag_works[b] += 0.5 * (before * dot(drag, old.v) + dt * dot(drag, now.v));
-    }
-    if (memory.buoyancy_works != nullptr) {
-      const double f = memory.water.at(3, b), x = memory.water.at(4, b), y = memory.water.at(5, b);
-      const auto power = [&](const BodyMotion<double>& m) {
-        return f * m.v.z + x * m.w.x + y * m.w.y;
-      };
-      memory.buoyancy_works[b] += 0.5 * (before * power(old) + dt * power(now));
-    }
-  }
-
-  FLOE_KERNEL void hold(const RunOfTiles& run, std::int64_t b, const BodyConstants<double>& c,
-                        const BodyMotion<double>& old, const Vec3<double>& moment,
-                        BodyMotion<double>& now) const {
-    if (memory.held_row == nullptr || memory.held_row[b] < 0) return;
-    const std::int64_t row = memory.held_row[b];
-    const double* at_start =
-        memory.motions + run.motions + std::int64_t{2} * step * run.motion_count;
-    double starts[6] = {}, ends[6] = {};  // NOLINT: std::array is no type of kernels everywhere
-    for (int n = 0; n < 6; ++n) {
-      const std::int32_t motion = memory.held_motions[6 * row + n];
-      if (motion < 0) continue;
-      starts[n] = at_start[motion];
-      ends[n] = at_start[run.motion_count + motion];
-    }
-    const HeldBody<double> held{memory.held_bits[row], starts, ends, run.dt};
-    double work = hold_displacements(held, c.inverse_mass, old, now);
-    if (held.bits >> 3 != 0) work += hold_rotations(held, c, old, moment, now);
-    memory.held_works[row] += work;
   }
 };
 

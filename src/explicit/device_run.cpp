@@ -1,11 +1,17 @@
 #include "explicit/device_run.h"
 
+#include <algorithm>
 #include <memory>
+#include <optional>
+#include <vector>
 
+#include "device/batch.h"
 #include "device/device_stepper.h"
+#include "device/make_engine.h"
 #include "explicit/explicit_run.h"
 #include "explicit/leapfrog.h"
 #include "explicit/step.h"
+#include "files/hdf5.h"
 #include "stability/stable_step.h"
 
 namespace floe {
@@ -17,12 +23,12 @@ constexpr std::int64_t most_queued = 50;
 /// Steps between looks at the stable step where no sample is due: each brings the state back.
 constexpr std::int64_t look_every = 1000;
 
+/// The engine of this run alone, or of the batch that the process belongs to.
 std::unique_ptr<device::Engine> make_engine(Backend backend, const device::Lattice& lattice) {
-  if (backend == Backend::loop) return device::make_loop_engine({lattice});
-  if (device::has_cuda() && device::name_of_device().empty())
-    throw InputError("backend: cuda: this machine has no device that CUDA finds");
   try {
-    return device::make_cuda_engine({lattice});
+    if (const auto batch = device::connection_to_batch())
+      return device::join_batch(*batch, lattice);
+    return device::make_engine(name_of(backend), {lattice});
   } catch (const device::Failed& error) {
     throw RunFailed(error.what());
   }
@@ -65,7 +71,12 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     forces_are_of_other_velocities_ = true;
   }
   bool step() {
-    const bool looks = due() || done() % look_every == 0;
+    // While bodies may be about to touch for the first time, on which the step depends.
+    const bool watches = is_on_engine_ && stepper_->watches(),
+               were_possible = contacts_are_possible_;
+    contacts_are_possible_ = stepper_->contacts_are_possible();
+    const bool looks =
+        due() || watches || contacts_are_possible_ != were_possible || done() % look_every == 0;
     if (looks && done() > 0) evaluate();
     if (!sample_if_due()) return false;
     if (looks && !keep_step_stable()) return false;
@@ -78,18 +89,25 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     const double speed2 = step_->advance(dt());
     step_->commit(dt());
     forces_are_of_other_velocities_ = is_on_engine_ = false;
+    restored_.reset();
     return speed2;
   }
   /// Returns the square of the largest speed in the steps that were made; perhaps none [m^2/s^2].
   double queue_step() {
     if (!is_on_engine_) {
-      stepper_->put(state(), work_ledger().all());
-      boundary_work_ = step_->boundary_work();
+      if (restored_) check_parts();
+      const auto works = work_ledger().all();
+      stepper_->put(state(), restored_
+                                 ? *restored_
+                                 : device::DeviceStepper::WorkParts{
+                                       {works.begin(), works.end()}, step_->boundary_work(), {}});
+      restored_.reset();
     }
     is_on_engine_ = true;
     stepper_->queue(state().time, dt(), last_dt_);
     is_here_ = false;
-    return (done() + 1) % most_queued == 0 ? stepper_->flush() : 0.0;
+    const bool is_full = (done() + 1) % most_queued == 0 || !contacts_are_possible_;
+    return is_full ? stepper_->flush() : 0.0;
   }
 
   /// Makes the queued steps, so that their speeds are known.
@@ -99,8 +117,7 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     if (is_here_) return;
     finish_steps();
     stepper_->get(state());
-    const double work = stepper_->take_works(work_ledger().all());
-    step_->take_over(boundary_work_ + work, last_dt_);
+    step_->take_over(stepper_->take_works(work_ledger().all()), last_dt_);
     state().velocity_time = state().time - 0.5 * last_dt_;
     is_here_ = true;
   }
@@ -130,17 +147,48 @@ class DeviceRun final : public ExplicitRun<Spatial> {
     ExplicitRun::persist_own(archive);
     step_->persist(archive);
     last_dt_ = step_->last_dt();
-    if (archive.loading()) is_on_engine_ = false;
+    if (archive.loading()) {
+      is_on_engine_ = false;
+      restored_.reset();
+      // Not in checkpoints of the processor
+      if (Hdf5File::open(options().checkpoint.restart, "checkpoint: restart")
+              .has("run/parts_until"))
+        persist_parts(archive, restored_.emplace());
+    } else if (is_on_engine_) {
+      device::DeviceStepper::WorkParts parts = stepper_->work_parts();
+      persist_parts(archive, parts);
+    }
+  }
+  static void persist_parts(Archive& archive, device::DeviceStepper::WorkParts& parts) {
+    archive.common("parts_until", parts.until);
+    archive.common("parts_boundaries", parts.boundaries);
+    archive.common("parts_beams", parts.since.beams);
+    archive.common("parts_held", parts.since.held);
+    archive.common("parts_loaded", parts.since.loaded);
+    archive.common("parts_drag", parts.since.drag);
+    archive.common("parts_buoyancy", parts.since.buoyancy);
+    archive.common("parts_supports", parts.since.supports);
+    archive.common("parts_contacts", parts.since.contacts);
+    archive.common("parts_obstacles", parts.since.obstacles);
+  }
+  /// Drops parts of works that are not those of the sums: those of a run with other loads.
+  void check_parts() {
+    std::vector<double> works(work_ledger().all().size());
+    const auto boundaries = stepper_->sum(*restored_, works);
+    if (boundaries != step_->boundary_work() ||
+        !std::equal(works.begin(), works.end(), work_ledger().all().begin()))
+      restored_.reset();
   }
 
   std::unique_ptr<device::DeviceStepper> stepper_;
-  std::unique_ptr<ExplicitStep<Spatial>> step_;  ///< for looks at the state
+  std::optional<device::DeviceStepper::WorkParts> restored_;  ///< of a checkpoint
+  std::unique_ptr<ExplicitStep<Spatial>> step_;               ///< for looks at the state
   Handle<Vec> solution_;
   /// The engine has the state at the last step; the object `state()` has it.
   bool is_on_engine_ = false, is_here_ = true;
   bool forces_are_of_other_velocities_ = false;
-  double boundary_work_ = 0;  ///< until the engine got the state [J]
-  double last_dt_ = 0;        ///< length of the last step, also if it is queued [s]
+  bool contacts_are_possible_ = true;  ///< at the last step
+  double last_dt_ = 0;                 ///< length of the last step, also if it is queued [s]
   LeapfrogStep make_step_ = [this](double) { return guarded([this] { return step(); }); };
 };
 

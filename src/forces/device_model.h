@@ -8,9 +8,11 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "floe/geometry/polyhedron.h"
+#include "forces/device_contacts.h"
 
 namespace floe {
 
@@ -93,8 +95,19 @@ struct DeviceModel {
   bool damped = false;          ///< beams have dashpots
   std::vector<double> weights;  ///< per body: along -z [N]; empty: none
   std::vector<Load> loads;
+  /// Springs and dashpots on a body (support_law.h).
+  struct Support {
+    std::int32_t body;
+    Point3 arm;  ///< from the centroid to their point, at rest [m]
+    std::array<double, 36> stiffness, damping;
+  };
+  std::vector<Support> supports;
+  std::size_t support_work = 0;  ///< index of their dashpots' work among those of all forces
   std::optional<DeviceWater> water;
   std::optional<DeviceBreaking> breaking;
+  std::optional<DeviceContacts> contacts;
+  /// What a force has that back ends do not have yet, as messages name it; empty: nothing.
+  std::string missing;
 
   /// Index of the first work of the force that is asked.
   std::size_t next_work = 0;

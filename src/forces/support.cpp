@@ -9,29 +9,11 @@
 namespace floe {
 namespace {
 
-/// The product of a matrix and (a, b), in two parts.
-std::pair<Vec3<double>, Vec3<double>> product_of(const SupportMatrix& m, const Vec3<double>& a,
-                                                 const Vec3<double>& b) {
-  std::array<double, 6> sum{};
-  for (std::size_t row = 0; row < 6; ++row) {
-    for (std::size_t k = 0; k < 3; ++k)
-      sum[row] += m[6 * row + k] * a[k] + m[6 * row + 3 + k] * b[k];
-  }
-  return {{sum[0], sum[1], sum[2]}, {sum[3], sum[4], sum[5]}};
-}
-
-/// 1/t^2 - (1 + cos t)/(2 t sin t); its series where t is small: both terms are large there.
-double curvature(double t) {
-  constexpr double small = 0.05;
-  const double t2 = t * t;
-  if (t < small) return 1.0 / 12 + t2 / 720 + t2 * t2 / 30240;
-  return 1 / t2 - (1 + std::cos(t)) / (2 * t * std::sin(t));
-}
-
 class Supports final : public Force<Spatial>,
                        public DoesWork<Spatial>,
                        public LimitsStep<Spatial>,
-                       public Remarks {
+                       public Remarks,
+                       public OnDevice {
  public:
   Supports(const Part& part, std::vector<Support> supports) : part_(part) {
     for (Support& support : supports) {
@@ -44,21 +26,28 @@ class Supports final : public Force<Spatial>,
   }
 
   std::string_view name() const override { return "support"; }
-  Roles<Spatial> roles() override { return {.work = this, .step = this, .remarks = this}; }
+  Roles<Spatial> roles() override {
+    return {.work = this, .step = this, .remarks = this, .device = this};
+  }
+
+  void describe(DeviceModel& model) override {
+    model.support_work = model.next_work;
+    for (const Held& held : all_)
+      model.supports.push_back(
+          {held.local, held.arm, held.support.stiffness, held.support.damping});
+  }
 
   void add(const State<Spatial>& state, Wrenches<Spatial>& wrenches) override {
     time_ = state.time;
     for (Held& held : all_) {
       if (held.local < 0) continue;
       const auto b = static_cast<std::size_t>(held.local);
-      place(state, held);
-      const SupportWrench spring = spring_wrench(held.support.stiffness, held.shift, held.turn);
-      const Vec3<double> arm = arm_of(state, held);
-      const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
-      const auto [force, moment] = product_of(held.support.damping, v + cross(w, arm), w);
-      held.damping = {-force, -moment + cross(arm, -force)};
-      held.wrench = {spring.force - force, spring.moment - moment};
-      floe::add(wrenches, b, held.wrench.force, held.wrench.moment + cross(arm, held.wrench.force));
+      const SupportedBody<double> now =
+          supported(held.support.stiffness, held.support.damping, held.arm, displacement(state, b),
+                    rotation(state, b), velocity(state, b), angular_velocity(state, b));
+      held.shift = now.shift, held.turn = now.turn;
+      held.wrench = now.wrench, held.damping = now.damping;
+      floe::add(wrenches, b, now.wrench.force, now.moment);
     }
     power_ = power_with(state);
   }
@@ -146,11 +135,6 @@ class Supports final : public Force<Spatial>,
   Vec3<double> arm_of(const State<Spatial>& state, const Held& held) const {
     return rotate(rotation(state, static_cast<std::size_t>(held.local)), held.arm);
   }
-  void place(const State<Spatial>& state, Held& held) const {
-    const auto b = static_cast<std::size_t>(held.local);
-    held.shift = displacement(state, b) + (arm_of(state, held) - held.arm);
-    held.turn = log_rotation(rotation(state, b));
-  }
   double power_with(const State<Spatial>& state) const {
     double power = 0;
     for (const Held& held : all_) {
@@ -168,14 +152,6 @@ class Supports final : public Force<Spatial>,
 };
 
 }  // namespace
-
-SupportWrench spring_wrench(const SupportMatrix& stiffness, const Vec3<double>& shift,
-                            const Vec3<double>& turn) {
-  const auto [force, g] = product_of(stiffness, shift, turn);
-  const Vec3<double> once = cross(turn, g);
-  const Vec3<double> moment = g + 0.5 * once + curvature(length(turn)) * cross(turn, once);
-  return {-force, -moment};
-}
 
 double spring_energy(const SupportMatrix& stiffness, const Vec3<double>& shift,
                      const Vec3<double>& turn) {

@@ -13,6 +13,7 @@
 #include "beams/spatial_lanes.h"
 #include "floe/base/item.h"
 #include "floe/base/petsc.h"
+#include "fracture/cracks.h"
 #include "fracture/fracture.h"
 #include "fracture/lanes.h"
 #include "fracture_laws/strengths.h"
@@ -20,46 +21,6 @@
 
 namespace floe {
 namespace {
-
-constexpr std::size_t crack_size = 12;  // numbers of a Crack in a checkpoint
-
-std::vector<double> packed(const std::vector<Crack>& cracks) {
-  std::vector<double> values;
-  values.reserve(cracks.size() * crack_size);
-  for (const Crack& c : cracks) {
-    values.insert(values.end(),
-                  {static_cast<double>(c.beam), c.kappa, c.damage, c.ultimate, c.mode_mix,
-                   c.nominal, c.dissipated, c.time, c.place[0], c.place[1], c.place[2],
-                   (c.at_tip ? 1.0 : 0.0) + (c.crushed ? 2.0 : 0.0)});
-  }
-  return values;
-}
-
-/// Saves the cracks of all ranks to the archive, or loads them all on every rank. Collective.
-/// \param cracks  those that this rank counts, with global beams; loading: those of all ranks
-void persist_cracks(Archive& archive, const Part& part, std::vector<Crack>& cracks) {
-  constexpr std::size_t width = crack_size;
-  std::vector<double> all;
-  if (!archive.loading()) all = all_gathered(packed(cracks), part.comm);
-  archive.common("cracks", all);
-  if (!archive.loading()) return;
-  archive.renumber_beams(all, width);
-  cracks.clear();
-  for (std::size_t k = 0; k + width <= all.size(); k += width) {
-    const double* v = &all[k];
-    cracks.push_back({static_cast<std::int32_t>(v[0]),
-                      v[1],
-                      v[2],
-                      v[3],
-                      v[4],
-                      v[5],
-                      v[6],
-                      std::fmod(v[11], 2) == 1,
-                      v[7],
-                      {v[8], v[9], v[10]},
-                      v[11] >= 2});
-  }
-}
 
 /// Breakable beams of a part: a force, and the cracks of its beams.
 template <Kinematics kinematics, bool damped, template <class> class Frame>
@@ -85,7 +46,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         strengths_(blocks_.size(), StrengthBlock{}),
         further_(kind_ == Criterion::general ? blocks_.size() : 0),
         damaged_(blocks_.size(), 0),
-        crack_of_(part.beams.bodies.size(), none),
+        cracks_(part.beams.bodies.size()),
         viscous_(damped ? blocks_.size() : 0),
         viscous_now_(viscous_),
         limits_(blocks_.size()) {
@@ -99,7 +60,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     order_blocks();
     for (std::size_t lane = 0; lane < lanes; ++lane) whole_further_block_.set(lane, whole_further_);
     if (options.propagation == Propagation::energy) {
-      if (junctions.facet_of.empty() && !crack_of_.empty())
+      if (junctions.facet_of.empty() && cracks_.beams() > 0)
         throw std::invalid_argument("make_breakable_beams: propagation: energy needs junctions");
       tips_.emplace(part, options, kinematics == Kinematics::linear, std::move(junctions));
       whole_ = strengths_;
@@ -220,7 +181,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     if (tips_ && options_.dynamic) follow(tips_->propagate(newly_broken_, overloaded_, state));
     newly_broken_.clear();
     if (!options_.dynamic) {
-      kept_ = cracks_;
+      kept_ = cracks_.all();
       kept_energy_ = dissipated_;
       kept_released_ = released_energy_;
       if (tips_) tips_->keep();
@@ -243,7 +204,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
       if (c.brittle()) counts[2] += sign;
       if (c.broken() && c.crushed) counts[3] += sign;
     };
-    for (const Crack& c : cracks_) {
+    for (const Crack& c : cracks_.all()) {
       if (counts_here(c.beam)) count(c, 1);
     }
     // The findings of the last evaluation count, although they become history at the commit only.
@@ -265,7 +226,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     archive.share("energy_fracture", dissipated_);
     archive.common("last_dt", dt_);
     std::vector<Crack> mine;
-    for (const Crack& c : cracks_) {
+    for (const Crack& c : cracks_.all()) {
       if (!counts_here(c.beam)) continue;
       mine.push_back(c);
       mine.back().beam = item(part_.global_beam, c.beam);
@@ -283,18 +244,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
 
   // -- Histories that a back end keeps
   void read(std::vector<double>& cracks, std::vector<float>& viscous) const override {
-    cracks.assign(crack_numbers * crack_of_.size(), 0.0);
-    for (const Crack& c : cracks_) {
-      const std::array<double, crack_numbers> all{
-          c.kappa,   c.damage,     c.ultimate,           c.mode_mix,
-          c.nominal, c.dissipated, c.at_tip ? 1.0 : 0.0, c.crushed ? 1.0 : 0.0,
-          c.time,    c.place[0],   c.place[1],           c.place[2]};
-      std::copy(all.begin(), all.end(),
-                cracks.begin() + static_cast<std::ptrdiff_t>(crack_numbers) * c.beam);
-    }
+    cracks = cracks_.as_numbers();
     viscous.clear();
     if constexpr (damped) {
-      for (std::size_t m = 0; m < crack_of_.size(); ++m)
+      for (std::size_t m = 0; m < cracks_.beams(); ++m)
         for_viscous(static_cast<std::int32_t>(m),
                     [&](const float& value) { viscous.push_back(value); });
     }
@@ -304,28 +257,17 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
     dt_ = dt;
     // The sum does not depend on how often somebody has asked.
     if (!cracks.empty()) dissipated_ = 0;
-    for (std::size_t m = 0; m < crack_of_.size() && !cracks.empty(); ++m) {
-      const double* v = &cracks[crack_numbers * m];
-      const auto beam = static_cast<std::int32_t>(m);
-      const Crack* known = crack(beam);
-      dissipated_ += v[5];
-      if (!(v[0] > 0) || (known != nullptr && known->kappa == v[0] && known->damage == v[1]))
-        continue;
-      put({beam,
-           v[0],
-           v[1],
-           v[2],
-           v[3],
-           v[4],
-           v[5],
-           v[6] != 0,
-           v[8],
-           {v[9], v[10], v[11]},
-           v[7] != 0});
+    for (std::size_t m = 0; m < cracks_.beams() && !cracks.empty(); ++m) {
+      const auto of = cracks.subspan(Cracks::numbers * m).first<Cracks::numbers>();
+      const Crack now = Cracks::of_numbers(static_cast<std::int32_t>(m), of);
+      const Crack* known = crack(now.beam);
+      dissipated_ += now.dissipated;
+      if (!(now.kappa > 0)) continue;
+      if (known == nullptr || known->kappa != now.kappa || known->damage != now.damage) put(now);
     }
     if (std::exchange(packed_, false)) order_blocks();
     std::size_t next = 0;
-    for (std::size_t m = 0; m < crack_of_.size() && !viscous.empty(); ++m)
+    for (std::size_t m = 0; m < cracks_.beams() && !viscous.empty(); ++m)
       for_viscous(static_cast<std::int32_t>(m), [&](float& value) { value = viscous[next++]; });
   }
 
@@ -355,7 +297,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   }
   std::vector<Break> breaks() const override {
     std::vector<Break> all;
-    for (const Crack& c : cracks_) {
+    for (const Crack& c : cracks_.all()) {
       if (c.broken() && counts_here(c.beam))
         all.push_back({c.time, item(part_.global_beam, c.beam), c.place, c.mode_mix, c.dissipated,
                        c.nominal, c.brittle(), c.at_tip, area(c.beam)});
@@ -437,9 +379,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   }
 
   void retreat() override {
-    const std::vector<Crack> changed = cracks_;
-    for (const Crack& c : changed) restore(c.beam);
-    cracks_.clear();
+    for (const Crack& c : cracks_.clear()) restore(c.beam);
     newly_broken_.clear();
     for (const Crack& c : kept_) put(c);
     if (std::exchange(packed_, false)) order_blocks();
@@ -459,8 +399,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   static constexpr std::int32_t none = -1;
   static constexpr double boundless = std::numeric_limits<double>::infinity();
 
-  static constexpr std::size_t crack_numbers = 12;  ///< of KeptCracks
-
   /// Visits the forces of a beam's dashpots at the start of the last step.
   template <class Visit>
   void for_viscous(std::int32_t m, Visit visit) {
@@ -474,19 +412,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   }
 
   bool counts_here(std::int32_t m) const { return item(part_.counts_here, m) != 0; }
-  const Crack* crack(std::int32_t m) const {
-    const std::int32_t at = item(crack_of_, m);
-    return at == none ? nullptr : &item(cracks_, at);
-  }
-  bool broken(std::int32_t m) const {
-    const Crack* c = crack(m);
-    return c != nullptr && c->broken();
-  }
+  const Crack* crack(std::int32_t m) const { return cracks_.of(m); }
+  bool broken(std::int32_t m) const { return cracks_.is_broken(m); }
   bool is_whole(std::int32_t m) const override { return !broken(m); }
-  double kappa(std::int32_t m) const {
-    const Crack* c = crack(m);
-    return c != nullptr ? c->kappa : 1.0;
-  }
+  double kappa(std::int32_t m) const { return cracks_.kappa(m); }
   static const FurtherBlock* further_of(Criterion kind, const std::vector<FurtherBlock>& all,
                                         std::size_t b) {
     return kind == Criterion::plain ? nullptr : &all[b];
@@ -720,14 +649,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// Enters a crack. A broken beam has no stiffness, joins a body to itself and goes to the end of
   /// its group of blocks, of which only the blocks with another beam are computed.
   void put(const Crack& c) {
-    const auto m = static_cast<std::size_t>(c.beam);
-    std::int32_t& at = crack_of_[m];
-    if (at == none) {
-      at = static_cast<std::int32_t>(cracks_.size());
-      cracks_.push_back(c);
-    } else {
-      item(cracks_, at) = c;
-    }
+    cracks_.put(c);
     if (c.broken()) {
       const std::size_t b = this->slot(c.beam) / lanes, lane = this->slot(c.beam) % lanes;
       BeamBlock<Frame>& block = blocks_[b];
@@ -742,7 +664,7 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
         for (auto* viscous : {&viscous_, &viscous_now_})  // either may stay where none computes it
           for (auto& values : (*viscous)[b].values) values[lane] = 0;
       }
-      pack(m / group);
+      pack(static_cast<std::size_t>(c.beam) / group);
     } else {
       mark(this->slot(c.beam) / lanes);
     }
@@ -751,7 +673,6 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// Makes beam m undamaged again.
   void restore(std::int32_t m) {
     this->set(m, beams_);
-    item(crack_of_, m) = none;
     pack(static_cast<std::size_t>(m) / group);
   }
 
@@ -776,17 +697,17 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   /// The beam in a lane of a block; none for the lanes that fill up the last block.
   std::int32_t beam_at(std::size_t b, std::size_t lane) const {
     const std::size_t at = b * lanes + lane;
-    if (at >= crack_of_.size()) return none;
+    if (at >= cracks_.beams()) return none;
     return beams_at_.empty() ? static_cast<std::int32_t>(at) : beams_at_[at];
   }
   /// Puts the broken beams of a group last.
   void pack(std::size_t g) {
     if (beams_at_.empty()) {
-      beams_at_.resize(crack_of_.size());
+      beams_at_.resize(cracks_.beams());
       std::iota(beams_at_.begin(), beams_at_.end(), 0);
       this->slots_ = beams_at_;
     }
-    const std::size_t first = g * group, last = std::min(first + group, crack_of_.size());
+    const std::size_t first = g * group, last = std::min(first + group, cracks_.beams());
     std::array<std::size_t, group> from{};  // slot in the group that a slot's numbers come from
     std::size_t to = 0;
     for (const bool gone : {false, true}) {
@@ -860,11 +781,10 @@ class BreakableBeams final : public SpatialBeams<kinematics, damped, Frame>,
   const FurtherStrength<double> whole_further_;  ///< of beams that are not at tips
   FurtherBlock whole_further_block_;             ///< the same in all lanes
   std::vector<StrengthBlock> strengths_;
-  std::vector<FurtherBlock> further_;   ///< with Criterion::general
-  std::vector<std::uint8_t> damaged_;   ///< per block: has a beam that is damaged but not broken
-  std::vector<std::int32_t> crack_of_;  ///< per local beam: index in cracks_, or none
-  std::vector<Crack> cracks_,
-      kept_;  ///< in the order of their initiation; statics: at the last commit
+  std::vector<FurtherBlock> further_;  ///< with Criterion::general
+  std::vector<std::uint8_t> damaged_;  ///< per block: has a beam that is damaged but not broken
+  Cracks cracks_;
+  std::vector<Crack> kept_;                 ///< statics: at the last commit
   std::vector<std::int32_t> newly_broken_;  ///< local beams, since the last commit
   std::vector<std::array<std::int32_t, 2>> released_;
   std::vector<ViscousBlock> viscous_;      ///< forces of dashpots at the start of the last step

@@ -20,9 +20,10 @@ struct Across {
 
 /// Returns two unit vectors that with n are a right-handed basis u, v, n (Duff et al. 2017,
 /// "Building an orthonormal basis, revisited", J. Comput. Graph. Tech. 6). \param n  unit vector
-inline std::pair<Vec3<double>, Vec3<double>> basis_across(const Vec3<double>& n) {
-  const double sign = std::copysign(1.0, n.z);
-  const double a = -1 / (sign + n.z), b = n.x * n.y * a;
+template <class T = double>
+constexpr std::pair<Vec3<T>, Vec3<T>> basis_across(const Vec3<T>& n) {
+  const T sign = std::copysign(1.0, n.z);
+  const T a = -1 / (sign + n.z), b = n.x * n.y * a;
   return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
@@ -31,7 +32,7 @@ inline std::pair<Vec3<double>, Vec3<double>> basis_across(const Vec3<double>& n)
 /// edge, here by the rule of Gauss-Legendre with four points: 6e-5 too large for a square about its
 /// centre, at most 1.5 % for narrow rectangles.
 template <class T>
-T reach_of_edge(const Across<T>& a, const Across<T>& b) {
+constexpr T reach_of_edge(const Across<T>& a, const Across<T>& b) {
   using std::sqrt;
   constexpr std::array<double, 4> at{0.06943184420297371, 0.33000947820757187, 0.6699905217924281,
                                      0.9305681557970263};

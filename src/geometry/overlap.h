@@ -33,12 +33,12 @@ struct PatchOf {
   T reach = 0;
 
   /// Returns T w, T = int (r x n)(r x n)^T |dA|, of a vector w across n [m^4 times w].
-  Vec3<T> rocking(const Vec3<T>& w) const {
+  constexpr Vec3<T> rocking(const Vec3<T>& w) const {
     const T wu = dot(u, w), wv = dot(v, w);
     return (vv * wu - uv * wv) * u + (uu * wv - uv * wu) * v;
   }
   /// Returns the largest eigenvalue of T, and of J2 across n [m^4].
-  T largest() const {
+  constexpr T largest() const {
     using std::sqrt;
     const T half = 0.5 * (uu - vv);
     return 0.5 * (uu + vv) + sqrt(T(half * half + uv * uv));

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "batch_command.h"
 #include "floe/scene.h"
 #include "floe/session/version.h"
 #include "manual.h"
@@ -119,6 +120,7 @@ std::optional<int> answer(int argc, char** argv) {
     if (first == "help") return help(argc > 2 ? argv[2] : "");
     if (first == "-help_man") return say(manual_page(), done);
     if (first == "-make_parts") return make_parts(argc, argv);
+    if (first == "-batch") return serve_batch(argc, argv);
     if (is_subcommand(first)) return run_subcommand(argv + 1);
   }
   const auto asks = [](std::string_view word) { return is_one_of(word, {"-h", "--help"}); };

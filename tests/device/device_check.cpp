@@ -10,12 +10,15 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "device/device_stepper.h"
 #include "floe/session/session.h"
+#include "support/contact_scene.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
+#include "support/random.h"
 
 namespace floe {
 namespace {
@@ -216,6 +219,60 @@ double time_of(Engine& engine, const std::vector<Steps>& steps) {
   return 1e6 * times[7] / 50;
 }
 
+/// Blocks that fall in a heap on a floor.
+struct Heap {
+  Scene scene;
+  floe::Lattice lattice;
+  double dt = 2e-4;
+
+  /// \param side  blocks along each edge
+  explicit Heap(int side) {
+    scene = test::contact_scene(5e6, 0.3, 0.4);
+    test::Random random(3);
+    for (int k = 0; k < side * side * side; ++k) {
+      const Vec3<double> at{1.02 * (k % side), 1.02 * (k / side % side),
+                            0.6 + 1.02 * (k / side / side)};
+      test::append_block(lattice, {1, 1, 1}, at, random.rotation(0.05), random.vector(0.3));
+    }
+    test::append_obstacle(scene, "floor", half_space({0, 0, 0}, {0.1, 0, 1}));
+  }
+};
+/// Records of the heap after some steps on an engine, and microseconds per step of the last ones.
+std::pair<std::vector<double>, double> dropped(const Heap& heap, auto make, int steps) {
+  test::Dynamics run(heap.scene, heap.lattice);
+  run.set_step(heap.dt);
+  device::DescribedModel described = device::describe(run.model(), "cuda");
+  auto engine = make({described.lattice}, 0);
+  device::DeviceStepper stepper(run.model(), std::move(described), std::move(engine));
+  const WorkLedger ledger(run.model());
+  stepper.put(run.state(), ledger.all());
+  double last = 0;
+  for (int n = 0; n < steps; n += 50) {
+    last = seconds_of([&] {
+      for (int k = 0; k < 50; ++k)
+        stepper.queue((n + k) * heap.dt, heap.dt, n + k == 0 ? 0.0 : heap.dt);
+      (void)stepper.flush();
+    });
+  }
+  stepper.get(run.state());
+  return {run.state().records, 1e6 * last / 50};
+}
+
+/// Contacts: bits and numbers as compare() has them.
+void compare_contacts(int side, int steps) {
+  const Heap heap(side);
+  const auto [loop, slow] = dropped(heap, device::make_loop_engine, steps);
+  const auto [exact, not_fused] = dropped(heap, device::make_exact_cuda_engine, steps);
+  const auto [fused, fast] = dropped(heap, device::make_cuda_engine, steps);
+  const std::string name = std::to_string(heap.lattice.bodies.size()) + " blocks in contact";
+  std::size_t other = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) other += loop[k] == exact[k] ? 0 : 1;
+  say(name + ": numbers with other bits than loop", other == 0, "%.0f", static_cast<double>(other));
+  say(name + ": fused operations against loop", largest_difference(loop, fused) < 1e-6, "%.1e",
+      largest_difference(loop, fused));
+  say(name + ": us per step, lists included", true, "%.1f", fast);
+}
+
 /// \param copies  of the sheet in one launch
 void time_steps(Sheet sheet, std::size_t copies, double allowed) {
   const std::vector<Lattice> lattices(copies, sheet.described.lattice);
@@ -255,6 +312,8 @@ int main(int argc, char** argv) {
   compare(Sheet(1460, 0.1, false, 1, 3e5));
   compare(Sheet(1460, 0, false, 1, 3e5));
   compare_together();
+  compare_contacts(4, 500);
+  compare_contacts(12, 500);
   constexpr double anything = 1e9;
   for (const double damping : {0.0, 0.1}) {
     time_steps(Sheet(1460, damping), 1, anything);

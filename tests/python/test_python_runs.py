@@ -206,12 +206,28 @@ class Scenes(PythonTest):
                 floe.Scene("s.yaml", sheet_seed=1.5)
             except ValueError as error:
                 print(error)
+            assert "seed: 3" in floe.Scene("s.yaml", sheet_seed=3.0).yaml
+            from floe.loads.statements import settings_of
+            for wrong in (lambda: settings_of(filter=0.1), lambda: settings_of(draws=2.5),
+                          lambda: settings_of(start="1"),
+                          lambda: floe.Scene(keys, name=""), lambda: floe.open(3),
+                          lambda: floe.open(""), lambda: floe.run_ensemble(3),
+                          lambda: floe.run_ensemble({"scene": "s.yaml", "seeds": 2}, 3)):
+                try:
+                    wrong()
+                except floe.InputError as error:
+                    print(error)
             try:
                 floe.Scene("none.yaml")
             except floe.InputError as error:
                 print(error)
         """)
         self.assertIn("'bodies': ", out)
+        for line in ("name: '' must be a text, which is not empty", "folder: 3 must be a path",
+                     "filter: 0.1 must be a text", "draws: 2.5 must be a whole number",
+                     "start: '1' must be a number",
+                     "folder: '' must be a path", "spec: 3 must be a path"):
+            self.assertIn(line, out)
         for line in ("sheet_lenght: unknown option; the nearest known one is 'sheet: length'",
                      "time: end: -1", "forces: ", "sheet: length: ",
                      "sheet: seed: 1.5", "none.yaml"):

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,11 +21,13 @@ namespace floe::test {
 template <class Space>
 class DynamicsIn {
  public:
-  DynamicsIn(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF)
+  /// \param more  adds further forces
+  DynamicsIn(const Scene& scene, const Lattice& lattice, MPI_Comm comm = PETSC_COMM_SELF,
+             const std::function<void(Model<Space>&)>& more = {})
       : model_(lattice, comm, scene.boundaries),
         state_(static_cast<std::size_t>(model_.part().local)),
         wrenches_(static_cast<std::size_t>(model_.part().local)),
-        works_(with_forces(scene, lattice, model_)),
+        works_(with_forces(scene, lattice, model_, more)),
         step_(model_, state_, wrenches_, works_) {
     step_.start();
   }
@@ -80,10 +83,11 @@ class DynamicsIn {
 
  private:
   /// Forces first: water that bodies take along adds to what LeapfrogStepper moves.
-  static Model<Space>& with_forces(const Scene& scene, const Lattice& lattice,
-                                   Model<Space>& model) {
+  static Model<Space>& with_forces(const Scene& scene, const Lattice& lattice, Model<Space>& model,
+                                   const std::function<void(Model<Space>&)>& more) {
     add_forces(scene, place_loads(scene, lattice), model, &lattice);
     add_contact(scene, lattice, model);
+    if (more) more(model);
     return model;
   }
 

@@ -13,6 +13,7 @@
 #include "device/device_stepper.h"
 #include "device/tiles.h"
 #include "floe/base/item.h"
+#include "forces/support.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
 #include "support/random.h"
@@ -55,6 +56,7 @@ struct Case {
   Lattice lattice;
   double size = 0, turn = 0, speed = 0;  ///< of random displacements, rotations, velocities
   double dt = 1e-3;
+  std::vector<Support> supports{};  ///< beside the forces of the scene
 };
 
 /// The scene with its motion half a step before the first step.
@@ -65,7 +67,10 @@ std::unique_ptr<Dynamics> at_start(const Case& of) {
     lattice.bodies.velocity.push_back(random.vector(of.speed));
     lattice.bodies.angular_velocity.push_back(random.vector(of.speed));
   }
-  auto made = std::make_unique<Dynamics>(of.scene, lattice);
+  auto made =
+      std::make_unique<Dynamics>(of.scene, lattice, PETSC_COMM_SELF, [&](Model<Spatial>& model) {
+        if (!of.supports.empty()) model.add_force(make_supports(model.part(), of.supports));
+      });
   const State<Spatial> from = test::deformed(made->model().part(), of.size, of.turn);
   for (std::size_t b = 0; b < lattice.bodies.mass.size(); ++b) {
     std::copy_n(from.record(b), Spatial::velocity, made->state().record(b));
@@ -117,7 +122,7 @@ Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7
   auto engine = device::make_loop_engine({described.lattice}, tile);
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   Stepped out;
   double before = 0;
   const auto flush = [&] {
@@ -272,15 +277,33 @@ Case breaking_frame_case() {
   return c;
 }
 
+/// The frame with springs and dashpots on a body, off its centroid.
+Case supported_case() {
+  Case c = frame_case();
+  test::Random random(3);
+  Support support{.name = "structure", .body = 2, .point = {2, 1, -0.1}};
+  for (std::size_t r = 0; r < 6; ++r) {
+    for (std::size_t k = 0; k <= r; ++k) {
+      const double coupling = random.uniform(-3, 3), loss = random.uniform(-0.3, 0.3);
+      support.stiffness[6 * r + k] = support.stiffness[6 * k + r] = r == k ? 40 : coupling;
+      support.damping[6 * r + k] = support.damping[6 * k + r] = r == k ? 3 : loss;
+    }
+  }
+  c.supports = {support};
+  return c;
+}
+
 // Forces to rounding: by the velocities that they give in a step.
 TEST(Device, AStepIsThatOfTheLanes) {
-  for (const Case& c : {sheet_case(), sheet_case(0), frame_case(), eccentric_case(),
-                        floating_case(), floating_case(4, false), floating_case(1, true, true)})
+  for (const Case& c :
+       {sheet_case(), sheet_case(0), frame_case(), eccentric_case(), supported_case(),
+        floating_case(), floating_case(4, false), floating_case(1, true, true)})
     expect_alike(by_lanes(c, 1), by_loop(c, 1), 1e-15);
 }
 
 TEST(Device, AHundredStepsAreThoseOfTheLanes) {
-  for (const Case& c : {sheet_case(), sheet_case(0), frame_case(), eccentric_case()}) {
+  for (const Case& c :
+       {sheet_case(), sheet_case(0), frame_case(), eccentric_case(), supported_case()}) {
     const Stepped lanes = by_lanes(c, 100), loop = by_loop(c, 100);
     expect_alike(lanes, loop, 1e-11);
     EXPECT_GT(std::abs(lanes.boundary), 0);
@@ -355,7 +378,8 @@ TEST(Device, BreaksAsWithTheLanes) {
 // dashpots of beams that break.
 TEST(Device, WorksAreThoseOfTheLanes) {
   int compared = 0;
-  for (const Case& c : {sheet_case(), breaking_case(), floating_case(4, true, true)}) {
+  for (const Case& c :
+       {sheet_case(), breaking_case(), supported_case(), floating_case(4, true, true)}) {
     const auto run = at_start(c);
     run->steps(40);
     const Stepped loop = by_loop(c, 40);
@@ -377,7 +401,8 @@ TEST(Device, WorksAreThoseOfTheLanes) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 9);  // twice beams and two loads; beams, buoyancy and drag
+  // Twice beams and two loads; beams and a support; beams, buoyancy and drag.
+  EXPECT_EQ(compared, 11);
 }
 
 TEST(Device, TilesAndQueuesChangeNoBit) {
@@ -391,6 +416,46 @@ TEST(Device, TilesAndQueuesChangeNoBit) {
       EXPECT_EQ(one.boundary, other.boundary);
       EXPECT_EQ(one.speed2, other.speed2);
     }
+  }
+}
+
+// The parts of works that a checkpoint keeps: sums do not depend on where a run was interrupted.
+TEST(Device, WorksGoOnFromTheirParts) {
+  const Case c = floating_case(1, true, true);
+  const auto make = [](Dynamics& run) {
+    device::DescribedModel described = device::describe(run.model(), "loop");
+    auto engine = device::make_loop_engine({described.lattice});
+    return DeviceStepper(run.model(), std::move(described), std::move(engine));
+  };
+  const auto steps = [&](DeviceStepper& stepper, int first, int end) {
+    for (int n = first; n < end; ++n) stepper.queue(n * c.dt, c.dt, n > 0 ? c.dt : 0);
+    (void)stepper.flush();
+  };
+  for (const bool keeps : {true, false}) {
+    const auto run = at_start(c);
+    WorkLedger ledger(run->model());
+    const std::vector<double> zeros(ledger.all().begin(), ledger.all().end());
+    DeviceStepper whole = make(*run), first = make(*run), second = make(*run);
+    whole.put(run->state(), {zeros, 0, {}});
+    first.put(run->state(), {zeros, 0, {}});
+    steps(whole, 0, 60);
+    steps(first, 0, 23);
+    first.get(run->state());
+    const double boundaries = first.take_works(ledger.all());
+    DeviceStepper::WorkParts parts = first.work_parts();
+    std::vector<double> sums = zeros;
+    EXPECT_EQ(first.sum(parts, sums), boundaries);
+    EXPECT_TRUE(std::equal(sums.begin(), sums.end(), ledger.all().begin()));
+    second.put(run->state(), keeps ? parts : DeviceStepper::WorkParts{sums, boundaries, {}});
+    steps(second, 23, 60);
+    (void)second.take_works(sums);
+    (void)whole.take_works(ledger.all());
+    // Else they are the same to rounding only.
+    EXPECT_EQ(std::equal(sums.begin(), sums.end(), ledger.all().begin()), keeps);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      EXPECT_NEAR(sums[k], ledger.all()[k], 1e-12 * std::abs(sums[k]));
+    parts.since.drag.pop_back();
+    EXPECT_FALSE(first.sum(parts, sums));
   }
 }
 
@@ -499,7 +564,7 @@ TEST(Device, FindsASpeedThatIsNotFinite) {
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   run->state().record(3)[Spatial::velocity] = std::nan("");
   const WorkLedger ledger(run->model());
-  stepper.put(run->state(), ledger.all());
+  stepper.put(run->state(), {{ledger.all().begin(), ledger.all().end()}, 0, {}});
   for (int n = 0; n < 3; ++n) stepper.queue(n * c.dt, c.dt, c.dt);
   EXPECT_FALSE(std::isfinite(stepper.flush()));
 }

@@ -31,7 +31,7 @@ TEST(Support, WrenchIsTheGradientOfItsPotential) {
     Vec3<double> axis{part(engine), part(engine), part(engine)};
     axis = (1 / length(axis)) * axis;
     const Vec3<double> turn = angle * axis;
-    const SupportWrench wrench = spring_wrench(k, shift, turn);
+    const SupportWrench wrench = springs_of(k, shift, turn);
     constexpr double step = 1e-5;
     for (std::size_t c = 0; c < 3; ++c) {
       Vec3<double> d{};
@@ -53,7 +53,7 @@ TEST(Support, IsLinearWhereItIsSmall) {
   std::mt19937_64 engine(8);
   const SupportMatrix k = random_stiffness(engine);
   const Vec3<double> shift{1e-3, 2e-3, -1e-3}, turn{1e-10, -2e-10, 3e-10};
-  const SupportWrench wrench = spring_wrench(k, shift, turn);
+  const SupportWrench wrench = springs_of(k, shift, turn);
   for (std::size_t c = 0; c < 3; ++c) {
     double force = 0, moment = 0;
     for (std::size_t n = 0; n < 3; ++n) {

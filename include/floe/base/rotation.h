@@ -127,10 +127,11 @@ constexpr Quat<T> exp_rotation(const Vec3<T>& t) {
 }
 
 /// Returns the rotation vector t of a unit quaternion, |t| <= pi.
-inline Vec3<double> log_rotation(const Quat<double>& q) {
-  const double sign = q.w < 0 ? -1.0 : 1.0;
-  const double s = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
-  const double factor = s < 1e-8 ? 2.0 : 2.0 * std::atan2(s, sign * q.w) / s;
+template <class T = double>
+constexpr Vec3<T> log_rotation(const Quat<T>& q) {
+  const T sign = q.w < 0 ? -1.0 : 1.0;
+  const T s = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z);
+  const T factor = s < 1e-8 ? 2.0 : 2.0 * std::atan2(s, sign * q.w) / s;
   return {sign * factor * q.x, sign * factor * q.y, sign * factor * q.z};
 }
 

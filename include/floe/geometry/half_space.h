@@ -13,7 +13,8 @@ struct HalfSpace {
 };
 
 /// Returns a half-space in another frame. \param axes, x  axes and origin of its own frame there
-inline HalfSpace placed(const HalfSpace& plane, const Triad<double>& axes, const Vec3<double>& x) {
+constexpr HalfSpace placed(const HalfSpace& plane, const Triad<double>& axes,
+                           const Vec3<double>& x) {
   const Vec3<double> normal = axes.to_world(plane.normal);
   return {normal, plane.offset + dot(normal, x)};
 }

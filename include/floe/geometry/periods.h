@@ -14,14 +14,16 @@ namespace floe {
 struct Periods {
   Vec3<double> length{0, 0, 0};  ///< [m]; 0: the model does not repeat itself along this axis
 
-  bool any() const { return length.x > 0 || length.y > 0; }
+  constexpr bool any() const { return length.x > 0 || length.y > 0; }
   /// Returns what lies between two bodies, x_A - x_B, from the nearest image of B [m].
-  Vec3<double> nearest(const Vec3<double>& apart) const {
+  template <class T = double>
+  constexpr Vec3<T> nearest(const Vec3<T>& apart) const {
     return {fold(apart.x, length.x), fold(apart.y, length.y), apart.z};
   }
 
  private:
-  static double fold(double x, double period) {
+  template <class T>
+  static constexpr T fold(T x, double period) {
     return period > 0 ? x - period * std::nearbyint(x / period) : x;
   }
 };

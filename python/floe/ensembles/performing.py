@@ -7,12 +7,14 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from floe.ensembles import specs
-from floe.ensembles.runs import Runner, locked, processors
-from floe.errors import InputError
+from floe.ensembles.batches import BatchRunner, backend_of, most
+from floe.ensembles.runs import locked, processors
+from floe.errors import InputError, path_of
 
 if TYPE_CHECKING:
     from floe.run import Ensemble
@@ -21,6 +23,29 @@ if TYPE_CHECKING:
 def jobs_of(spec: specs.Spec) -> int:
     """Runs at a time that the processors have room for."""
     return max(1, processors() // spec.ranks)
+
+
+@dataclass
+class Room:
+    """How many runs there may be at a time: `jobs` on processors, `batch` on a device, all of which
+    are in one batch. backends: {name of a run: its back end}."""
+    jobs: int
+    batch: int
+    backends: dict[str, str]
+
+    def __str__(self) -> str:
+        kinds = {name == "cpu" for name in self.backends.values()}
+        words = [f"{self.jobs} at a time"] * (True in kinds or not kinds)
+        words += [f"{self.batch} in a batch"] * (False in kinds)
+        return ", ".join(words)
+
+
+def room_of(folder: specs.Folder, runs: Sequence[Any], jobs: int | None) -> Room:
+    """The room for runs that have been planned; jobs: as the user wants it."""
+    backends = {run.name: backend_of(run) for run in runs}
+    memory = max((folder.memory.get(run.group(folder.spec.seed_keys)) or 0 for run in runs
+                  if backends[run.name] != "cpu"), default=0)
+    return Room(jobs or jobs_of(folder.spec), jobs or most(memory), backends)
 
 
 def chosen(folder: specs.Folder, only: Sequence[str], option: str = "only") -> list[Any]:
@@ -51,14 +76,17 @@ def holding(folder: specs.Folder, some: Sequence[Any] = ()) -> Iterator[list[int
         yield locks
 
 
-def perform(folder: specs.Folder, runs: Sequence[Any], jobs: int,
+def perform(folder: specs.Folder, runs: Sequence[Any], jobs: int | None,
             locks: Sequence[int]) -> tuple[int, str]:
     """Runs what is not done, with its progress on standard error. Exit code of floe ensemble, and
-    by what all was stopped: a signal, a limit, or nothing ("")."""
+    by what all was stopped: a signal, a limit, or nothing ("").
+
+    jobs: runs at a time; None: as many as there is room for"""
     waiting = [run for run in runs if not folder.finished(run)]
-    print(f"{len(runs)} runs, {len(runs) - len(waiting)} of them finished before, {jobs} at a "
-          "time", file=sys.stderr)
-    if not folder.make(waiting, jobs, locks):
+    room = room_of(folder, waiting, jobs)
+    print(f"{len(runs)} runs, {len(runs) - len(waiting)} of them finished before, {room}",
+          file=sys.stderr)
+    if not folder.make(waiting, room.jobs, locks):
         print("files are still to be made: the same command goes on", file=sys.stderr)
         return 3, "signal"
     written = time.monotonic()
@@ -70,7 +98,9 @@ def perform(folder: specs.Folder, runs: Sequence[Any], jobs: int,
             folder.collect()
             written = time.monotonic()
     spec = folder.spec
-    runner = Runner(folder.path, jobs, finish, spec.ranks, spec.limit, spec.total, locks)
+    room = room_of(folder, waiting, jobs)  # of runs whose files have just been made too
+    runner = BatchRunner(folder.path, room.jobs, finish, room.backends, room.batch, spec.ranks,
+                         spec.limit, spec.total, locks)
     ended = runner.perform(waiting)
     folder.collect()
     states = [how.status for _, how in ended]
@@ -102,7 +132,8 @@ def run_ensemble(spec: str | os.PathLike[str] | Mapping[str, Any],
     spec    path of a spec's file, or nested dicts with the same keys, whose paths count from the
             current folder: {"scene": "cone.yaml", "seeds": 10}
     folder  results (default: the spec's output, else out/ensemble_SPEC)
-    jobs    runs at a time (default: processors over ranks per run)
+    jobs    runs at a time (default: processors over ranks per run; with a back end other than
+            cpu as many in one batch as there is memory for, at most 64)
     only    names of runs, which alone are run (default: all)
 
     Runs that are done are kept, others go on from their checkpoint or begin anew. A run that fails
@@ -119,19 +150,20 @@ def run_ensemble(spec: str | os.PathLike[str] | Mapping[str, Any],
     if isinstance(spec, Mapping):
         read = specs.checked(plain(spec), "ensemble", "spec", Path())
     else:
-        read = specs.read(spec)
+        read = specs.read(path_of("spec", spec))
+    if folder is not None:
+        folder = path_of("folder", folder)
     if jobs is not None and not (isinstance(jobs, int) and jobs >= 1):
         raise InputError(f"jobs: {jobs!r} must be a whole number of at least 1")
     if isinstance(only, str):
         raise InputError(f"only: {only!r} must be a list of names")
     found = specs.Folder(folder if folder is not None else read.output, read)
     runs = chosen(found, only)
-    at_a_time = jobs or jobs_of(read)
     found.compare()
-    found.plan(at_a_time)
+    found.plan(jobs or jobs_of(read))
     with holding(found, runs if only else ()) as locks:
         found.record()
-        _, stopped = perform(found, runs, at_a_time, locks)
+        _, stopped = perform(found, runs, jobs, locks)
     if stopped and stopped != "limit: total":
         raise KeyboardInterrupt
     return Ensemble(found.path)

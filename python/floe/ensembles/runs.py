@@ -224,12 +224,9 @@ class Runner:
         self.until = time.monotonic() + self.total
         self.progress = Progress(runs, self.jobs)
         with selectors.DefaultSelector() as self.selector, self.requests_to_stop():
-            while self.running or self.waiting and not self.stopping:
-                while len(self.running) < self.jobs and not self.stopping:
-                    run = self.next()
-                    if run is None:
-                        break
-                    self.start(run)
+            while self.under_way() or self.waiting and not self.stopping:
+                if not self.stopping:
+                    self.begin()
                 ready = [key.data for key, _ in self.selector.select(0.25)]
                 for process in ready:
                     self.end(process)
@@ -258,17 +255,34 @@ class Runner:
             for number, handler in before.items():
                 signal.signal(number, handler)
 
-    def next(self):
-        """The longest run that waits and whose mesh no other run is making."""
-        making = {process.run.mesh for process in self.running.values()}
+    def under_way(self):
+        """Whether anything is to be waited for."""
+        return bool(self.running)
+
+    def begin(self):
+        """Starts runs while there is room for them."""
+        while len(self.running) < self.jobs:
+            run = self.next()
+            if run is None:
+                return
+            self.start(run)
+
+    def next(self, suits=lambda run: True, beside=()):
+        """The longest run that waits and suits, and whose mesh neither a run that is under way nor
+        one of those beside it is making; None if there is none."""
+        making = {run.mesh for run in beside}
+        making |= {process.run.mesh for process in self.running.values()}
         for run in self.waiting:
-            if run.mesh is None or run.mesh not in making or Path(run.mesh).exists():
+            has_mesh = run.mesh is None or run.mesh not in making or Path(run.mesh).exists()
+            if has_mesh and suits(run):
                 self.waiting.remove(run)
                 return run
         return None
 
-    def start(self, run):
-        """Begins a run, or goes on from the checkpoint that its folder has."""
+    def start(self, run, environment={}, files=()):
+        """Begins a run, or goes on from the checkpoint that its folder has.
+
+        environment: further variables; files: descriptors that it inherits beside the locks."""
         output = self.folder / "runs" / run.name
         command = run.command(output, self.ranks)
         if any((output / name).exists() for name in ("checkpoint.h5", "checkpoint_previous.h5")):
@@ -278,20 +292,29 @@ class Runner:
         output.parent.mkdir(parents=True, exist_ok=True)
         out, error = tempfile.TemporaryFile(), tempfile.TemporaryFile()
         # In a session of its own, so that Ctrl-C reaches it by our request only
-        popen = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdout=out,
-                                 stderr=error, stdin=subprocess.DEVNULL, start_new_session=True,
-                                 pass_fds=self.locks)
+        popen = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT, **environment},
+                                 stdout=out, stderr=error, stdin=subprocess.DEVNULL,
+                                 start_new_session=True, pass_fds=[*self.locks, *files])
         process = Process(run, popen, out, error)
         self.running[run.name] = process
-        self.selector.register(os.pidfd_open(popen.pid), selectors.EVENT_READ, process)
+        self.note(process)
 
-    def end(self, process):
-        """Takes a run that has ended out of those under way, and judges it."""
+    def note(self, process):
+        """Waits for a process beside the others."""
+        self.selector.register(os.pidfd_open(process.popen.pid), selectors.EVENT_READ, process)
+
+    def reap(self, process):
+        """Exit code of a process that has ended, and the resources that it used."""
         handle = next(key.fd for key in self.selector.get_map().values() if key.data is process)
         self.selector.unregister(handle)
         os.close(handle)
         _, status, used = os.wait4(process.popen.pid, 0)
-        code = process.popen.returncode = os.waitstatus_to_exitcode(status)
+        process.popen.returncode = os.waitstatus_to_exitcode(status)
+        return process.popen.returncode, used
+
+    def end(self, process):
+        """Takes a run that has ended out of those under way, and judges it."""
+        code, used = self.reap(process)
         del self.running[process.run.name]
         ended = Ended("done", code, "", time.monotonic() - process.started,
                       used.ru_utime + used.ru_stime)

@@ -27,6 +27,7 @@ OURS = ("output_dir", "output_overwrite", "check", "checkpoint_restart")
 # Of summary.json what is not the same in each run of the same scene, and what the table says itself
 TIMES = {"wall_s", "mesh_s", "lattice_s", "partition_s", "forces_s", "tangent_s", "solve_s",
          "output_s", "peak_memory_mb", "ns_per_beam_step"}
+SIZES = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 UNITS = {"s": 1, "min": 60, "h": 3600, "days": 86400, "years": 365.25 * 86400}
 
 
@@ -377,7 +378,8 @@ class Folder:
 
     def __init__(self, path, spec):
         self.path, self.spec, self.runs = Path(path), spec, members(spec)
-        self.seconds = {}  # planned time [s] of a group of runs that differ by the seed
+        # Planned time [s] and memory [bytes] of a group of runs that differ by the seed
+        self.seconds, self.memory = {}, {}
         for run in self.runs:
             run.made_in = self.path / files.FOLDER
 
@@ -416,14 +418,16 @@ class Folder:
                                      "choose another folder (output, --dir)")
             elif old["seconds"] is not None or not run.made:  # else its file was not there yet
                 self.seconds[run.group(self.spec.seed_keys)] = old["seconds"]
+                self.memory[run.group(self.spec.seed_keys)] = old.get("memory")
         return before
 
     def record(self):
         """Writes down what the runs are."""
         runs = self.compare()
         for run in self.runs:
+            group = run.group(self.spec.seed_keys)
             runs[run.name] = {**run.record, "parameters": run.parameters, "seed": run.seed,
-                              "seconds": self.seconds.get(run.group(self.spec.seed_keys))}
+                              "seconds": self.seconds.get(group), "memory": self.memory.get(group)}
         text = json.dumps({"name": self.spec.name, "spec": self.spec.text, "runs": runs}, indent=1)
         write_whole(self.path / "ensemble.json", text + "\n")
 
@@ -438,9 +442,10 @@ class Folder:
                 first.setdefault(run.group(self.spec.seed_keys), run)
         asked = {group: run for group, run in first.items() if group not in self.seconds}
         with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
-            times = pool.map(lambda run: planned(run, self.output(run), self.spec.ranks),
-                             asked.values())
-            self.seconds |= dict(zip(asked, times))
+            plans = list(pool.map(lambda run: planned(run, self.output(run), self.spec.ranks),
+                                  asked.values()))
+        self.seconds |= {group: seconds for group, (seconds, _) in zip(asked, plans)}
+        self.memory |= {group: memory for group, (_, memory) in zip(asked, plans)}
         taken = {}
         for run in self.runs:
             if self.finished(run):
@@ -539,12 +544,15 @@ def scalars(summary):
 
 
 def planned(run, output, ranks):
-    """Wall time [s] of a run as floe plans it, None if it cannot tell."""
+    """Wall time [s] of a run as floe plans it, and its memory before the first step [bytes]; None
+    for what floe cannot tell."""
     done = subprocess.run([*run.command(output, ranks), "-check"], capture_output=True, text=True,
                           env={**os.environ, **ENVIRONMENT})
     if done.returncode != 0:
         lines = [line for line in done.stderr.splitlines() if line.startswith("floe")]
         raise InputError(f"run {run.name}: "
                          + (lines or done.stderr.split("\n") or ["no message"])[-1])
-    found = re.search(rf"; about ([\d.e+-]+) ({'|'.join(UNITS)}) \(by ", done.stdout)
-    return float(found[1]) * UNITS[found[2]] if found else None
+    time = re.search(rf"; about ([\d.e+-]+) ({'|'.join(UNITS)}) \(by ", done.stdout)
+    memory = re.search(rf"; ([\d.e+-]+) ({'|'.join(SIZES)}) of memory", done.stdout)
+    return (float(time[1]) * UNITS[time[2]] if time else None,
+            float(memory[1]) * SIZES[memory[2]] if memory else None)

@@ -6,6 +6,7 @@ Gumbel's law with its bands, trend, peaks, spectrum (floe loads, docs/loads.md).
         statement = state(group, "cone", Settings())
 """
 import dataclasses
+import numbers
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,13 @@ def settings_of(**given):
             given["filter"] = signals.Filter.parse(given["filter"])
         except ValueError as error:
             raise InputError(str(error)) from None
+    for name, allowed in (("filter", signals.Filter), ("component", str), ("start", numbers.Real),
+                          ("block", numbers.Real), ("hours", numbers.Real),
+                          ("level", numbers.Real), ("draws", numbers.Integral),
+                          ("seed", numbers.Integral)):
+        if name in given and not isinstance(given[name], allowed):
+            kind = {numbers.Real: "a number", numbers.Integral: "a whole number"}
+            raise InputError(f"{name}: {given[name]!r} must be {kind.get(allowed, 'a text')}")
     found = Settings(**given)
     if found.component not in COMPONENTS:
         raise InputError(f"component '{found.component}' is none of {', '.join(COMPONENTS)}")

@@ -1,0 +1,110 @@
+#include "contact_force/on_device.h"
+
+#include <algorithm>
+
+#include "active_contacts/stiffness.h"
+#include "contact_force/expiry.h"
+
+namespace floe {
+
+std::string missing_on_devices(const Contacts& contacts) {
+  const Solids& solids = contacts.solids();
+  if (contacts.wears()) return "contact: plastic_limit with wear";
+  if (!solids.carriers().empty()) return "contact of structures, or of bodies of several parts";
+  for (const Obstacle& obstacle : solids.obstacles())
+    if (obstacle.parts.size() > 1) return "obstacles of several convex parts";
+  for (std::int32_t b = 0; b < solids.bodies(); ++b)
+    if (solids.graph(b) == nullptr)
+      return "contact of bodies with more than 32 vertices or 64 edges";
+  return {};
+}
+
+DeviceContacts on_device(const Contacts& contacts, const Part& part) {
+  const Solids& solids = contacts.solids();
+  const ContactOptions& options = contacts.options();
+  const PlasticLimit& limit = options.plastic_limit;
+  DeviceContacts of;
+  of.potential = options.law == ContactLaw::potential;
+  of.damping_ratio = options.damping_ratio;
+  of.with_patch = options.damping_ratio > 0 || solids.has_friction(options);
+  of.plastic_limit = {limit.pressure, limit.area, limit.exponent, limit.least,
+                      limit.most,     limit.fast, limit.speed};
+  of.periods = options.periods;
+  of.slack = contacts.list().slack();
+  std::vector<const EdgeGraph*> graphs;
+  const auto solid = [&](std::int32_t index) {
+    DeviceContacts::Solid s;
+    const auto vertices = solids.vertices(index);
+    const auto planes = solids.planes(index);
+    s.vertices.assign(vertices.begin(), vertices.end());
+    s.planes.assign(planes.begin(), planes.end());
+    s.radius = solids.radius(index);
+    if (is_obstacle(index)) return s;
+    const EdgeGraph* graph = solids.graph(index);  // most bodies share one with others
+    const auto known = std::find(graphs.begin(), graphs.end(), graph);
+    s.graph = static_cast<std::int32_t>(known - graphs.begin());
+    if (known == graphs.end()) graphs.push_back(graph), of.graphs.push_back(*graph);
+    const InverseInertia inverse = solids.inverse_inertia(index);
+    s.inverse = {inverse.mass, inverse.moments.x, inverse.moments.y, inverse.moments.z};
+    return s;
+  };
+  for (std::int32_t b = 0; b < part.owned; ++b) of.solids.push_back(solid(item(part.global, b)));
+  of.obstacles = solids.obstacles().size();
+  for (std::size_t k = 0; k < of.obstacles; ++k) of.solids.push_back(solid(part_index(k)));
+  of.obstacle = [&solids](std::size_t k, double time, double before, double dt) {
+    const Obstacle& obstacle = solids.obstacles()[k];
+    const Placed now = place_of(obstacle, time, time - 0.5 * before);
+    const ObstacleMotion& m = obstacle.motion;
+    DeviceContacts::ObstacleStep numbers;
+    std::size_t n = 0;
+    for (const Vec3<double>& v :
+         {now.x, now.axes.e1, now.axes.e2, now.axes.e3, now.velocity, now.spin, m.rate(time),
+          m.spin(time), m.rate(time + 0.5 * dt), m.spin(time + 0.5 * dt)}) {
+      for (const double x : {v.x, v.y, v.z}) numbers[n++] = x;
+    }
+    return numbers;
+  };
+  of.obstacle_travel = [&solids](double from, double to) {
+    double most = 0;
+    for (std::size_t k = 0; k < solids.obstacles().size(); ++k)
+      most = std::max(most, obstacle_travel(solids, k, from, to));
+    return most;
+  };
+  return of;
+}
+
+DevicePairs pairs_on_device(const Contacts& contacts, const Part& part) {
+  const Solids& solids = contacts.solids();
+  const auto local = [&](std::int32_t index) {
+    return is_obstacle(index) ? index : part.local_index(index);
+  };
+  ContactHistory::Cursor histories(contacts.history());
+  DevicePairs pairs;
+  std::int32_t index = 0;
+  for (const Pair& pair : contacts.list().pairs()) {
+    const PairConstants dry = pair_constants(solids, contacts.options(), pair, false),
+                        wet = pair_constants(solids, contacts.options(), pair, true);
+    const PairHistory* memory = histories.of(index++);
+    pairs.bodies.push_back({local(pair.a), local(pair.b)});
+    pairs.numbers.push_back({dry.stiffness, dry.area, dry.friction, wet.friction, dry.half_space,
+                             std::min(solids.width(pair.a), solids.width(pair.b))});
+    pairs.histories.push_back((memory != nullptr ? *memory : PairHistory{}).as_numbers());
+    pairs.states.push_back(
+        static_cast<std::uint8_t>((memory != nullptr ? DevicePairs::touching : 0) |
+                                  (pair.newly_eligible ? DevicePairs::stress_free : 0)));
+  }
+  return pairs;
+}
+
+std::vector<double> history_rows(const DevicePairs& pairs, const Part& part) {
+  std::vector<double> rows;
+  for (std::size_t k = 0; k < pairs.bodies.size(); ++k) {
+    if ((pairs.states[k] & DevicePairs::touching) == 0) continue;
+    for (const std::int32_t b : pairs.bodies[k])
+      rows.push_back(static_cast<double>(is_obstacle(b) ? b : item(part.global, b)));
+    rows.insert(rows.end(), pairs.histories[k].begin(), pairs.histories[k].end());
+  }
+  return rows;
+}
+
+}  // namespace floe

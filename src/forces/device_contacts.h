@@ -1,0 +1,91 @@
+/// \file
+/// What contacts tell a back end that computes their steps by itself.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "floe/geometry/half_space.h"
+#include "floe/geometry/periods.h"
+#include "floe/lattice/state.h"
+#include "geometry/edge_graph.h"
+
+namespace floe {
+
+/// The pairs of bodies, or of a body and an obstacle, that may touch.
+struct DevicePairs {
+  /// Numbers of a pair: k_v [Pa/m], A_r [m^2], mu, mu below water, 1 if B is a half-space, least
+  /// width of the thinner one [m].
+  static constexpr std::size_t constants = 6;
+  /// Numbers of its history, as PairHistory::as_numbers().
+  static constexpr std::size_t history = 7;
+  /// What a pair is at the end of the last step, in bits.
+  enum State : std::uint8_t { touching = 1, stress_free = 2 };
+
+  std::vector<std::array<std::int32_t, 2>> bodies;  ///< A, B; -1 - k: obstacle k
+  std::vector<std::array<double, constants>> numbers;
+  std::vector<std::array<double, history>> histories;  ///< of pairs that touch
+  std::vector<std::uint8_t> states;
+};
+
+/// Contacts as they are kept on the processor.
+class KeptContacts {
+ public:
+  /// Makes the list of the pairs that may touch before a vertex has moved by the slack.
+  virtual DevicePairs list(const State<Spatial>& state) = 0;
+  /// Takes over what steps that were made elsewhere have left.
+  /// \param pairs  of list(), with histories and states of now
+  /// \param steps  number of these steps \param dt  their length [s]
+  virtual void take(const DevicePairs& pairs, std::int64_t steps, double dt) = 0;
+  /// Per obstacle: the largest force so far and the integral of the force [N, N s].
+  virtual std::vector<std::array<double, 6>> obstacle_forces() const = 0;
+  virtual void set_obstacle_forces(std::span<const std::array<double, 6>> forces) = 0;
+  /// Whether the stable step allows for contacts; as long as it does not, whether an evaluation at
+  /// every step is to tell that bodies are about to touch.
+  virtual bool are_possible() const = 0;
+  virtual bool watches() const = 0;
+
+ protected:
+  ~KeptContacts() = default;
+};
+
+/// Contacts of bodies with each other and with obstacles.
+struct DeviceContacts {
+  bool potential = false;    ///< the law: potential; else overlap
+  double damping_ratio = 0;  ///< zeta
+  bool with_patch = false;   ///< the law asks for integrals over the area
+  /// sigma_p: pressure, area, exponent, least, most, fast, speed, as PlasticLimit.
+  std::array<double, 7> plastic_limit{};
+  Periods periods;
+  double slack = 0;      ///< of the list [m]
+  std::size_t work = 0;  ///< index of the first of its four works among those of all forces
+  KeptContacts* kept = nullptr;
+
+  /// Shapes of the bodies, then of the obstacles, in their frames.
+  struct Solid {
+    std::vector<Vec3<double>> vertices;  ///< none: a half-space
+    std::vector<HalfSpace> planes;
+    std::int32_t graph = -1;  ///< among the graphs; obstacles have none
+    double radius = 0;        ///< distance of the farthest vertex from the origin [m]
+    /// 1/m, 1/I about the axes of the body, as contacts count them; zeros for an obstacle.
+    std::array<double, 4> inverse{};
+  };
+  std::vector<Solid> solids;
+  std::vector<EdgeGraph> graphs;
+  std::size_t obstacles = 0;
+
+  /// Numbers of an obstacle in a step: origin and axes of its frame at its start; velocity and spin
+  /// half of the step before earlier, at its start, and half of the step later.
+  static constexpr std::size_t of_obstacle = 30;
+  using ObstacleStep = std::array<double, of_obstacle>;
+  /// \param before, dt  lengths of the step before and of the step [s]
+  std::function<ObstacleStep(std::size_t obstacle, double time, double before, double dt)> obstacle;
+  /// Returns the largest travel of a vertex of an obstacle between two times [m].
+  std::function<double(double from, double to)> obstacle_travel;
+};
+
+}  // namespace floe

@@ -1,0 +1,46 @@
+#include "batch_command.h"
+
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "device/batch.h"
+#include "device/make_engine.h"
+#include "program.h"
+
+namespace floe::program {
+
+int serve_batch(int argc, char** argv) {
+  std::vector<int> files;
+  for (int k = 3; k < argc; ++k) {
+    const std::string_view word = argv[k];
+    int file = -1;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), file);
+    if (error == std::errc{} && end == word.data() + word.size() && file > 2) files.push_back(file);
+  }
+  if (files.empty() || files.size() != static_cast<std::size_t>(argc - 3)) {
+    std::fputs("-batch: BACKEND FILE...: numbers of open connections (floe ensemble)\n", stderr);
+    return bad_input;
+  }
+  const std::string backend = argv[2];
+  try {
+    device::Batch batch(
+        [&](std::vector<device::Lattice> lattices) {
+          return device::make_engine(backend, std::move(lattices));
+        },
+        files);
+    batch.serve();
+    std::printf("%zu runs, engines: %zu, launches: %lld, steps: %lld\n", files.size(),
+                batch.engines(), static_cast<long long>(batch.launches()),
+                static_cast<long long>(batch.steps()));
+    return done;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "floe: %s\n", error.what());
+    return failed;
+  }
+}
+
+}  // namespace floe::program
