@@ -14,6 +14,7 @@
 #include "device/tiles.h"
 #include "floe/base/item.h"
 #include "forces/support.h"
+#include "support/alike.h"
 #include "support/dynamics.h"
 #include "support/lattices.h"
 #include "support/random.h"
@@ -144,25 +145,8 @@ Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7
   return out;
 }
 
-/// Largest difference of numbers first .. first + count of all records, over the largest of them.
-double difference(const Stepped& a, const Stepped& b, int first, int count) {
-  double largest = 0, difference = 0;
-  for (std::size_t at = 0; at < a.state.records.size(); at += Spatial::record) {
-    for (int k = first; k < first + count; ++k) {
-      const std::size_t n = at + static_cast<std::size_t>(k);
-      largest = std::max(largest, std::abs(a.state.records[n]));
-      difference = std::max(difference, std::abs(a.state.records[n] - b.state.records[n]));
-    }
-  }
-  return largest > 0 ? difference / largest : difference;
-}
-
 void expect_alike(const Stepped& a, const Stepped& b, double tolerance) {
-  EXPECT_LT(difference(a, b, Spatial::displacement, 3), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::rotation, 4), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::velocity, 3), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::angular_velocity, 3), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::angular_momentum, 3), tolerance);
+  test::expect_alike(a.state, b.state, tolerance);
   EXPECT_NEAR(std::sqrt(a.speed2), std::sqrt(b.speed2), tolerance * std::sqrt(a.speed2));
   EXPECT_NEAR(a.fastest_spin, b.fastest_spin, tolerance * a.fastest_spin);
 }
@@ -320,7 +304,9 @@ TEST(Device, FloatsAsWithTheLanes) {
     Case still = c;
     still.scene.forces.drag = false;
     expect_alike(by_lanes(still, 10), by_loop(still, 10), 1e-13);
-    EXPECT_GT(difference(by_lanes(still, 10), by_lanes(c, 10), Spatial::velocity, 3), 1e-6);
+    EXPECT_GT(
+        test::difference(by_lanes(still, 10).state, by_lanes(c, 10).state, Spatial::velocity, 3),
+        1e-6);
   }
 }
 

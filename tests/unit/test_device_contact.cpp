@@ -11,6 +11,7 @@
 
 #include "device/device_stepper.h"
 #include "floe/base/item.h"
+#include "support/alike.h"
 #include "support/contact_scene.h"
 #include "support/random.h"
 #include "support/scene_options.h"
@@ -159,25 +160,8 @@ Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7
   return out;
 }
 
-/// Largest difference of numbers first .. first + count of all records, over the largest of them.
-double difference(const Stepped& a, const Stepped& b, int first, int count) {
-  double largest = 0, difference = 0;
-  for (std::size_t at = 0; at < a.state.records.size(); at += Spatial::record) {
-    for (int k = first; k < first + count; ++k) {
-      const std::size_t n = at + static_cast<std::size_t>(k);
-      largest = std::max(largest, std::abs(a.state.records[n]));
-      difference = std::max(difference, std::abs(a.state.records[n] - b.state.records[n]));
-    }
-  }
-  return largest > 0 ? difference / largest : difference;
-}
-
 void expect_alike(const Stepped& a, const Stepped& b, double tolerance) {
-  EXPECT_LT(difference(a, b, Spatial::displacement, 3), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::rotation, 4), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::velocity, 3), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::angular_velocity, 3), tolerance);
-  EXPECT_LT(difference(a, b, Spatial::angular_momentum, 3), tolerance);
+  test::expect_alike(a.state, b.state, tolerance);
 }
 
 void expect_numbers(const std::vector<double>& a, const std::vector<double>& b, double tolerance) {
