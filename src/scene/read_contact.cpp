@@ -197,8 +197,10 @@ void read_contact(Options& options, Scene& scene) {
     obstacle.friction = options.number("obstacle: NAME: friction", name, contact.friction);
     if (options.given("obstacle: NAME: friction_wet", name)) {
       obstacle.friction_wet = options.number("obstacle: NAME: friction_wet", name);
-    } else if (!options.given("obstacle: NAME: friction", name)) {
-      obstacle.friction_wet = contact.friction_wet;
+    } else if (!options.given("obstacle: NAME: friction", name) && contact.friction_wet) {
+      // Written down, since in options.yaml and checkpoints the friction is given.
+      obstacle.friction_wet =
+          options.number("obstacle: NAME: friction_wet", name, contact.friction_wet);
     }
     if (options.given("obstacle: NAME: mass", name)) {
       scene.structures.push_back(read_structure(options, obstacle));
