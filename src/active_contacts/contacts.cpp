@@ -325,8 +325,13 @@ void Contacts::find_crushed() {
                    places_.of_a(pair).axes, places_.of_b(pair).axes);
   }
   crushing_.end();
-  cuts_.clear();
-  for (const Crush& crush : crushing_.parted()) cuts_.push_back(cut_of(crush));
+  cuts_ = cuts_of(crushing_.parted());
+}
+
+std::vector<WearCut> Contacts::cuts_of(std::span<const Crush> parted) {
+  std::vector<WearCut> cuts;
+  for (const Crush& crush : parted) cuts.push_back(cut_of(crush));
+  return cuts;
 }
 
 /// The body that loses what was crushed is the sharper one, of which the lost volume is the higher

@@ -126,6 +126,8 @@ class Contacts {
   bool wears() const { return options_.wear && options_.plastic_limit.given(); }
   /// Returns the cuts by the counted contacts that parted in the last commit.
   std::span<const WearCut> cuts() const { return cuts_; }
+  /// Returns the cuts by contacts that parted in a step that was made elsewhere.
+  std::vector<WearCut> cuts_of(std::span<const Crush> parted);
   /// Wears bodies off, on every rank by the cuts of all ranks, sorted by pair.
   void wear(std::span<const WearCut> cuts);
   const Wear& worn() const { return wear_; }
@@ -198,8 +200,10 @@ class Contacts {
 
   /// Takes over the histories of steps that were made elsewhere; the next build assigns them.
   /// \param rows  of ContactHistory::width numbers, sorted by pair
-  void take_steps(std::span<const double> rows) {
+  /// \param crushed  what pairs that touch have crushed, likewise
+  void take_steps(std::span<const double> rows, std::vector<Crush> crushed) {
     history_.restore(rows);
+    crushing_.set(std::move(crushed));
     list_.end_step();
     active_.clear();
   }

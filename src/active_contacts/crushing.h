@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "contact/pair.h"
@@ -43,6 +44,10 @@ class Crushing {
   /// Returns what pairs that parted in the last commit have crushed.
   std::span<const Crush> parted() const { return parted_; }
 
+  /// Returns what pairs that touch have crushed, in list order.
+  std::span<const Crush> records() const { return records_; }
+  /// Sets it.
+  void set(std::vector<Crush> records) { records_ = std::move(records); }
   /// Returns rows of Crush::numbers numbers.
   std::vector<double> rows() const;
   /// Sets what rows() returned. \param here  per body: 1 if this rank owns it

@@ -65,6 +65,12 @@ void Wear::add(const Solids& solids, const WearCut& cut) {
   worn.planes = kept + 1;
 }
 
+std::vector<std::int32_t> Wear::bodies() const {
+  std::vector<std::int32_t> all;
+  for (const Worn& worn : worn_) all.push_back(worn.body);
+  return all;
+}
+
 std::vector<double> Wear::rows() const {
   std::vector<double> rows;
   for (const Worn& worn : worn_) {

@@ -42,6 +42,8 @@ class Wear {
     const Worn& worn = item(worn_, place);
     return {worn.left.data(), worn.planes};
   }
+  /// Returns the bodies that have lost something.
+  std::vector<std::int32_t> bodies() const;
   /// Takes over a cut. Planes beyond which others leave nothing are forgotten.
   void add(const Solids& solids, const WearCut& cut);
 

@@ -1,15 +1,23 @@
 #include "contact_force/on_device.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "active_contacts/stiffness.h"
 #include "contact_force/expiry.h"
 
 namespace floe {
+namespace {
+
+/// Whether a crush is of a pair before this one in the order of the list.
+bool is_before(const Crush& crush, const Pair& pair) {
+  return std::tie(crush.a, crush.b) < std::tie(pair.a, pair.b);
+}
+
+}  // namespace
 
 std::string missing_on_devices(const Contacts& contacts) {
   const Solids& solids = contacts.solids();
-  if (contacts.wears()) return "contact: plastic_limit with wear";
   if (!solids.carriers().empty()) return "contact of structures, or of bodies of several parts";
   for (const Obstacle& obstacle : solids.obstacles())
     if (obstacle.parts.size() > 1) return "obstacles of several convex parts";
@@ -29,6 +37,7 @@ DeviceContacts on_device(const Contacts& contacts, const Part& part) {
   of.with_patch = options.damping_ratio > 0 || solids.has_friction(options);
   of.plastic_limit = {limit.pressure, limit.area, limit.exponent, limit.least,
                       limit.most,     limit.fast, limit.speed};
+  of.wears = contacts.wears();
   of.periods = options.periods;
   of.slack = contacts.list().slack();
   std::vector<const EdgeGraph*> graphs;
@@ -79,6 +88,7 @@ DevicePairs pairs_on_device(const Contacts& contacts, const Part& part) {
     return is_obstacle(index) ? index : part.local_index(index);
   };
   ContactHistory::Cursor histories(contacts.history());
+  std::span<const Crush> crushed = contacts.crushing().records();  // in list order
   DevicePairs pairs;
   std::int32_t index = 0;
   for (const Pair& pair : contacts.list().pairs()) {
@@ -92,8 +102,41 @@ DevicePairs pairs_on_device(const Contacts& contacts, const Part& part) {
     pairs.states.push_back(
         static_cast<std::uint8_t>((memory != nullptr ? DevicePairs::touching : 0) |
                                   (pair.newly_eligible ? DevicePairs::stress_free : 0)));
+    if (!contacts.wears()) continue;
+    auto& crush = pairs.crushes.emplace_back();
+    while (!crushed.empty() && is_before(crushed[0], pair)) crushed = crushed.subspan(1);
+    if (crushed.empty() || crushed[0].a != pair.a || crushed[0].b != pair.b) continue;
+    const Crush& c = crushed[0];
+    crush = {c.before,     c.plastic,    c.normal_a.x, c.normal_a.y,
+             c.normal_a.z, c.normal_b.x, c.normal_b.y, c.normal_b.z};
+    pairs.states.back() |= DevicePairs::crushed;
   }
   return pairs;
+}
+
+std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part, std::uint8_t state) {
+  const auto global = [&](std::int32_t b) { return is_obstacle(b) ? b : item(part.global, b); };
+  std::vector<Crush> found;
+  for (std::size_t k = 0; k < pairs.crushes.size(); ++k) {
+    if ((pairs.states[k] & state) == 0) continue;
+    const auto& n = pairs.crushes[k];
+    found.push_back({.a = global(pairs.bodies[k][0]),
+                     .b = global(pairs.bodies[k][1]),
+                     .normal_a = {n[2], n[3], n[4]},
+                     .normal_b = {n[5], n[6], n[7]},
+                     .before = n[0],
+                     .plastic = n[1]});
+  }
+  return found;
+}
+
+std::vector<WornPlane> worn_on_device(const Contacts& contacts, const Part& part,
+                                      std::span<const std::int32_t> bodies) {
+  std::vector<WornPlane> planes;
+  for (const std::int32_t body : bodies)
+    for (const HalfSpace& left : contacts.worn().of(body))
+      planes.push_back({part.local_index(body), left});
+  return planes;
 }
 
 std::vector<double> history_rows(const DevicePairs& pairs, const Part& part) {

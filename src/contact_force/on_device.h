@@ -21,6 +21,14 @@ DeviceContacts on_device(const Contacts& contacts, const Part& part);
 /// Returns the pairs of the list, with their histories.
 DevicePairs pairs_on_device(const Contacts& contacts, const Part& part);
 
+/// Returns the crushes of the pairs in a state. A and B are bodies of the model.
+/// \param state  bits of DevicePairs::State
+std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part, std::uint8_t state);
+
+/// Returns all planes of worn bodies, or those of bodies that are given.
+std::vector<WornPlane> worn_on_device(const Contacts& contacts, const Part& part,
+                                      std::span<const std::int32_t> bodies);
+
 /// Returns the rows of ContactHistory for pairs that touch.
 std::vector<double> history_rows(const DevicePairs& pairs, const Part& part);
 

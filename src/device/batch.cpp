@@ -31,6 +31,7 @@ enum class Ask : std::uint32_t {
   get_damage,
   put_pairs,
   get_pairs,
+  put_worn,
   put_obstacles,
   get_obstacles,
   step,
@@ -231,6 +232,9 @@ void Batch::answer(Member& member, Message& message) {
       reply(pairs);
       break;
     }
+    case Ask::put_worn:
+      engine.put_worn(member.run, question.get<std::vector<WornPlane>>());
+      break;
     case Ask::put_obstacles:
       engine.put_obstacles(member.run, question.get<std::vector<double>>());
       break;
@@ -349,6 +353,9 @@ class EngineOfBatch final : public Engine {
   void put_pairs(std::size_t /*run*/, Pairs pairs) override { (void)ask(Ask::put_pairs, pairs); }
   void get_pairs(std::size_t /*run*/, Pairs& pairs) override {
     pairs = ask(Ask::get_pairs).get<Pairs>();
+  }
+  void put_worn(std::size_t /*run*/, std::span<const WornPlane> planes) override {
+    (void)ask(Ask::put_worn, planes);
   }
   void put_obstacles(std::size_t /*run*/, std::span<const double> values) override {
     (void)ask(Ask::put_obstacles, values);

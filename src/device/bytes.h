@@ -39,16 +39,16 @@ void visit_fields(Is<Damage> auto& of, auto&& visit) {
   each(cracks, viscous);
 }
 void visit_fields(Is<Contacts> auto& of, auto&& visit) {
-  auto& [potential, with_patch, damping_ratio, plastic_limit, periods, slack, obstacles,
+  auto& [potential, with_patch, wears, damping_ratio, plastic_limit, periods, slack, obstacles,
          first_vertex, first_plane, vertices, planes, graph, graphs, radius, inverse, rest] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
-  each(potential, with_patch, damping_ratio, plastic_limit, periods, slack, obstacles, first_vertex,
-       first_plane, vertices, planes, graph, graphs, radius, inverse, rest);
+  each(potential, with_patch, wears, damping_ratio, plastic_limit, periods, slack, obstacles,
+       first_vertex, first_plane, vertices, planes, graph, graphs, radius, inverse, rest);
 }
 void visit_fields(Is<Pairs> auto& of, auto&& visit) {
-  auto& [solids, numbers, histories, states] = of;
+  auto& [solids, numbers, histories, states, crushes] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
-  each(solids, numbers, histories, states);
+  each(solids, numbers, histories, states, crushes);
 }
 void visit_fields(Is<Lattice> auto& of, auto&& visit) {
   auto& [bodies, constants, weights, ends, beams, damped, flat, eccentric, held, motions, loaded,
@@ -70,14 +70,19 @@ void visit_fields(Is<Works> auto& of, auto&& visit) {
 
 /// What is copied byte by byte: numbers, arrays of them, structs of numbers alone.
 template <class T>
-concept Plain = std::is_trivially_copyable_v<T> && !std::same_as<T, std::span<const double>>;
+concept Plain = std::is_trivially_copyable_v<T> && !requires(const T& of) {
+  of.subspan(0);
+};
 
 using Bytes = std::vector<std::byte>;
 
 /// Appends values to bytes.
 class Writer {
  public:
-  void operator()(std::span<const double> values) { list(values); }
+  template <class T>
+  void operator()(std::span<const T> values) {
+    list(values);
+  }
   template <class T>
   void operator()(const std::vector<T>& values) {
     list(std::span<const T>(values));

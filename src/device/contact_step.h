@@ -63,7 +63,7 @@ inline constexpr int of_history = PairHistory::numbers;
 /// The contacts of a run.
 struct ContactsOfRun {
   std::int32_t any;  ///< 0: the run has none
-  std::int32_t potential, damps, with_patch;
+  std::int32_t potential, damps, with_patch, wears;
   SharedConstants constants;
   Periods periods;
   double slack;
@@ -85,6 +85,8 @@ struct ContactMemory {
   const EdgeGraph* graphs;
   const double* radius;
   // Bodies.
+  const HalfSpace* worn;                      ///< WornPlane::most per body; null: no run wears
+  const std::int32_t* worn_planes;            ///< number of these
   Soa rest;                                   ///< centroids [m]
   Soa inverse;                                ///< 1/m and 1/I
   Soa listed;                                 ///< displacements and rotations at the last list
@@ -106,6 +108,7 @@ struct ContactMemory {
   std::int32_t* face;                ///< at which they were apart: of B, then of A
   std::uint8_t *states, *touch;      ///< DevicePairs::State; overlaps in this step
   Soa met, history, trials, sums, terms;
+  Soa crushes;  ///< DevicePairs::crush
   const double* accelerations;
 };
 inline constexpr int of_block = most_threads;  ///< pairs of a block
@@ -191,7 +194,7 @@ struct OverlapStep : PairStep<Memory> {
     if (touched || !is_apart(pair, warp, clipper, place)) {
       if (!clipper.overlap(c.graphs[c.graph[a]], c.planes + planes_of_b,
                            c.first_plane[b + 1] - planes_of_b, of.with_patch != 0,
-                           found.met.overlap)) {
+                           further(of.wears != 0, a, b), found.met.overlap)) {
         this->memory.halts.halt(run, this->step, Made::no_room);
         found.met.overlap = {};
       }
@@ -207,6 +210,14 @@ struct OverlapStep : PairStep<Memory> {
 
  private:
   static constexpr std::uint8_t DevicePairsTouching = 1;
+
+  FLOE_KERNEL WarpClipper::Further further(bool wears, std::int32_t a, std::int32_t b) const {
+    const ContactMemory& c = this->memory.contacts;
+    if (!wears) return {};
+    const bool of_b = this->is_body(b);
+    const auto at = [&](std::int64_t body) { return c.worn + WornPlane::most * body; };
+    return {at(a), of_b ? at(b) : nullptr, c.worn_planes[a], of_b ? c.worn_planes[b] : 0};
+  }
 
   /// Whether a face has a gap: first that of the last gap. A face is a plane of B, or, counted on,
   /// of A. Pairs that only an axis between edges separates are clipped, to nothing.
@@ -287,11 +298,13 @@ struct TrialStep : PairStep<Memory> {
     if (!this->is_in_step(pair)) return;
     const ContactMemory& c = this->memory.contacts;
     const std::uint8_t state = c.states[pair];
+    const std::int32_t run = this->run_of(pair), a = c.a[pair], b = c.b[pair];
     if (c.touch[pair] == 0) {
-      c.states[pair] = 0;
+      const bool wears = (state & crushed) != 0;
+      c.states[pair] = wears ? parted : 0;
+      if (wears) this->memory.halts.halt(run, this->step, Made::parted);
       return;
     }
-    const std::int32_t run = this->run_of(pair), a = c.a[pair], b = c.b[pair];
     const ContactsOfRun& of = c.runs[run];
     MetPair met;
     get_struct(c.met, pair, met);
@@ -320,7 +333,10 @@ struct TrialStep : PairStep<Memory> {
     } else {
       find(OverlapLaw(of.constants));
     }
-    c.states[pair] = 1;
+    const bool crushes =
+        of.wears != 0 && take_crush(pair, (state & crushed) != 0, known.plastic, fresh && !touched,
+                                    trial, of_a.axes, of_b.axes);
+    c.states[pair] = static_cast<std::uint8_t>(crushes ? 1 | crushed : 1);
     const ContactForce force = without_dashpots(trial);
     if (of.damps == 0) return keep_contact(c, pair, trial, force, met);
     put_struct(c.trials, pair, trial);
@@ -329,6 +345,24 @@ struct TrialStep : PairStep<Memory> {
   }
 
  private:
+  static constexpr std::uint8_t crushed = 4, parted = 8;  // of DevicePairs::State
+
+  /// Notes what a contact crushes (Crushing::take()). Returns whether it has crushed anything since
+  /// the pair touched.
+  FLOE_KERNEL bool take_crush(std::int64_t pair, bool known, double before, bool fresh,
+                              const ContactTrial& trial, const Triad<double>& axes_a,
+                              const Triad<double>& axes_b) const {
+    const Soa& crushes = this->memory.contacts.crushes;
+    const double after = trial.memory.plastic;
+    if (fresh) before = after;  // it is born with it
+    if (!(after > before)) return known;
+    if (!known) crushes.at(0, pair) = before;
+    crushes.at(1, pair) = after;
+    const Vec3<double> a = axes_a.to_local(trial.normal), b = axes_b.to_local(trial.normal);
+    const double normals[6] = {a.x, a.y, a.z, b.x, b.y, b.z};  // NOLINT: registers
+    for (int n = 0; n < 6; ++n) crushes.at(2 + n, pair) = normals[n];
+    return true;
+  }
   FLOE_KERNEL PairHistory history(std::int64_t pair) const {
     const Soa& h = this->memory.contacts.history;
     PairHistory known;

@@ -34,6 +34,7 @@ class ContactStore {
                              static_cast<std::int32_t>(r));
       runs_.push_back(run_of(lattices[r], r));
       damps_ = damps_ || runs_.back().damps != 0;
+      wears_ = wears_ || runs_.back().wears != 0;
     }
     take_solids(lattices);
     pairs_.resize(runs_.size());
@@ -50,6 +51,9 @@ class ContactStore {
     others_ = Array<double>(6 * bodies_);
     predicted_ = Array<double>(6 * bodies_);
     works_ = Array<double>(3 * bodies_);
+    if (!wears_) return;
+    worn_ = Array<HalfSpace>(WornPlane::most * bodies_);
+    worn_planes_ = Array<std::int32_t>(bodies_);
   }
 
   bool any() const { return !runs_.empty(); }
@@ -91,6 +95,24 @@ class ContactStore {
       for (std::size_t k = 0; k < row.size(); ++k) pairs.histories[k][n] = row[k];
     }
     states_.get(pairs.states, first);
+    if (runs_[run].wears == 0) return;
+    pairs.crushes.resize(row.size());
+    for (std::size_t n = 0; n < DevicePairs::crush; ++n) {
+      crushes_.get(row, n * a_.size() + first);
+      for (std::size_t k = 0; k < row.size(); ++k) pairs.crushes[k][n] = row[k];
+    }
+  }
+  /// Sets all planes of the bodies that these are of.
+  void put_worn(std::size_t run, std::span<const WornPlane> planes) {
+    for (std::size_t k = 0; k < planes.size();) {
+      const std::int32_t body = planes[k].body;
+      std::vector<HalfSpace> left;
+      for (; k < planes.size() && planes[k].body == body; ++k) left.push_back(planes[k].left);
+      if (left.size() > WornPlane::most) throw Failed("a body has too many planes of wear");
+      const auto at = static_cast<std::size_t>(first_body_[run] + body);
+      worn_.put(left, WornPlane::most * at);
+      worn_planes_.put(std::vector<std::int32_t>{static_cast<std::int32_t>(left.size())}, at);
+    }
   }
   void put_obstacles(std::size_t run, std::span<const double> numbers) {
     obstacle_forces_.put(numbers, 6 * static_cast<std::size_t>(first_obstacle_[run]));
@@ -156,6 +178,8 @@ class ContactStore {
             graph_.data(),
             graphs_.data(),
             radius_.data(),
+            worn_.data(),
+            worn_planes_.data(),
             {rest_.data(), bodies},
             {inverse_.data(), bodies},
             {listed_.data(), bodies},
@@ -184,6 +208,7 @@ class ContactStore {
             {trials_.data(), room},
             {sums_.data(), room},
             {terms_.data(), room},
+            {crushes_.data(), room},
             accelerations_.data()};
   }
 
@@ -217,6 +242,7 @@ class ContactStore {
     of.potential = c.potential ? 1 : 0;
     of.damps = c.damping_ratio > 0 ? 1 : 0;
     of.with_patch = c.with_patch ? 1 : 0;
+    of.wears = c.wears ? 1 : 0;
     of.constants.damping_ratio = c.damping_ratio;
     const auto [pressure, area, exponent, least, most, fast, speed] = c.plastic_limit;
     of.constants.plastic_limit = {pressure, area, exponent, least, most, fast, speed};
@@ -294,6 +320,7 @@ class ContactStore {
     };
     constants_ = numbers(of_constants), history_ = numbers(of_history);
     met_ = numbers(numbers_in<MetPair>), terms_ = numbers(numbers_in<PairTerms>);
+    if (wears_) crushes_ = numbers(static_cast<int>(DevicePairs::crush));
     if (damps_)
       trials_ = numbers(numbers_in<ContactTrial>), sums_ = numbers(numbers_in<PairWrench>);
   }
@@ -334,6 +361,7 @@ class ContactStore {
     touch_.put(std::vector<std::uint8_t>(count), first);
     put_rows(constants_, a_.size(), first, pairs.numbers);
     put_rows(history_, a_.size(), first, pairs.histories);
+    if (runs_[run].wears != 0) put_rows(crushes_, a_.size(), first, pairs.crushes);
     put_lists(std::span(of_solid).first(bodies), 2 * first, first_end_, end_count_, ends_,
               static_cast<std::size_t>(first_body_[run]));
     put_lists(std::span(of_solid).subspan(bodies), first, first_of_obstacle_, count_of_obstacle_,
@@ -360,15 +388,16 @@ class ContactStore {
   std::vector<Pairs> pairs_;       ///< per run, as they were put last
   std::vector<std::size_t> room_;  ///< per run, of pairs
   std::size_t bodies_ = 0;
-  bool damps_ = false;
+  bool damps_ = false, wears_ = false;
   Array<ContactsOfRun> runs_here_;
   Array<std::int32_t> first_vertex_, first_plane_, graph_, first_end_, end_count_, ends_,
       run_of_obstacle_, first_of_obstacle_, count_of_obstacle_, pairs_of_obstacle_, run_of_block_,
       a_, b_, face_;
   Array<double> vertices_, radius_, rest_, inverse_, listed_, others_, predicted_, works_, motions_,
       obstacle_forces_, obstacle_works_, constants_, met_, history_, trials_, sums_, terms_,
-      accelerations_;
-  Array<HalfSpace> planes_;
+      accelerations_, crushes_;
+  Array<HalfSpace> planes_, worn_;
+  Array<std::int32_t> worn_planes_;
   Array<EdgeGraph> graphs_;
   Array<std::uint8_t> states_, touch_;
 };

@@ -129,7 +129,7 @@ Water in_order(const DeviceWater& of, const std::vector<std::int32_t>& order) {
 Contacts in_order(const DeviceContacts& of, const Part& part,
                   const std::vector<std::int32_t>& order) {
   Contacts c;
-  c.potential = of.potential, c.with_patch = of.with_patch;
+  c.potential = of.potential, c.with_patch = of.with_patch, c.wears = of.wears;
   c.damping_ratio = of.damping_ratio, c.plastic_limit = of.plastic_limit;
   c.periods = {of.periods.length.x, of.periods.length.y, of.periods.length.z};
   c.slack = of.slack;
@@ -234,6 +234,7 @@ void DeviceStepper::put(const State<Spatial>& state, const WorkParts& works) {
     for (const auto& of : contacts->kept->obstacle_forces())
       forces.insert(forces.end(), of.begin(), of.end());
     of_engine([&] { engine_->put_obstacles(0, forces); });
+    if (contacts->wears) put_worn(contacts->kept->worn());
     list_pairs(state);
   }
   const KeptParts* kept = kept_parts();
@@ -258,7 +259,7 @@ void DeviceStepper::list_pairs(const State<Spatial>& state) {
   const DeviceContacts& contacts = *described_.numbers.contacts;
   pairs_ = contacts.kept->list(state);
   listed_at_ = state.time;
-  Pairs pairs{{}, pairs_.numbers, pairs_.histories, pairs_.states};
+  Pairs pairs{{}, pairs_.numbers, pairs_.histories, pairs_.states, pairs_.crushes};
   const auto solid = [&](std::int32_t index) {
     return index >= 0 ? item(described_.place, index)
                       : static_cast<std::int32_t>(described_.place.size()) - 1 - index;
@@ -267,13 +268,31 @@ void DeviceStepper::list_pairs(const State<Spatial>& state) {
   of_engine([&] { engine_->put_pairs(0, std::move(pairs)); });
 }
 
+void DeviceStepper::put_worn(const std::vector<floe::WornPlane>& planes) {
+  std::vector<WornPlane> ordered;
+  for (const auto& [body, left] : planes) ordered.push_back({item(described_.place, body), left});
+  if (!ordered.empty()) of_engine([&] { engine_->put_worn(0, ordered); });
+}
+
+/// Wears bodies off by the contacts that have parted in the last step.
+void DeviceStepper::wear_bodies() {
+  get_pairs();
+  put_worn(described_.numbers.contacts->kept->wear(pairs_));
+}
+
+/// Brings histories and states of the pairs.
+void DeviceStepper::get_pairs() {
+  Pairs now;
+  of_engine([&] { engine_->get_pairs(0, now); });
+  pairs_.histories = std::move(now.histories);
+  pairs_.states = std::move(now.states);
+  pairs_.crushes = std::move(now.crushes);
+}
+
 /// Hands what the engine has of contacts back to the processor.
 void DeviceStepper::keep_contacts() {
   const DeviceContacts& contacts = *described_.numbers.contacts;
-  Pairs now;
-  of_engine([&] { engine_->get_pairs(0, now); });
-  pairs_.histories = now.histories;
-  pairs_.states = now.states;
+  get_pairs();
   contacts.kept->take(pairs_, steps_of_list_, last_dt_);
   steps_of_list_ = 0;
   std::vector<double> numbers(6 * contacts.obstacles);
@@ -394,6 +413,7 @@ void DeviceStepper::make_steps() {
     const double time = item(times_, made.steps - 1) + steps_.dt;
     drop(made.steps);
     if (!described_.numbers.contacts) continue;
+    if ((made.why & Made::parted) != 0) wear_bodies();
     if ((made.why & Made::beam_broke) != 0) release_broken();
     if ((made.why & (Made::list_expired | Made::beam_broke)) != 0) renew_pairs(time);
   }

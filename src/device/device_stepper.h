@@ -81,6 +81,9 @@ class DeviceStepper {
   void get_records(State<Spatial>& state);
   void list_pairs(const State<Spatial>& state);
   void keep_contacts();
+  void get_pairs();
+  void put_worn(const std::vector<floe::WornPlane>& planes);
+  void wear_bodies();
   void renew_pairs(double time);
   void release_broken();
   void note_broken(std::span<const double> cracks, std::vector<std::array<std::int32_t, 2>>& fresh);

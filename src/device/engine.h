@@ -67,7 +67,7 @@ struct Damage {
 
 /// Contacts of a lattice: shapes of its bodies, then of obstacles, and the law (DeviceContacts).
 struct Contacts {
-  bool potential = false, with_patch = false;
+  bool potential = false, with_patch = false, wears = false;
   double damping_ratio = 0;
   std::array<double, 7> plastic_limit{};
   std::array<double, 3> periods{};  ///< [m]; 0: none
@@ -89,6 +89,13 @@ struct Pairs {
   std::vector<std::array<double, 6>> numbers;    ///< as DevicePairs
   std::vector<std::array<double, 7>> histories;  ///< likewise
   std::vector<std::uint8_t> states;              ///< likewise
+  std::vector<std::array<double, 8>> crushes{};  ///< likewise
+};
+/// A plane beyond which a body of the engine has nothing left, in the frame of the body.
+struct WornPlane {
+  static constexpr std::int32_t most = 8;  ///< of a body
+  std::int32_t body = 0;
+  HalfSpace left;
 };
 
 /// One run's lattice for an engine. Bodies are in the engine's order, in which those of a tile
@@ -157,7 +164,8 @@ struct Made {
   enum Why : std::uint32_t {
     beam_broke = 1,
     list_expired = 2,  ///< vertices have moved by the slack of the list of pairs
-    no_room = 4        ///< an overlap has more corners than an engine has room for
+    no_room = 4,       ///< an overlap has more corners than an engine has room for
+    parted = 8         ///< a contact that has crushed ice has parted, which wears a body off
   };
   int steps = 0;
   std::uint32_t why = 0;  ///< 0: it did not halt
@@ -202,6 +210,8 @@ class Engine {
   /// Sets the pairs of a run at its present state; returns their histories and states of now.
   virtual void put_pairs(std::size_t run, Pairs pairs) = 0;
   virtual void get_pairs(std::size_t run, Pairs& pairs) = 0;
+  /// Sets all planes of the bodies that these are of.
+  virtual void put_worn(std::size_t run, std::span<const WornPlane> planes) = 0;
   /// Sets, or returns, largest forces and impulses of the obstacles of a run, six numbers each.
   virtual void put_obstacles(std::size_t run, std::span<const double> numbers) = 0;
   virtual void get_obstacles(std::size_t run, std::span<double> numbers) = 0;

@@ -128,6 +128,10 @@ class TileEngine final : public Engine {
     queue_.wait();
     contacts_.get_pairs(run, pairs);
   }
+  void put_worn(std::size_t run, std::span<const WornPlane> planes) override {
+    queue_.wait();
+    contacts_.put_worn(run, planes);
+  }
   void put_obstacles(std::size_t run, std::span<const double> numbers) override {
     queue_.wait();
     contacts_.put_obstacles(run, numbers);

@@ -43,6 +43,12 @@ FLOE_KERNEL inline int bit_number(std::uint64_t mask, int n) {
 /// Clips A, which is placed in B's frame.
 class WarpClipper {
  public:
+  /// Planes beside those of the shapes: A's in its frame, B's.
+  struct Further {
+    const HalfSpace *a, *b;
+    int of_a, of_b;
+  };
+
   FLOE_KERNEL WarpClipper(const Warp& warp, ClipRoom& room) : warp_(warp), room_(room) {}
 
   /// Places A. \param vertices  x, y, z of each \param axes, x  of A's frame in B's
@@ -50,6 +56,7 @@ class WarpClipper {
                          const Vec3<double>& x) {
     vertices_ = number;
     origin_ = x;
+    axes_ = axes;
     warp_.each([&](int lane) {
       if (lane >= number) return;
       const double* v = vertices + 3 * lane;
@@ -71,18 +78,25 @@ class WarpClipper {
 
   /// Sets the overlap of A and B, unless there is none. Returns false if at some cut there are more
   /// vertices or edges than there is room for.
-  /// \param planes  B's \param found  zeros
+  /// \param planes   B's
+  /// \param further  what bounds A and B beside their shapes
+  /// \param found    zeros
   FLOE_KERNEL bool overlap(const EdgeGraph& a, const HalfSpace* planes, int number, bool with_patch,
-                           Overlap& found) {
+                           const Further& further, Overlap& found) {
     const int first = first_plane(planes, number);
     const std::uint64_t placed = inside(planes[first], low) & first_bits(vertices_);
     start(a, placed);
-    if (!cut(of_a_)) return false;
-    for (int k = 0; k < number && alive_ != 0; ++k) {
-      if (k == first) continue;
-      const std::uint64_t in = inside(planes[k], 0) & alive_;
-      if (in != alive_ && !cut(in)) return false;
-    }
+    if (!cut(of_a_, true)) return false;
+    const auto clips = [&](const HalfSpace& plane, bool on_b) {
+      const std::uint64_t in = inside(plane, 0) & alive_;
+      return in == alive_ || cut(in, on_b);
+    };
+    for (int k = 0; k < number && alive_ != 0; ++k)
+      if (k != first && !clips(planes[k], true)) return false;
+    for (int k = 0; k < further.of_b && alive_ != 0; ++k)
+      if (!clips(further.b[k], true)) return false;
+    for (int k = 0; k < further.of_a && alive_ != 0; ++k)
+      if (!clips(floe::placed(further.a[k], axes_, origin_), false)) return false;
     if (alive_ != 0) integrate(with_patch, found);
     return true;
   }
@@ -143,7 +157,8 @@ class WarpClipper {
   }
 
   /// Clips by the plane from which the distances are. Returns false if there is no room.
-  FLOE_KERNEL bool cut(std::uint64_t inside) {
+  /// \param on_b  whether the plane is B's
+  FLOE_KERNEL bool cut(std::uint64_t inside, bool on_b) {
     // An edge with both ends outside is in two stars, one that crosses the plane is in one.
     std::uint64_t crossing = 0, outside = 0;
     for (std::uint64_t left = alive_ & ~inside; left != 0; left &= left - 1) {
@@ -156,7 +171,7 @@ class WarpClipper {
         number > most_edges - count_bits(edges_))
       return false;
     add_vertices(crossing, inside);
-    add_edges(crossing);
+    add_edges(crossing, on_b);
     warp_.each([&](int lane) {
       if (lane >= number) return;
       const int u = room_.from[lane], v = room_.to[lane], w = room_.made[lane];
@@ -202,8 +217,8 @@ class WarpClipper {
   }
 
   /// Adds the edges along the plane: one for each crossing half-edge that leaves, in its face, and
-  /// its twin in the cap. A cap is on B.
-  FLOE_KERNEL void add_edges(std::uint64_t crossing) {
+  /// its twin in the cap.
+  FLOE_KERNEL void add_edges(std::uint64_t crossing, bool on_b) {
     for_crossing(crossing, [&](int e, int k) {
       const int w = room_.made[k];
       const int leaves = room_.origin[2 * e] == w ? 2 * e + 1 : 2 * e;
@@ -216,7 +231,7 @@ class WarpClipper {
       room_.next[leaves] = static_cast<std::uint8_t>(in_face);
       room_.next[in_face] = static_cast<std::uint8_t>(enters);
       room_.on_b[in_face] = room_.on_b[leaves];
-      room_.on_b[in_cap] = 1;
+      room_.on_b[in_cap] = on_b ? 1 : 0;
       room_.arrives[e] = static_cast<std::uint8_t>(in_cap);
       room_.departs[enters / 2] = static_cast<std::uint8_t>(in_cap);
     });
@@ -341,7 +356,8 @@ class WarpClipper {
   Warp warp_;
   ClipRoom& room_;
   int vertices_ = 0;
-  Vec3<double> origin_{};  ///< of A's frame in B's [m]
+  Triad<double> axes_{};   ///< of A's frame in B's
+  Vec3<double> origin_{};  ///< likewise [m]
   std::uint64_t alive_ = 0, edges_ = 0,
                 of_a_ = 0;  ///< masks of slots, edges, slots of A's vertices
 };

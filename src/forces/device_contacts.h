@@ -23,13 +23,24 @@ struct DevicePairs {
   static constexpr std::size_t constants = 6;
   /// Numbers of its history, as PairHistory::as_numbers().
   static constexpr std::size_t history = 7;
-  /// What a pair is at the end of the last step, in bits.
-  enum State : std::uint8_t { touching = 1, stress_free = 2 };
+  /// Numbers of what it has crushed where bodies wear: V_p before and now [m^3], the normal when it
+  /// last crushed in the frames of A and B.
+  static constexpr std::size_t crush = 8;
+  /// What a pair is at the end of the last step, in bits. One that has crushed ice and parted in
+  /// this step wears a body off.
+  enum State : std::uint8_t { touching = 1, stress_free = 2, crushed = 4, parted = 8 };
 
   std::vector<std::array<std::int32_t, 2>> bodies;  ///< A, B; -1 - k: obstacle k
   std::vector<std::array<double, constants>> numbers;
   std::vector<std::array<double, history>> histories;  ///< of pairs that touch
   std::vector<std::uint8_t> states;
+  std::vector<std::array<double, crush>> crushes;  ///< of pairs that have crushed; empty: no wear
+};
+
+/// A plane beyond which a body has nothing left, in the frame of the body.
+struct WornPlane {
+  std::int32_t body = 0;
+  HalfSpace left;
 };
 
 /// Contacts as they are kept on the processor.
@@ -41,6 +52,10 @@ class KeptContacts {
   /// \param pairs  of list(), with histories and states of now
   /// \param steps  number of these steps \param dt  their length [s]
   virtual void take(const DevicePairs& pairs, std::int64_t steps, double dt) = 0;
+  /// Returns all planes of worn bodies, body by body.
+  virtual std::vector<WornPlane> worn() const = 0;
+  /// Wears bodies off by the pairs that have parted; returns all planes of these bodies.
+  virtual std::vector<WornPlane> wear(const DevicePairs& pairs) = 0;
   /// Per obstacle: the largest force so far and the integral of the force [N, N s].
   virtual std::vector<std::array<double, 6>> obstacle_forces() const = 0;
   virtual void set_obstacle_forces(std::span<const std::array<double, 6>> forces) = 0;
@@ -58,6 +73,7 @@ struct DeviceContacts {
   bool potential = false;    ///< the law: potential; else overlap
   double damping_ratio = 0;  ///< zeta
   bool with_patch = false;   ///< the law asks for integrals over the area
+  bool wears = false;        ///< bodies lose what contacts crush
   /// sigma_p: pressure, area, exponent, least, most, fast, speed, as PlasticLimit.
   std::array<double, 7> plastic_limit{};
   Periods periods;

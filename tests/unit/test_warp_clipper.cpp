@@ -28,14 +28,15 @@ struct Bodies {
     }
   }
   std::optional<Overlap> by_warp(const Quat<double>& q, const Vec3<double>& x,
-                                 bool with_patch = true) const {
+                                 bool with_patch = true, WarpClipper::Further further = {}) const {
     const std::optional<EdgeGraph> graph = edge_graph(shapes, 0);
     if (!graph) return {};
     ClipRoom room{};
     WarpClipper clipper(Warp{}, room);
     clipper.place(vertices.data(), graph->vertices, triad(q), x);
     Overlap found;
-    if (!clipper.overlap(*graph, planes.data(), static_cast<int>(planes.size()), with_patch, found))
+    if (!clipper.overlap(*graph, planes.data(), static_cast<int>(planes.size()), with_patch,
+                         further, found))
       return {};
     return found;
   }
@@ -89,6 +90,43 @@ TEST(WarpClipper, AgreesWithGraphClipper) {
   }
   EXPECT_GT(overlaps, 2000);
   EXPECT_LT(full, 600);
+}
+
+/// Bodies of which several corners are cut off: A's by planes in its frame, which bound the overlap
+/// without being on B, B's by planes on B.
+TEST(WarpClipper, AgreesWhereBodiesAreWorn) {
+  test::Random random(33);
+  Shapes shapes;
+  test::append_box(shapes, 1, 1, 1);
+  test::append_box(shapes, 1.2, 1, 0.8);
+  const Bodies bodies(std::move(shapes));
+  int cut_on_a = 0, cut_on_b = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Quat<double> q = random.rotation(random.uniform(0, 3));
+    const Vec3<double> x = random.vector(1);
+    std::vector<HalfSpace> of_a, of_b, placed_of_a;
+    for (int n = 0; n < k % 3; ++n) of_a.push_back({random.direction(), random.uniform(0.2, 0.6)});
+    for (int n = 0; n < k % 4; ++n) of_b.push_back({random.direction(), random.uniform(0.2, 0.6)});
+    for (const HalfSpace& plane : of_a) placed_of_a.push_back(placed(plane, triad(q), x));
+    GraphClipper clipper;
+    CutRecord record;
+    const auto r =
+        test::GraphBody(bodies.shapes, 0)
+            .overlap(clipper, q, x, bodies.planes, record, true, {.a = placed_of_a, .b = of_b});
+    const auto o = bodies.by_warp(
+        q, x, true,
+        {of_a.data(), of_b.data(), static_cast<int>(of_a.size()), static_cast<int>(of_b.size())});
+    ASSERT_EQ(o.has_value(), r.has_value());
+    if (!o) continue;
+    ASSERT_EQ(o->volume > 0, r->volume > 0) << k;
+    expect_agrees(*o, *r, 1e-13);
+    if (HasFailure()) FAIL() << "pair " << k;
+    const Overlap whole = *bodies.by_warp(q, x);
+    if (of_b.empty() && o->volume > 0 && o->volume < 0.9 * whole.volume) ++cut_on_a;
+    if (of_a.empty() && o->volume > 0 && o->volume < 0.9 * whole.volume) ++cut_on_b;
+  }
+  EXPECT_GT(cut_on_a, 50);
+  EXPECT_GT(cut_on_b, 50);
 }
 
 /// Boxes of which faces lie in faces and edges on edges, exactly or but for rounding.
