@@ -18,11 +18,14 @@ bool is_before(const Crush& crush, const Pair& pair) {
 
 std::string missing_on_devices(const Contacts& contacts) {
   const Solids& solids = contacts.solids();
-  if (!solids.carriers().empty()) return "contact of structures, or of bodies of several parts";
   for (const Obstacle& obstacle : solids.obstacles())
-    if (obstacle.parts.size() > 1) return "obstacles of several convex parts";
+    if (obstacle.parts.size() > 1)
+      return obstacle.is_ice ? "bodies of several convex parts"
+                             : "obstacles of several convex parts";
+  if (solids.obstacles_touch())
+    return "contact of structures with other obstacles ('touches: ice' is without)";
   for (std::int32_t b = 0; b < solids.bodies(); ++b)
-    if (solids.graph(b) == nullptr)
+    if (solids.graph(b) == nullptr && !solids.carries(b))
       return "contact of bodies with more than 32 vertices or 64 edges";
   return {};
 }
@@ -50,15 +53,19 @@ DeviceContacts on_device(const Contacts& contacts, const Part& part) {
     s.radius = solids.radius(index);
     if (is_obstacle(index)) return s;
     const EdgeGraph* graph = solids.graph(index);  // most bodies share one with others
-    const auto known = std::find(graphs.begin(), graphs.end(), graph);
-    s.graph = static_cast<std::int32_t>(known - graphs.begin());
-    if (known == graphs.end()) graphs.push_back(graph), of.graphs.push_back(*graph);
+    if (graph != nullptr) {                        // a body that carries obstacles touches as these
+      const auto known = std::find(graphs.begin(), graphs.end(), graph);
+      s.graph = static_cast<std::int32_t>(known - graphs.begin());
+      if (known == graphs.end()) graphs.push_back(graph), of.graphs.push_back(*graph);
+    }
     const InverseInertia inverse = solids.inverse_inertia(index);
     s.inverse = {inverse.mass, inverse.moments.x, inverse.moments.y, inverse.moments.z};
     return s;
   };
   for (std::int32_t b = 0; b < part.owned; ++b) of.solids.push_back(solid(item(part.global, b)));
   of.obstacles = solids.obstacles().size();
+  for (const Obstacle& o : solids.obstacles())
+    of.carriers.push_back(o.is_carried() ? part.local_index(o.body) : -1);
   for (std::size_t k = 0; k < of.obstacles; ++k) of.solids.push_back(solid(part_index(k)));
   of.obstacle = [&solids](std::size_t k, double time, double before, double dt) {
     const Obstacle& obstacle = solids.obstacles()[k];

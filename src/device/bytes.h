@@ -40,10 +40,11 @@ void visit_fields(Is<Damage> auto& of, auto&& visit) {
 }
 void visit_fields(Is<Contacts> auto& of, auto&& visit) {
   auto& [potential, with_patch, wears, damping_ratio, plastic_limit, periods, slack, obstacles,
-         first_vertex, first_plane, vertices, planes, graph, graphs, radius, inverse, rest] = of;
+         first_vertex, first_plane, vertices, planes, graph, graphs, radius, carriers, inverse,
+         rest] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
   each(potential, with_patch, wears, damping_ratio, plastic_limit, periods, slack, obstacles,
-       first_vertex, first_plane, vertices, planes, graph, graphs, radius, inverse, rest);
+       first_vertex, first_plane, vertices, planes, graph, graphs, radius, carriers, inverse, rest);
 }
 void visit_fields(Is<Pairs> auto& of, auto&& visit) {
   auto& [solids, numbers, histories, states, crushes] = of;

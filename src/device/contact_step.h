@@ -98,6 +98,7 @@ struct ContactMemory {
   // Obstacles.
   const double* motions;  ///< of the queued steps
   const std::int32_t* run_of_obstacle;
+  const std::int32_t* carriers;  ///< bodies; -1: none
   const std::int32_t *first_of_obstacle, *count_of_obstacle, *pairs_of_obstacle;
   double* obstacle_forces;  ///< six per obstacle
   double* obstacle_works;   ///< four per obstacle
@@ -134,6 +135,10 @@ struct PairStep {
            !memory.halts.stands(run, step);
   }
   FLOE_KERNEL bool is_body(std::int32_t solid) const { return solid < memory.contacts.bodies; }
+  /// Returns a body itself, the body that carries an obstacle, or -1.
+  FLOE_KERNEL std::int32_t body_of(std::int32_t solid) const {
+    return is_body(solid) ? solid : memory.contacts.carriers[solid - memory.contacts.bodies];
+  }
   FLOE_KERNEL double before(std::int32_t run) const {
     return step == 0 ? memory.runs[run].before : memory.runs[run].dt;
   }
@@ -146,7 +151,8 @@ struct PairStep {
   FLOE_KERNEL static Vec3<double> vector(const double* from) { return {from[0], from[1], from[2]}; }
 
   FLOE_KERNEL Placed placed(std::int32_t run, std::int32_t solid) const {
-    if (!is_body(solid)) {
+    const std::int64_t body = body_of(solid);
+    if (body < 0) {
       const double* m = motion_of(run, solid);
       return {vector(m),
               {vector(m + 3), vector(m + 6), vector(m + 9)},
@@ -155,9 +161,9 @@ struct PairStep {
               0};
     }
     const Soa& r = memory.records[step % 2];
-    return {memory.contacts.rest.vector(0, solid) + r.vector(0, solid),
-            triad(product(r.quaternion(3, solid), memory.bodies.quaternion(4, solid))),
-            r.vector(7, solid), r.vector(10, solid), 0};
+    return {memory.contacts.rest.vector(0, body) + r.vector(0, body),
+            triad(product(r.quaternion(3, body), memory.bodies.quaternion(4, body))),
+            r.vector(7, body), r.vector(10, body), 0};
   }
 };
 
@@ -316,7 +322,8 @@ struct TrialStep : PairStep<Memory> {
     const PairHistory known = touched ? history(pair) : PairHistory{};
     Mobility mobility;
     mobility.a = mobility_of(c.inverse, a, of_a.axes);
-    if (this->is_body(b)) mobility.b = mobility_of(c.inverse, b, of_b.axes);
+    const std::int32_t moves = this->body_of(b);
+    if (moves >= 0) mobility.b = mobility_of(c.inverse, moves, of_b.axes);
     mobility.apart = met.apart;
     const RelativeMotion motion =
         relative_motion(BodyVelocity{of_a.velocity, of_a.spin},
@@ -395,9 +402,9 @@ struct DashpotStep : PairStep<Memory> {
 
  private:
   FLOE_KERNEL BodyVelocity predicted(std::int32_t run, std::int32_t solid) const {
-    if (this->is_body(solid)) {
+    if (const std::int32_t body = this->body_of(solid); body >= 0) {
       const Soa& p = this->memory.contacts.predicted;
-      return {p.vector(0, solid), p.vector(3, solid)};
+      return {p.vector(0, body), p.vector(3, body)};
     }
     const double* m = this->motion_of(run, solid);
     return {this->vector(m + 18), this->vector(m + 21)};
@@ -467,6 +474,7 @@ struct ObstacleStep : PairStep<Memory> {
     if (dot(force, force) > dot(this->vector(kept), this->vector(kept)))
       for (int n = 0; n < 3; ++n) kept[n] = f[n];
     for (int n = 0; n < 3; ++n) kept[3 + n] += dt * f[n];
+    if (c.carriers[obstacle] >= 0) return;  // its body has these works
     const double* m = this->motion_of(run, c.bodies + obstacle);
     const Vec3<double> v = this->vector(m + 12), w = this->vector(m + 15),
                        v_next = this->vector(m + 24), w_next = this->vector(m + 27);

@@ -26,12 +26,16 @@ class ContactStore {
       return;
     first_body_ = first_body;
     bodies_ = static_cast<std::size_t>(first_body.back());
-    std::vector<std::int32_t> run_of_obstacle;
+    std::vector<std::int32_t> run_of_obstacle, carriers;
     for (std::size_t r = 0; r < lattices.size(); ++r) {
       const std::int32_t obstacles = lattices[r].contacts ? lattices[r].contacts->obstacles : 0;
       first_obstacle_.push_back(first_obstacle_.back() + obstacles);
       run_of_obstacle.insert(run_of_obstacle.end(), static_cast<std::size_t>(obstacles),
                              static_cast<std::int32_t>(r));
+      for (std::int32_t k = 0; k < obstacles; ++k) {
+        const std::int32_t body = lattices[r].contacts->carriers[static_cast<std::size_t>(k)];
+        carriers.push_back(body < 0 ? -1 : first_body[r] + body);
+      }
       runs_.push_back(run_of(lattices[r], r));
       damps_ = damps_ || runs_.back().damps != 0;
       wears_ = wears_ || runs_.back().wears != 0;
@@ -41,6 +45,8 @@ class ContactStore {
     room_.assign(runs_.size(), 0);
     runs_here_ = Array<ContactsOfRun>(runs_.size());
     run_of_obstacle_ = keep(run_of_obstacle);
+    carriers_here_ = keep(carriers);
+    carriers_ = std::move(carriers);
     first_of_obstacle_ = Array<std::int32_t>(obstacles());
     count_of_obstacle_ = Array<std::int32_t>(obstacles());
     obstacle_forces_ = Array<double>(6 * obstacles());
@@ -191,6 +197,7 @@ class ContactStore {
             ends_.data(),
             motions_.data(),
             run_of_obstacle_.data(),
+            carriers_here_.data(),
             first_of_obstacle_.data(),
             count_of_obstacle_.data(),
             pairs_of_obstacle_.data(),
@@ -232,6 +239,12 @@ class ContactStore {
     return static_cast<std::size_t>(first_obstacle_[run + 1] - first_obstacle_[run]);
   }
 
+  /// The body of a run that carries an obstacle, or -1. \param solid  as in Pairs
+  std::int32_t carrier(std::size_t run, std::int32_t solid) const {
+    const auto k = static_cast<std::size_t>(solid) - bodies_of(run);
+    const std::int32_t body = carriers_[static_cast<std::size_t>(first_obstacle_[run]) + k];
+    return body < 0 ? -1 : body - first_body_[run];
+  }
   ContactsOfRun run_of(const Lattice& lattice, std::size_t run) const {
     ContactsOfRun of{};
     of.first_obstacle = first_obstacle_[run];
@@ -352,7 +365,9 @@ class ContactStore {
                           : static_cast<std::int32_t>(bodies_) + first_obstacle_[run] + of_b -
                                 static_cast<std::int32_t>(bodies));
       of_solid[static_cast<std::size_t>(of_a)].push_back(2 * place);
-      of_solid[static_cast<std::size_t>(of_b)].push_back(on_body ? 2 * place + 1 : place);
+      const std::int32_t body_of_b = on_body ? of_b : carrier(run, of_b);
+      if (body_of_b >= 0) of_solid[static_cast<std::size_t>(body_of_b)].push_back(2 * place + 1);
+      if (!on_body) of_solid[static_cast<std::size_t>(of_b)].push_back(place);
     }
     a_.put(a, first);
     b_.put(b, first);
@@ -385,14 +400,15 @@ class ContactStore {
 
   std::vector<ContactsOfRun> runs_;
   std::vector<std::int32_t> first_body_{0}, first_obstacle_{0};
-  std::vector<Pairs> pairs_;       ///< per run, as they were put last
-  std::vector<std::size_t> room_;  ///< per run, of pairs
+  std::vector<std::int32_t> carriers_;  ///< per obstacle of all runs: a body of all, or -1
+  std::vector<Pairs> pairs_;            ///< per run, as they were put last
+  std::vector<std::size_t> room_;       ///< per run, of pairs
   std::size_t bodies_ = 0;
   bool damps_ = false, wears_ = false;
   Array<ContactsOfRun> runs_here_;
   Array<std::int32_t> first_vertex_, first_plane_, graph_, first_end_, end_count_, ends_,
-      run_of_obstacle_, first_of_obstacle_, count_of_obstacle_, pairs_of_obstacle_, run_of_block_,
-      a_, b_, face_;
+      run_of_obstacle_, carriers_here_, first_of_obstacle_, count_of_obstacle_, pairs_of_obstacle_,
+      run_of_block_, a_, b_, face_;
   Array<double> vertices_, radius_, rest_, inverse_, listed_, others_, predicted_, works_, motions_,
       obstacle_forces_, obstacle_works_, constants_, met_, history_, trials_, sums_, terms_,
       accelerations_, crushes_;

@@ -13,7 +13,7 @@ namespace {
 /// What the engines have, for messages.
 constexpr auto they_have =
     "it has beams, gravity, loads, boundaries, buoyancy and drag of bodies in water without waves, "
-    "and contact of convex bodies with each other and with convex obstacles";
+    "and contact of convex bodies with each other and with convex obstacles and structures";
 
 /// Returns what a user calls a force that a back end does not have.
 std::string in_words(std::string_view force, const Model<Spatial>& model) {
@@ -127,7 +127,7 @@ Water in_order(const DeviceWater& of, const std::vector<std::int32_t>& order) {
 }
 
 Contacts in_order(const DeviceContacts& of, const Part& part,
-                  const std::vector<std::int32_t>& order) {
+                  const std::vector<std::int32_t>& order, const std::vector<std::int32_t>& place) {
   Contacts c;
   c.potential = of.potential, c.with_patch = of.with_patch, c.wears = of.wears;
   c.damping_ratio = of.damping_ratio, c.plastic_limit = of.plastic_limit;
@@ -150,6 +150,7 @@ Contacts in_order(const DeviceContacts& of, const Part& part,
     c.rest.push_back({x.x, x.y, x.z});
   }
   for (std::size_t k = 0; k < of.obstacles; ++k) add(of.solids[order.size() + k]);
+  for (const std::int32_t b : of.carriers) c.carriers.push_back(b < 0 ? -1 : item(place, b));
   return c;
 }
 
@@ -195,7 +196,8 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
   if (numbers.water) lattice.water = in_order(*numbers.water, described.order);
   if (const auto& b = numbers.breaking)
     lattice.breaking = Breaking{b->general, b->crushes, b->beams, b->limits};
-  if (numbers.contacts) lattice.contacts = in_order(*numbers.contacts, part, described.order);
+  if (numbers.contacts)
+    lattice.contacts = in_order(*numbers.contacts, part, described.order, place);
   lattice.halts_at_breaks = numbers.contacts && numbers.breaking;
   described.place = std::move(place);
   return described;

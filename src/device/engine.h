@@ -80,6 +80,7 @@ struct Contacts {
   std::vector<std::int32_t> graph;
   std::vector<EdgeGraph> graphs;
   std::vector<double> radius;
+  std::vector<std::int32_t> carriers;          ///< per obstacle: the body that carries it, or -1
   std::vector<std::array<double, 4>> inverse;  ///< per body
   std::vector<std::array<double, 3>> rest;     ///< per body: centroid at rest [m]
 };

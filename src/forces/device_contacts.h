@@ -93,6 +93,7 @@ struct DeviceContacts {
   std::vector<Solid> solids;
   std::vector<EdgeGraph> graphs;
   std::size_t obstacles = 0;
+  std::vector<std::int32_t> carriers;  ///< per obstacle: the body that carries it; -1: none
 
   /// Numbers of an obstacle in a step: origin and axes of its frame at its start; velocity and spin
   /// half of the step before earlier, at its start, and half of the step later.

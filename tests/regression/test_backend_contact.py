@@ -49,6 +49,30 @@ initial: {names: [drift], drift: {set: west, velocity: [0.5, 0, 0]}}
 time: {end: 0.1}
 output: {history: 0.005}
 """
+# A floe that drifts against a leg on springs, and a block that comes from behind and hits it.
+LEG = """integrator: explicit
+forces: [beam, fracture, gravity, buoyancy, drag, contact]
+sheet: {length: 8, width: 4, thickness: 0.5, element_size: 1.2, iterations: 5}
+beam: {damping_ratio: 0.1}
+fracture: {tensile_strength: 2e5, shear_strength: 2e5, energy: 15}
+water: {drag_linear: 200, drag_coefficient: 1}
+contact: {young: 1e8, friction: 0.2, restitution: 0.3, plastic_limit: 5e5}
+obstacle:
+  names: [leg, block]
+  leg:
+    shape: box
+    centre: [4.55, 0.2, 0.1]
+    size: [1, 0.8, 2]
+    mass: 3000
+    touches: ice
+    support_stiffness: [4e5, 4e5, 1e6, 2e6, 2e6, 2e6]
+    support_damping_ratio: 0.05
+  block: {shape: box, centre: [-4.7, 0.3, 0], size: [1.2, 1, 0.4], mass: 440, touches: ice}
+initial: {names: [drift, kick], drift: {set: all, velocity: [0.8, 0, 0]},
+          kick: {set: block, velocity: [2, 0, 0]}}
+time: {end: 0.8}
+output: {history: 0.01}
+"""
 # A sheet in one piece that drifts against a wall: the step is shorter once it is near.
 NEARING = """integrator: explicit
 forces: [beam, gravity, buoyancy, contact]
@@ -134,6 +158,16 @@ class BackendContact(RunningTest):
             self.alike(names, cpu, self.history(backend)[1], 1e-6)
             self.assertGreater(cpu[:, names.index("contacts")].max(), 1)
 
+    def test_structures_on_springs_and_adrift(self):
+        names, cpu = self.runs(LEG)
+        column = {name: cpu[:, k] for k, name in enumerate(names)}
+        for name in ("leg_force_x", "block_force_x", "energy_crushing", "energy_fracture"):
+            self.assertGreater(np.abs(column[name]).max(), 0, name)
+        for backend in DEVICES:
+            others, device = self.history(backend)
+            self.assertEqual(names, others)
+            self.alike(names, cpu, device, 1e-6)
+
     def test_a_sheet_comes_near_a_wall(self):
         """The step becomes that of the processor, at the same time."""
         names, cpu = self.runs(NEARING)
@@ -165,9 +199,13 @@ class BackendContact(RunningTest):
                 self.alike(names, straight, rows, 1e-10 if first == then else 1e-5)
 
     def test_what_is_refused(self):
-        self.write(HEAP.replace("fields: 0.5", "fields: 0.5, pressure: 0.5"))
-        self.assertIn("backend: loop has no output: pressure yet",
-                      self.refused("-backend", "loop"))
+        for scene, said in (
+                (HEAP.replace("fields: 0.5", "fields: 0.5, pressure: 0.5"), "output: pressure"),
+                (LEG.replace("touches: ice", "touches: all"),
+                 "contact of structures with other obstacles ('touches: ice' is without)")):
+            with self.subTest(said):
+                self.write(scene)
+                self.assertIn(f"backend: loop has no {said} yet", self.refused("-backend", "loop"))
 
 
 if __name__ == "__main__":
