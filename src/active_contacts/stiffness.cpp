@@ -14,21 +14,18 @@ PairConstants pair_constants(const Solids& solids, const ContactOptions& options
   const double half_space = solids.is_half_space(pair.b) ? 1.0 : 0.0;
   const bool of_ice = solids.is_ice(pair.a), on_ice = solids.is_ice(pair.b);
   if (of_ice != on_ice) {  // ice on an obstacle
-    const double size = solids.size(of_ice ? pair.a : pair.b);
-    return {.stiffness = options.young / (0.5 * size),
-            .area = size * size,
-            .friction = friction_of(solids.obstacle(of_ice ? pair.b : pair.a)),
-            .half_space = half_space};
+    PairConstants of = ice_on_obstacle(options.young, solids.size(of_ice ? pair.a : pair.b));
+    of.friction = friction_of(solids.obstacle(of_ice ? pair.b : pair.a));
+    of.half_space = half_space;
+    return of;
   }
-  const double size = solids.size(pair.a), other_size = solids.size(pair.b);
-  const double smaller = other_size > 0 ? std::min(size, other_size) : size;
   const double young = pair.broken && options.young_broken ? *options.young_broken : options.young;
-  return {.stiffness = young / (0.5 * (size + other_size)),
-          .area = smaller * smaller,
-          .friction = of_ice ? friction_of(options)
-                             : std::max(friction_of(solids.obstacle(pair.a)),
-                                        friction_of(solids.obstacle(pair.b))),
-          .half_space = half_space};
+  PairConstants of = ice_on_ice(young, solids.size(pair.a), solids.size(pair.b));
+  of.friction = of_ice ? friction_of(options)
+                       : std::max(friction_of(solids.obstacle(pair.a)),
+                                  friction_of(solids.obstacle(pair.b)));
+  of.half_space = half_space;
+  return of;
 }
 
 ContactRates contact_rates(const Solids& solids, const ContactOptions& options,

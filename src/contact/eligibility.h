@@ -30,6 +30,10 @@ class Eligibility {
   bool became_eligible(std::int32_t a, std::int32_t b) const;
   /// Whether a beam between two bodies, the smaller index first, broke before the last update().
   bool beam_broke(const BodyPair& pair) const;
+  /// Returns the smallest body of the piece of a body.
+  std::int32_t piece(std::int32_t body) const { return item(piece_, body); }
+  /// Returns the pairs with an unbroken beam, sorted.
+  const std::vector<BodyPair>& joined() const { return joined_; }
   bool on_surface(std::int32_t body) const { return item(on_surface_, body) != 0; }
   /// Returns the number of pieces as of the last update().
   std::int32_t pieces() const { return pieces_; }

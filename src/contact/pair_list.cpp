@@ -52,12 +52,10 @@ void PairList::list_bodies(const Search& search) {
   std::vector<Vec3<double>> centres;
   centres.reserve(search.bodies.size());
   for (const Placed& body : search.bodies) centres.push_back(body.x);
-  const bool intact = eligibility_.pieces() == 1;  // only bodies on the surface may touch
   std::vector<double> radii;
   radii.reserve(centres.size());
   for (std::int32_t b = 0; b < solids.bodies(); ++b)
-    radii.push_back(
-        (intact && !eligibility_.on_surface(b)) || solids.carries(b) ? -1 : solids.radius(b));
+    radii.push_back(is_left_out(solids, b) ? -1 : solids.radius(b));
   std::vector<BodyPair> near;
   near_pairs(centres, radii, reach_, search.here, near, periods_);
   for (const auto& [a, b] : near) {

@@ -30,6 +30,13 @@ class PairList {
 
   /// Returns the distance that a vertex may travel between two builds [m]: half the reach.
   double slack() const { return 0.5 * reach_; }
+  /// Returns the largest gap of a listed pair [m].
+  double reach() const { return reach_; }
+  /// Whether a body touches nothing as ice at present.
+  bool is_left_out(const Solids& solids, std::int32_t body) const {
+    const bool intact = eligibility_.pieces() == 1;  // only bodies on the surface may touch
+    return (intact && !eligibility_.on_surface(body)) || solids.carries(body);
+  }
   /// Whether pairs may have become eligible since the last build.
   bool changed() const { return changed_; }
   /// Pieces and released pairs.

@@ -14,6 +14,33 @@ bool is_before(const Crush& crush, const Pair& pair) {
   return std::tie(crush.a, crush.b) < std::tie(pair.a, pair.b);
 }
 
+/// What lists of pairs need.
+void add_listing(const Contacts& contacts, const Part& part, DeviceContacts& of) {
+  const ContactOptions& options = contacts.options();
+  of.reach = contacts.list().reach();
+  of.young = options.young, of.young_broken = options.young_broken.value_or(options.young);
+  of.friction = options.friction, of.friction_wet = options.friction_wet.value_or(options.friction);
+  for (const Obstacle& o : contacts.solids().obstacles())
+    of.frictions.push_back({o.friction, o.friction_wet.value_or(o.friction)});
+  const Eligibility& eligibility = contacts.list().eligibility();
+  for (const auto* pairs : {&eligibility.joined(), &eligibility.released()})
+    for (const auto& [a, b] : *pairs)
+      of.beams.push_back({part.local_index(a), part.local_index(b)});
+}
+
+/// Who may touch.
+void add_eligible(const Contacts& contacts, const Part& part, DevicePairs& pairs) {
+  const Eligibility& eligibility = contacts.list().eligibility();
+  for (std::int32_t local = 0; local < part.owned; ++local) {
+    const std::int32_t b = item(part.global, local);
+    pairs.pieces.push_back(eligibility.piece(b));
+    pairs.on_surface.push_back(eligibility.on_surface(b) ? 1 : 0);
+    pairs.left_out.push_back(contacts.list().is_left_out(contacts.solids(), b) ? 1 : 0);
+  }
+  for (const auto& [a, b] : eligibility.released())
+    pairs.broken.push_back({part.local_index(a), part.local_index(b)});
+}
+
 }  // namespace
 
 std::string missing_on_devices(const Contacts& contacts) {
@@ -43,6 +70,7 @@ DeviceContacts on_device(const Contacts& contacts, const Part& part) {
   of.wears = contacts.wears();
   of.periods = options.periods;
   of.slack = contacts.list().slack();
+  add_listing(contacts, part, of);
   std::vector<const EdgeGraph*> graphs;
   const auto solid = [&](std::int32_t index) {
     DeviceContacts::Solid s;
@@ -51,7 +79,9 @@ DeviceContacts on_device(const Contacts& contacts, const Part& part) {
     s.vertices.assign(vertices.begin(), vertices.end());
     s.planes.assign(planes.begin(), planes.end());
     s.radius = solids.radius(index);
+    s.width = solids.width(index);
     if (is_obstacle(index)) return s;
+    s.size = solids.size(index);
     const EdgeGraph* graph = solids.graph(index);  // most bodies share one with others
     if (graph != nullptr) {                        // a body that carries obstacles touches as these
       const auto known = std::find(graphs.begin(), graphs.end(), graph);
@@ -97,6 +127,7 @@ DevicePairs pairs_on_device(const Contacts& contacts, const Part& part) {
   ContactHistory::Cursor histories(contacts.history());
   std::span<const Crush> crushed = contacts.crushing().records();  // in list order
   DevicePairs pairs;
+  add_eligible(contacts, part, pairs);
   std::int32_t index = 0;
   for (const Pair& pair : contacts.list().pairs()) {
     const PairConstants dry = pair_constants(solids, contacts.options(), pair, false),

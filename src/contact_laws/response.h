@@ -23,6 +23,16 @@ struct PairConstantsOf {
 };
 using PairConstants = PairConstantsOf<double>;
 
+/// Returns k_v and A_r of a body on an obstacle. \param young  E_c [Pa] \param size  L [m]
+constexpr PairConstants ice_on_obstacle(double young, double size) {
+  return {.stiffness = young / (0.5 * size), .area = size * size};
+}
+/// Returns those of two bodies; a size of 0 is that of a part that no body carries.
+constexpr PairConstants ice_on_ice(double young, double size, double other_size) {
+  const double smaller = other_size > 0 && other_size < size ? other_size : size;
+  return {.stiffness = young / (0.5 * (size + other_size)), .area = smaller * smaller};
+}
+
 /// History of a pair.
 template <class T>
 struct PairHistoryOf {

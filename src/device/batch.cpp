@@ -31,6 +31,7 @@ enum class Ask : std::uint32_t {
   get_damage,
   put_pairs,
   get_pairs,
+  list_pairs,
   put_worn,
   put_obstacles,
   get_obstacles,
@@ -232,6 +233,9 @@ void Batch::answer(Member& member, Message& message) {
       reply(pairs);
       break;
     }
+    case Ask::list_pairs:
+      reply(engine.list_pairs(member.run, question.get<std::vector<double>>()));
+      break;
     case Ask::put_worn:
       engine.put_worn(member.run, question.get<std::vector<WornPlane>>());
       break;
@@ -353,6 +357,9 @@ class EngineOfBatch final : public Engine {
   void put_pairs(std::size_t /*run*/, Pairs pairs) override { (void)ask(Ask::put_pairs, pairs); }
   void get_pairs(std::size_t /*run*/, Pairs& pairs) override {
     pairs = ask(Ask::get_pairs).get<Pairs>();
+  }
+  bool list_pairs(std::size_t /*run*/, std::span<const double> obstacles) override {
+    return ask(Ask::list_pairs, obstacles).get<bool>();
   }
   void put_worn(std::size_t /*run*/, std::span<const WornPlane> planes) override {
     (void)ask(Ask::put_worn, planes);

@@ -38,18 +38,30 @@ void visit_fields(Is<Damage> auto& of, auto&& visit) {
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
   each(cracks, viscous);
 }
+void visit_fields(Is<Listing> auto& of, auto&& visit) {
+  auto& [reach, young, young_broken, friction, friction_wet, sizes, widths, frictions, ranks,
+         beams] = of;
+  const auto each = [&](auto&... fields) { (visit(fields), ...); };
+  each(reach, young, young_broken, friction, friction_wet, sizes, widths, frictions, ranks, beams);
+}
+void visit_fields(Is<Eligible> auto& of, auto&& visit) {
+  auto& [pieces, states, broken] = of;
+  const auto each = [&](auto&... fields) { (visit(fields), ...); };
+  each(pieces, states, broken);
+}
 void visit_fields(Is<Contacts> auto& of, auto&& visit) {
   auto& [potential, with_patch, wears, damping_ratio, plastic_limit, periods, slack, obstacles,
          first_vertex, first_plane, vertices, planes, graph, graphs, radius, carriers, inverse,
-         rest] = of;
+         rest, listing] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
   each(potential, with_patch, wears, damping_ratio, plastic_limit, periods, slack, obstacles,
-       first_vertex, first_plane, vertices, planes, graph, graphs, radius, carriers, inverse, rest);
+       first_vertex, first_plane, vertices, planes, graph, graphs, radius, carriers, inverse, rest,
+       listing);
 }
 void visit_fields(Is<Pairs> auto& of, auto&& visit) {
-  auto& [solids, numbers, histories, states, crushes] = of;
+  auto& [solids, numbers, histories, states, crushes, eligible] = of;
   const auto each = [&](auto&... fields) { (visit(fields), ...); };
-  each(solids, numbers, histories, states, crushes);
+  each(solids, numbers, histories, states, crushes, eligible);
 }
 void visit_fields(Is<Lattice> auto& of, auto&& visit) {
   auto& [bodies, constants, weights, ends, beams, damped, flat, eccentric, held, motions, loaded,

@@ -11,6 +11,7 @@
 #include "device/contact_step.h"
 #include "device/engine.h"
 #include "device/launch.h"
+#include "device/pair_lister.h"
 #include "forces/device_contacts.h"
 
 namespace floe::device {
@@ -57,6 +58,7 @@ class ContactStore {
     others_ = Array<double>(6 * bodies_);
     predicted_ = Array<double>(6 * bodies_);
     works_ = Array<double>(3 * bodies_);
+    lister_.take(lattices, first_body_, first_obstacle_);
     if (!wears_) return;
     worn_ = Array<HalfSpace>(WornPlane::most * bodies_);
     worn_planes_ = Array<std::int32_t>(bodies_);
@@ -71,10 +73,7 @@ class ContactStore {
 
   /// Sets the pairs of a run, and notes where its bodies are. Returns whether memory has moved.
   bool put_pairs(std::size_t run, Pairs pairs, const Array<double>& records) {
-    for (std::size_t n = 0; n < of_listed; ++n) {
-      const std::size_t at = n * bodies_ + static_cast<std::size_t>(first_body_[run]);
-      listed_.take(records, at, bodies_of(run), at);
-    }
+    keep_places(run, records);
     runs_[run].pairs = static_cast<std::int64_t>(pairs.solids.size());
     const bool moves = pairs.solids.size() > room_[run];
     if (moves) {
@@ -84,18 +83,48 @@ class ContactStore {
       room_[run] = (wanted / of_block + 1) * of_block;
     }
     pairs_[run] = std::move(pairs);
+    lister_.put(run, pairs_[run].eligible);
     if (moves) make_room();
     for (std::size_t r = 0; r < runs_.size(); ++r)
       if (r == run || (moves && room_[r] > 0)) upload(r);
     return moves;
   }
-  /// Sets histories and states as they are now.
+  /// Lists the pairs of a run anew. Returns whether there was room for them.
+  /// \param obstacles  of each: origin and axes now \param bodies  their constants
+  bool list_pairs(std::size_t run, std::span<const double> obstacles, Array<double>& records,
+                  const Soa& bodies, Queue& queue) {
+    if (!lister_.is_ready(run) || room_[run] == 0) return false;
+    runs_here_.put(runs_);
+    ListMemory m{};
+    m.contacts = memory();
+    m.records = {records.data(), static_cast<std::int64_t>(bodies_)};
+    m.bodies = bodies;
+    m.of_a = a_.data(), m.of_b = b_.data();
+    m.first_end = first_end_.data(), m.end_count = end_count_.data(), m.ends = ends_.data();
+    m.first_of_obstacle = first_of_obstacle_.data();
+    m.count_of_obstacle = count_of_obstacle_.data();
+    m.pairs_of_obstacle = pairs_of_obstacle_.data();
+    const std::int32_t number = lister_.make(run, room_[run], obstacles, m, queue);
+    if (number < 0) return false;
+    lister_.take_over(m, number, runs_[run].first_pair, queue);
+    runs_[run].pairs = number;
+    keep_places(run, records);
+    return true;
+  }
+  /// Sets all but who may touch as it is now.
   void get_pairs(std::size_t run, Pairs& pairs) const {
     const auto first = static_cast<std::size_t>(runs_[run].first_pair);
-    std::vector<double> row(pairs_[run].solids.size());
+    std::vector<double> row(static_cast<std::size_t>(runs_[run].pairs));
+    pairs.solids.resize(row.size());
+    pairs.numbers.resize(row.size());
     pairs.histories.resize(row.size());
     pairs.states.resize(row.size());
     if (row.empty()) return;
+    get_solids(run, pairs);
+    for (std::size_t n = 0; n < of_constants; ++n) {
+      constants_.get(row, n * a_.size() + first);
+      for (std::size_t k = 0; k < row.size(); ++k) pairs.numbers[k][n] = row[k];
+    }
     for (std::size_t n = 0; n < of_history; ++n) {
       history_.get(row, n * a_.size() + first);
       for (std::size_t k = 0; k < row.size(); ++k) pairs.histories[k][n] = row[k];
@@ -338,6 +367,26 @@ class ContactStore {
       trials_ = numbers(numbers_in<ContactTrial>), sums_ = numbers(numbers_in<PairWrench>);
   }
 
+  /// Notes where the bodies of a run are.
+  void keep_places(std::size_t run, const Array<double>& records) {
+    for (std::size_t n = 0; n < of_listed; ++n) {
+      const std::size_t at = n * bodies_ + static_cast<std::size_t>(first_body_[run]);
+      listed_.take(records, at, bodies_of(run), at);
+    }
+  }
+  void get_solids(std::size_t run, Pairs& pairs) const {
+    const auto first = static_cast<std::size_t>(runs_[run].first_pair);
+    std::vector<std::int32_t> a(pairs.solids.size()), b(a.size());
+    a_.get(a, first);
+    b_.get(b, first);
+    const auto bodies = static_cast<std::int32_t>(bodies_),
+               of_run = static_cast<std::int32_t>(bodies_of(run));
+    for (std::size_t k = 0; k < a.size(); ++k)
+      pairs.solids[k] = {
+          a[k] - first_body_[run],
+          b[k] < bodies ? b[k] - first_body_[run] : of_run + b[k] - bodies - first_obstacle_[run]};
+  }
+
   template <std::size_t n>
   static void put_rows(Array<double>& memory, std::size_t size, std::size_t first,
                        const std::vector<std::array<double, n>>& rows) {
@@ -405,6 +454,7 @@ class ContactStore {
   std::vector<std::size_t> room_;       ///< per run, of pairs
   std::size_t bodies_ = 0;
   bool damps_ = false, wears_ = false;
+  PairLister lister_;
   Array<ContactsOfRun> runs_here_;
   Array<std::int32_t> first_vertex_, first_plane_, graph_, first_end_, end_count_, ends_,
       run_of_obstacle_, carriers_here_, first_of_obstacle_, count_of_obstacle_, pairs_of_obstacle_,

@@ -126,6 +126,24 @@ Water in_order(const DeviceWater& of, const std::vector<std::int32_t>& order) {
   return water;
 }
 
+Listing listing_of(const DeviceContacts& of, const Part& part,
+                   const std::vector<std::int32_t>& order, const std::vector<std::int32_t>& place) {
+  Listing l;
+  l.reach = of.reach;
+  l.young = of.young, l.young_broken = of.young_broken;
+  l.friction = of.friction, l.friction_wet = of.friction_wet;
+  l.frictions = of.frictions;
+  for (const std::int32_t b : order) {
+    l.sizes.push_back(item(of.solids, b).size);
+    l.widths.push_back(item(of.solids, b).width);
+    l.ranks.push_back(item(part.global, b));
+  }
+  for (std::size_t k = 0; k < of.obstacles; ++k)
+    l.widths.push_back(of.solids[order.size() + k].width);
+  for (const auto& [a, b] : of.beams) l.beams.push_back({item(place, a), item(place, b)});
+  return l;
+}
+
 Contacts in_order(const DeviceContacts& of, const Part& part,
                   const std::vector<std::int32_t>& order, const std::vector<std::int32_t>& place) {
   Contacts c;
@@ -150,6 +168,7 @@ Contacts in_order(const DeviceContacts& of, const Part& part,
     c.rest.push_back({x.x, x.y, x.z});
   }
   for (std::size_t k = 0; k < of.obstacles; ++k) add(of.solids[order.size() + k]);
+  c.listing = listing_of(of, part, order, place);
   for (const std::int32_t b : of.carriers) c.carriers.push_back(b < 0 ? -1 : item(place, b));
   return c;
 }
@@ -261,13 +280,27 @@ void DeviceStepper::list_pairs(const State<Spatial>& state) {
   const DeviceContacts& contacts = *described_.numbers.contacts;
   pairs_ = contacts.kept->list(state);
   listed_at_ = state.time;
-  Pairs pairs{{}, pairs_.numbers, pairs_.histories, pairs_.states, pairs_.crushes};
+  Pairs pairs{{}, pairs_.numbers, pairs_.histories, pairs_.states, pairs_.crushes, eligible()};
   const auto solid = [&](std::int32_t index) {
     return index >= 0 ? item(described_.place, index)
                       : static_cast<std::int32_t>(described_.place.size()) - 1 - index;
   };
   for (const auto& [a, b] : pairs_.bodies) pairs.solids.push_back({solid(a), solid(b)});
   of_engine([&] { engine_->put_pairs(0, std::move(pairs)); });
+}
+
+/// Who may touch, of the list of pairs.
+Eligible DeviceStepper::eligible() const {
+  Eligible of;
+  for (const std::int32_t b : described_.order) {
+    of.pieces.push_back(item(pairs_.pieces, b));
+    of.states.push_back(
+        static_cast<std::uint8_t>((item(pairs_.on_surface, b) != 0 ? Eligible::on_surface : 0) |
+                                  (item(pairs_.left_out, b) != 0 ? Eligible::left_out : 0)));
+  }
+  for (const auto& [a, b] : pairs_.broken)
+    of.broken.push_back({item(described_.place, a), item(described_.place, b)});
+  return of;
 }
 
 void DeviceStepper::put_worn(const std::vector<floe::WornPlane>& planes) {
@@ -282,10 +315,17 @@ void DeviceStepper::wear_bodies() {
   put_worn(described_.numbers.contacts->kept->wear(pairs_));
 }
 
-/// Brings histories and states of the pairs.
+/// Brings the pairs, with histories and states.
 void DeviceStepper::get_pairs() {
   Pairs now;
   of_engine([&] { engine_->get_pairs(0, now); });
+  const auto bodies = static_cast<std::int32_t>(described_.order.size());
+  const auto index = [&](std::int32_t solid) {
+    return solid < bodies ? item(described_.order, solid) : bodies - 1 - solid;
+  };
+  pairs_.bodies.clear();
+  for (const auto& [a, b] : now.solids) pairs_.bodies.push_back({index(a), index(b)});
+  pairs_.numbers = std::move(now.numbers);
   pairs_.histories = std::move(now.histories);
   pairs_.states = std::move(now.states);
   pairs_.crushes = std::move(now.crushes);
@@ -325,12 +365,28 @@ void DeviceStepper::release_broken() {
     if (auto* role = force->roles().broken_pairs) role->release(pairs);
 }
 
-/// Makes a new list of pairs between two steps. \param time  of the state of the engine [s]
-void DeviceStepper::renew_pairs(double time) {
+/// Makes a new list of pairs between two steps: the engine does, where nothing has broken.
+/// \param time  of the state of the engine [s]
+void DeviceStepper::renew_pairs(double time, bool broke) {
+  if (!broke && contacts_are_possible() && list_on_engine(time)) return;
   keep_contacts();
   get_records(listed_);
   listed_.time = time;
   list_pairs(listed_);
+}
+
+/// Returns false where the processor has to make the list.
+bool DeviceStepper::list_on_engine(double time) {
+  const DeviceContacts& contacts = *described_.numbers.contacts;
+  constexpr std::size_t of_place = 12;
+  std::vector<double> places;
+  for (std::size_t k = 0; k < contacts.obstacles; ++k) {
+    const auto numbers = contacts.obstacle(k, time, last_dt_, last_dt_);
+    places.insert(places.end(), numbers.begin(), numbers.begin() + of_place);
+  }
+  if (!of_engine([&] { return engine_->list_pairs(0, places); })) return false;
+  listed_at_ = time;
+  return true;
 }
 
 void DeviceStepper::get(State<Spatial>& state) {
@@ -357,7 +413,7 @@ void DeviceStepper::queue(double time, double dt, double before) {
   const auto& contacts = described_.numbers.contacts;
   if (contacts && contacts->obstacle_travel(listed_at_, time) > contacts->slack) {
     make_steps();
-    renew_pairs(time);
+    renew_pairs(time, false);
   }
   if (steps_.count == 0) {
     steps_ = {.count = 0, .dt = dt, .before = before, .since = static_cast<int>(since_)};
@@ -416,8 +472,9 @@ void DeviceStepper::make_steps() {
     drop(made.steps);
     if (!described_.numbers.contacts) continue;
     if ((made.why & Made::parted) != 0) wear_bodies();
-    if ((made.why & Made::beam_broke) != 0) release_broken();
-    if ((made.why & (Made::list_expired | Made::beam_broke)) != 0) renew_pairs(time);
+    const bool broke = (made.why & Made::beam_broke) != 0;
+    if (broke) release_broken();
+    if (broke || (made.why & Made::list_expired) != 0) renew_pairs(time, broke);
   }
 }
 

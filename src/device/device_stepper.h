@@ -84,7 +84,9 @@ class DeviceStepper {
   void get_pairs();
   void put_worn(const std::vector<floe::WornPlane>& planes);
   void wear_bodies();
-  void renew_pairs(double time);
+  Eligible eligible() const;
+  void renew_pairs(double time, bool broke);
+  bool list_on_engine(double time);
   void release_broken();
   void note_broken(std::span<const double> cracks, std::vector<std::array<std::int32_t, 2>>& fresh);
   void queue_contacts(const DeviceContacts& contacts, double time, double dt, double before);

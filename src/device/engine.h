@@ -65,6 +65,26 @@ struct Damage {
   std::vector<float> viscous;  ///< beam after beam: forces of dashpots at the last step's start
 };
 
+/// What an engine needs to list the pairs of a run by itself. Bodies are the engine's.
+struct Listing {
+  double reach = 0;                                ///< largest gap of a listed pair [m]
+  double young = 0, young_broken = 0;              ///< E_c [Pa], that where a beam has broken
+  double friction = 0, friction_wet = 0;           ///< mu between bodies, that below still water
+  std::vector<double> sizes;                       ///< per body: L [m]
+  std::vector<double> widths;                      ///< of bodies, then of obstacles [m]
+  std::vector<std::array<double, 2>> frictions;    ///< per obstacle, as above
+  std::vector<std::int32_t> ranks;                 ///< per body: its place in the model's order
+  std::vector<std::array<std::int32_t, 2>> beams;  ///< the broken ones too
+};
+/// Which bodies of a run may touch (contact/eligibility.h); changes where a beam breaks.
+struct Eligible {
+  /// States of a body, in bits.
+  enum State : std::uint8_t { on_surface = 1, left_out = 2, large = 4 };
+  std::vector<std::int32_t> pieces;                 ///< per body: number of its piece
+  std::vector<std::uint8_t> states;                 ///< per body
+  std::vector<std::array<std::int32_t, 2>> broken;  ///< beams
+};
+
 /// Contacts of a lattice: shapes of its bodies, then of obstacles, and the law (DeviceContacts).
 struct Contacts {
   bool potential = false, with_patch = false, wears = false;
@@ -83,6 +103,7 @@ struct Contacts {
   std::vector<std::int32_t> carriers;          ///< per obstacle: the body that carries it, or -1
   std::vector<std::array<double, 4>> inverse;  ///< per body
   std::vector<std::array<double, 3>> rest;     ///< per body: centroid at rest [m]
+  std::optional<Listing> listing;
 };
 /// Pairs that may touch, sorted as bodies sum them; obstacle k of the run is `bodies` + k.
 struct Pairs {
@@ -91,6 +112,7 @@ struct Pairs {
   std::vector<std::array<double, 7>> histories;  ///< likewise
   std::vector<std::uint8_t> states;              ///< likewise
   std::vector<std::array<double, 8>> crushes{};  ///< likewise
+  Eligible eligible{};  ///< without pieces: an engine does not list the pairs of this run
 };
 /// A plane beyond which a body of the engine has nothing left, in the frame of the body.
 struct WornPlane {
@@ -208,9 +230,13 @@ class Engine {
   /// Sets, or returns, the damage of a run whose beams break.
   virtual void put_damage(std::size_t run, const Damage& damage) = 0;
   virtual Damage get_damage(std::size_t run) = 0;
-  /// Sets the pairs of a run at its present state; returns their histories and states of now.
+  /// Sets the pairs of a run at its present state; returns them but for who may touch.
   virtual void put_pairs(std::size_t run, Pairs pairs) = 0;
   virtual void get_pairs(std::size_t run, Pairs& pairs) = 0;
+  /// Lists the pairs of a run anew at its present state, which keep their histories. Returns false,
+  /// with nothing changed, where there is no room for them or the run's list is not an engine's.
+  /// \param obstacles  of each: origin and axes now, 12 numbers
+  virtual bool list_pairs(std::size_t run, std::span<const double> obstacles) = 0;
   /// Sets all planes of the bodies that these are of.
   virtual void put_worn(std::size_t run, std::span<const WornPlane> planes) = 0;
   /// Sets, or returns, largest forces and impulses of the obstacles of a run, six numbers each.

@@ -128,6 +128,11 @@ class TileEngine final : public Engine {
     queue_.wait();
     contacts_.get_pairs(run, pairs);
   }
+  bool list_pairs(std::size_t run, std::span<const double> obstacles) override {
+    queue_.wait();
+    const auto bodies = static_cast<std::int64_t>(first_body_.back());
+    return contacts_.list_pairs(run, obstacles, records_[now_], {bodies_.data(), bodies}, queue_);
+  }
   void put_worn(std::size_t run, std::span<const WornPlane> planes) override {
     queue_.wait();
     contacts_.put_worn(run, planes);

@@ -89,10 +89,11 @@ __device__ inline void raise(std::uint64_t* address, double value) {
   if (bits > *static_cast<volatile unsigned long long*>(largest)) atomicMax(largest, bits);
 }
 
-/// Lowers *address to value; adds bits to it.
+/// Lowers *address to value; adds 1 to it and returns what it was; adds bits to it.
 __device__ inline void lower(std::int32_t* address, std::int32_t value) {
   atomicMin(address, value);
 }
+__device__ inline std::int32_t add_one(std::int32_t* address) { return atomicAdd(address, 1); }
 __device__ inline void add_bits(std::uint32_t* address, std::uint32_t bits) {
   atomicOr(address, bits);
 }
@@ -187,23 +188,7 @@ class Queue {
       cudaGraph_t graph = nullptr;
       check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "capture");
       try {
-        record([this](const auto& work, std::int32_t tiles, int threads, std::size_t shared) {
-          using Work = std::decay_t<decltype(work)>;
-          if constexpr (requires { typename Work::Room; }) {
-            constexpr int of_block = most_threads / Warp::lanes;
-            run_warps<<<static_cast<unsigned>((tiles + of_block - 1) / of_block), most_threads,
-                        of_block * sizeof(typename Work::Room), stream_>>>(work, tiles);
-          } else {
-            constexpr std::size_t without_asking = 48U << 10;
-            if (shared > without_asking)
-              check(
-                  cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                       static_cast<int>(shared)),
-                  "shared memory of a tile");
-            run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
-          }
-          check(cudaGetLastError(), "launch");
-        });
+        once(record);
       } catch (...) {
         cudaStreamEndCapture(stream_, &graph);
         if (graph != nullptr) cudaGraphDestroy(graph);
@@ -218,6 +203,27 @@ class Queue {
       found = graphs_.end() - 1;
     }
     check(cudaGraphLaunch(found->second, stream_), "cudaGraphLaunch");
+  }
+  /// Makes such launches without recording them.
+  template <class Record>
+  void once(const Record& record) {
+    record([this](const auto& work, std::int32_t tiles, int threads, std::size_t shared) {
+      using Work = std::decay_t<decltype(work)>;
+      if (tiles == 0) return;
+      if constexpr (requires { typename Work::Room; }) {
+        constexpr int of_block = most_threads / Warp::lanes;
+        run_warps<<<static_cast<unsigned>((tiles + of_block - 1) / of_block), most_threads,
+                    of_block * sizeof(typename Work::Room), stream_>>>(work, tiles);
+      } else {
+        constexpr std::size_t without_asking = 48U << 10;
+        if (shared > without_asking)
+          check(cudaFuncSetAttribute(run_tile<Work>, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                     static_cast<int>(shared)),
+                "shared memory of a tile");
+        run_tile<<<static_cast<unsigned>(tiles), threads, shared, stream_>>>(work);
+      }
+      check(cudaGetLastError(), "launch");
+    });
   }
   void wait() { check(cudaStreamSynchronize(stream_), "a kernel"); }
 
@@ -258,6 +264,7 @@ inline void raise(std::uint64_t* address, double value) {
 inline void lower(std::int32_t* address, std::int32_t value) {
   *address = std::min(*address, value);
 }
+inline std::int32_t add_one(std::int32_t* address) { return (*address)++; }
 inline void add_bits(std::uint32_t* address, std::uint32_t bits) { *address |= bits; }
 
 inline int count_bits(std::uint64_t mask) { return std::popcount(mask); }
@@ -309,6 +316,10 @@ class Queue {
         }
       }
     });
+  }
+  template <class Record>
+  void once(const Record& record) {
+    run(0, record);
   }
   void wait() {}
   void forget() {}

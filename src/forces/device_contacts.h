@@ -35,6 +35,12 @@ struct DevicePairs {
   std::vector<std::array<double, history>> histories;  ///< of pairs that touch
   std::vector<std::uint8_t> states;
   std::vector<std::array<double, crush>> crushes;  ///< of pairs that have crushed; empty: no wear
+
+  // Who may touch (contact/eligibility.h), for lists that a back end makes by itself.
+  std::vector<std::int32_t> pieces;                 ///< per body: number of its piece
+  std::vector<std::uint8_t> on_surface;             ///< per body
+  std::vector<std::uint8_t> left_out;               ///< per body: it touches nothing as ice
+  std::vector<std::array<std::int32_t, 2>> broken;  ///< pairs of which a beam has broken
 };
 
 /// A plane beyond which a body has nothing left, in the frame of the body.
@@ -81,12 +87,21 @@ struct DeviceContacts {
   std::size_t work = 0;  ///< index of the first of its four works among those of all forces
   KeptContacts* kept = nullptr;
 
+  // For lists that a back end makes by itself.
+  double reach = 0;                                ///< largest gap of a listed pair [m]
+  double young = 0, young_broken = 0;              ///< E_c [Pa], that where a beam has broken
+  double friction = 0, friction_wet = 0;           ///< mu between bodies, that below still water
+  std::vector<std::array<double, 2>> frictions;    ///< per obstacle, as above
+  std::vector<std::array<std::int32_t, 2>> beams;  ///< pairs, those of broken ones too
+
   /// Shapes of the bodies, then of the obstacles, in their frames.
   struct Solid {
     std::vector<Vec3<double>> vertices;  ///< none: a half-space
     std::vector<HalfSpace> planes;
     std::int32_t graph = -1;  ///< among the graphs; obstacles have none
     double radius = 0;        ///< distance of the farthest vertex from the origin [m]
+    double size = 0;          ///< L of a body [m]
+    double width = 0;         ///< least width [m]
     /// 1/m, 1/I about the axes of the body, as contacts count them; zeros for an obstacle.
     std::array<double, 4> inverse{};
   };

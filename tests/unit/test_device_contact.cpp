@@ -132,10 +132,12 @@ Stepped by_lanes(const Case& of, int steps) {
 }
 
 /// \param queued  steps that are made at once \param looks  whether the state is brought back then
+/// \param lists   whether the engine lists pairs by itself
 Stepped by_loop(const Case& of, int steps, std::int32_t tile = 0, int queued = 7,
-                bool looks = false) {
+                bool looks = false, bool lists = true) {
   const auto run = started(of);
   device::DescribedModel described = device::describe(run->model(), "loop");
+  if (!lists) described.lattice.contacts->listing.reset();
   auto engine = device::make_loop_engine({described.lattice}, tile);
   DeviceStepper stepper(run->model(), std::move(described), std::move(engine));
   WorkLedger ledger(run->model());
@@ -282,6 +284,131 @@ TEST(DeviceContact, TilesQueuesAndLooksChangeNoBit) {
   }
 }
 
+/// Two blocks whose shapes overlap, joined by a beam that shears and breaks, and a third one.
+Case breaking_blocks() {
+  Case c;
+  constexpr double apart = 0.95, speed = 2;
+  test::append_block(c.lattice, {1, 1, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0.2, 0, -0.5 * speed});
+  test::append_block(c.lattice, {1, 1, 1}, {apart, 0, 0}, {1, 0, 0, 0}, {-0.2, 0, 0.5 * speed});
+  test::append_block(c.lattice, {1, 1, 1}, {-1.0005, 0, 0}, {1, 0, 0, 0}, {1, 0, 0});
+  Beams& b = c.lattice.beams;
+  b.bodies = {{0, 1}};
+  b.area = {1}, b.width = {1}, b.height = {1}, b.length = {apart};
+  b.inertia_y = b.inertia_z = {1.0 / 12}, b.torsion = {saint_venant_torsion(1, 1)};
+  b.young = {1e8}, b.shear_modulus = {4e7}, b.shear_factor = {5.0 / 6}, b.axis_y = {{0, 1, 0}};
+  c.scene = test::contact_scene(1e7, 0.2, 0.5, false);
+  c.scene.forces.beam = c.scene.forces.fracture = true;
+  c.scene.fracture.tensile_strength = c.scene.fracture.shear_strength = 1e5;
+  c.dt = 2e-5;
+  c.steps_before = 5;
+  return c;
+}
+
+/// Bodies of several pieces of a sheet, of which beams break, and a large plate over them.
+Case pieces_and_a_plate() {
+  Case c = breaking_blocks();
+  for (int k = 0; k < 6; ++k)
+    test::append_block(c.lattice, {1, 1, 0.5}, {1.01 * k - 2, 0.02 * k, -1.2}, {1, 0, 0, 0},
+                       {0.2 - 0.1 * k, 0, 0.5});
+  test::append_block(c.lattice, {9, 9, 0.5}, {0, 0, 1.1}, {1, 0, 0, 0}, {0, 0, -1});
+  c.scene.contact.young_broken = 2e7;
+  test::append_obstacle(c.scene, "floor", half_space({0, 0, -1.5}, {0, 0, 1}));
+  c.steps_before = 300;
+  c.dt = 2e-4;
+  return c;
+}
+
+/// Cases with lists of all kinds.
+std::vector<Case> listed_cases() {
+  std::vector<Case> cases = all_cases();
+  cases.push_back(pieces_and_a_plate());
+  for (const double period : {9.0, 5.0, 3.2}) {  // three and more cells of a period, two, one
+    Case c = stones(ContactLaw::overlap, 0.6, 0.3);
+    c.scene.contact.periods.length = {period, period, 0};
+    c.scene.periods = c.scene.contact.periods;
+    c.scene.obstacles.pop_back();
+    c.steps_before = 20;
+    if (period < 5) c.lattice = {};
+    test::Random random(12);
+    for (int k = 0; k < 6 && period < 5; ++k)
+      test::append_stone(c.lattice, random, {0.9 * k - 2, 0.4 * k, 1.1 * k + 1},
+                         random.rotation(random.uniform(0, 3)), {0, 0, -2}, random.vector(1));
+    cases.push_back(c);
+  }
+  return cases;
+}
+
+// An engine's list has the pairs of the processor's, in the same order and with the same numbers;
+// what it has beside them are pairs that only an axis between edges separates.
+TEST(DeviceContact, AnEngineListsThePairs) {
+  int number = 0;
+  std::size_t pairs = 0, more = 0;
+  for (const Case& c : listed_cases()) {
+    SCOPED_TRACE(number++);
+    const auto run = started(c);
+    device::DescribedModel described = device::describe(run->model(), "loop");
+    const DeviceContacts contacts = *described.numbers.contacts;
+    const std::vector<std::int32_t> place = described.place;
+    const auto engine = device::make_loop_engine({described.lattice}, 0);
+    std::vector<double> records, obstacles;
+    for (const std::int32_t b : described.order) {
+      const double* from = run->state().record(static_cast<std::size_t>(b));
+      records.insert(records.end(), from, from + Spatial::record);
+    }
+    engine->put(0, records);
+    for (std::size_t k = 0; k < contacts.obstacles; ++k) {
+      const auto numbers = contacts.obstacle(k, run->state().time, c.dt, c.dt);
+      obstacles.insert(obstacles.end(), numbers.begin(), numbers.begin() + 12);
+    }
+    const DevicePairs listed = contacts.kept->list(run->state());
+    const auto bodies = static_cast<std::int32_t>(place.size());
+    device::Pairs given{{}, listed.numbers, listed.histories, listed.states, listed.crushes, {}};
+    for (const auto& [a, b] : listed.bodies)
+      given.solids.push_back({item(place, a), b < 0 ? bodies - 1 - b : item(place, b)});
+    for (const std::int32_t b : described.order) {
+      given.eligible.pieces.push_back(item(listed.pieces, b));
+      given.eligible.states.push_back(
+          static_cast<std::uint8_t>(item(listed.on_surface, b) + 2 * item(listed.left_out, b)));
+    }
+    for (const auto& [a, b] : listed.broken)
+      given.eligible.broken.push_back({item(place, a), item(place, b)});
+    engine->put_pairs(0, given);
+    ASSERT_TRUE(engine->list_pairs(0, obstacles));
+    device::Pairs made;
+    engine->get_pairs(0, made);
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < given.solids.size(); ++k) {
+      while (at < made.solids.size() && made.solids[at] != given.solids[k]) ++at;
+      ASSERT_LT(at, made.solids.size()) << k << " of " << given.solids.size();
+      EXPECT_EQ(made.numbers[at], given.numbers[k]);
+      EXPECT_EQ(made.states[at], given.states[k]);
+      if ((given.states[k] & DevicePairs::touching) != 0) {
+        EXPECT_EQ(made.histories[at], given.histories[k]);
+      }
+      if ((given.states[k] & DevicePairs::crushed) != 0) {
+        EXPECT_EQ(made.crushes[at], given.crushes[k]);
+      }
+    }
+    pairs += given.solids.size();
+    more += made.solids.size() - given.solids.size();
+  }
+  EXPECT_GT(pairs, 300);
+  EXPECT_LT(more, pairs / 10);
+}
+
+// Who makes a list changes no bit: lists expire on the way.
+TEST(DeviceContact, WhoListsChangesNoBit) {
+  int number = 0;
+  for (const Case& c : listed_cases()) {
+    SCOPED_TRACE(number++);
+    const Stepped by_engine = by_loop(c, 200), by_host = by_loop(c, 200, 0, 7, false, false);
+    EXPECT_EQ(by_engine.state.records, by_host.state.records);
+    EXPECT_EQ(by_engine.works, by_host.works);
+    EXPECT_EQ(by_engine.columns, by_host.columns);
+    EXPECT_EQ(by_engine.stored, by_host.stored);
+  }
+}
+
 // Two runs in an engine have the bits that they have alone, also where the list of one is made anew
 // and grows.
 TEST(DeviceContact, RunsTogetherAreWhatTheyAreAlone) {
@@ -305,7 +432,7 @@ TEST(DeviceContact, RunsTogetherAreWhatTheyAreAlone) {
   };
   const auto pairs_of = [&](std::size_t r) {
     const DevicePairs listed = described[r].numbers.contacts->kept->list(runs[r]->state());
-    device::Pairs pairs{{}, listed.numbers, listed.histories, listed.states, listed.crushes};
+    device::Pairs pairs{{}, listed.numbers, listed.histories, listed.states, listed.crushes, {}};
     const auto bodies = static_cast<std::int32_t>(described[r].order.size());
     for (const auto& [a, b] : listed.bodies)
       pairs.solids.push_back(
@@ -378,26 +505,6 @@ TEST(DeviceContact, RunsTogetherAreWhatTheyAreAlone) {
     EXPECT_EQ(together->works(r).contacts, alone->works(0).contacts);
     EXPECT_EQ(together->works(r).obstacles, alone->works(0).obstacles);
   }
-}
-
-/// Two blocks whose shapes overlap, joined by a beam that shears and breaks, and a third one.
-Case breaking_blocks() {
-  Case c;
-  constexpr double apart = 0.95, speed = 2;
-  test::append_block(c.lattice, {1, 1, 1}, {0, 0, 0}, {1, 0, 0, 0}, {0.2, 0, -0.5 * speed});
-  test::append_block(c.lattice, {1, 1, 1}, {apart, 0, 0}, {1, 0, 0, 0}, {-0.2, 0, 0.5 * speed});
-  test::append_block(c.lattice, {1, 1, 1}, {-1.0005, 0, 0}, {1, 0, 0, 0}, {1, 0, 0});
-  Beams& b = c.lattice.beams;
-  b.bodies = {{0, 1}};
-  b.area = {1}, b.width = {1}, b.height = {1}, b.length = {apart};
-  b.inertia_y = b.inertia_z = {1.0 / 12}, b.torsion = {saint_venant_torsion(1, 1)};
-  b.young = {1e8}, b.shear_modulus = {4e7}, b.shear_factor = {5.0 / 6}, b.axis_y = {{0, 1, 0}};
-  c.scene = test::contact_scene(1e7, 0.2, 0.5, false);
-  c.scene.forces.beam = c.scene.forces.fracture = true;
-  c.scene.fracture.tensile_strength = c.scene.fracture.shear_strength = 1e5;
-  c.dt = 2e-5;
-  c.steps_before = 5;
-  return c;
 }
 
 // From the step after the break on the blocks touch, and what they overlap by has no energy.
