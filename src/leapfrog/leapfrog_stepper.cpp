@@ -97,6 +97,9 @@ LeapfrogStepper::LeapfrogStepper(const Model<Spatial>& model) : model_(model), p
     rows_[b] = static_cast<std::int32_t>(held_.size());
     held_.push_back(static_cast<std::int32_t>(b));
   }
+  if (!held_.empty()) free_.assign(blocks_.size() * lanes, 1.0);
+  for (const std::int32_t b : held_) item(free_, b) = 0;
+  for (std::size_t slot = owned; slot < free_.size(); ++slot) free_[slot] = free_[owned - 1];
   saved_.resize(held_.size() * Spatial::record);
   now_.resize(held_.size() * Spatial::unknowns);
   next_ = now_;
@@ -140,8 +143,8 @@ void LeapfrogStepper::stagger(State<Spatial>& state, const Wrenches<Spatial>& wr
 /// whole. \param records, wrenches  of the first block's bodies
 template <bool added>
 [[FLOE_ONE_COPY, gnu::flatten]] LeapfrogStepper::Extremes LeapfrogStepper::step_blocks(
-    std::span<const Block> blocks, [[maybe_unused]] const MassBlock* masses, double* records,
-    const double* wrenches, [[maybe_unused]] double* kicked, double dt) {
+    std::span<const Block> blocks, [[maybe_unused]] const MassBlock* masses, const double* free,
+    double* records, const double* wrenches, [[maybe_unused]] double* kicked, double dt) {
   Extremes largest;
   for (const Block& block : blocks) {
     const auto four = [](const double* first, std::size_t width) {
@@ -173,9 +176,15 @@ template <bool added>
     put(4, {m.q.x, m.q.y, m.q.z, m.v.x});
     put(8, {m.v.y, m.v.z, m.w.x, m.w.y});
     put(12, {m.w.z, m.momentum.x, m.momentum.y, m.momentum.z});
-    const Lanes speed2 = dot(m.v, m.v);
+    Lanes speed2 = dot(m.v, m.v), spin2 = dot(m.w, m.w);
+    if (free != nullptr) {  // held bodies move otherwise
+      const auto held = Lanes(free, std::experimental::element_aligned) == 0.0;
+      where(held, speed2) = 0.0;
+      where(held, spin2) = 0.0;
+      free += lanes;
+    }
     largest.speed2 = max(largest.speed2, speed2);
-    largest.spin2 = max(largest.spin2, dot(m.w, m.w));
+    largest.spin2 = max(largest.spin2, spin2);
     largest.sum += speed2;
     records += lanes * n;
     wrenches += lanes * w;
@@ -193,8 +202,9 @@ std::array<double, 2> LeapfrogStepper::step_all(State<Spatial>& state,
   const std::span<const Block> blocks(blocks_);
   const auto step = [&](std::span<const Block> some, std::size_t first, double* records,
                         const double* forces) {
-    return masses_.empty() ? step_blocks<false>(some, nullptr, records, forces, nullptr, dt)
-                           : step_blocks<true>(some, masses_.data() + first, records, forces,
+    const double* free = free_.empty() ? nullptr : free_.data() + first * lanes;
+    return masses_.empty() ? step_blocks<false>(some, nullptr, free, records, forces, nullptr, dt)
+                           : step_blocks<true>(some, masses_.data() + first, free, records, forces,
                                                kicked_.data() + 3 * first * lanes, dt);
   };
   Extremes largest = step(blocks.first(whole), 0, state.records.data(), wrenches.values.data());
@@ -243,7 +253,8 @@ double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wre
                 std::span(next_).subspan(first, Spatial::unknowns), dt);
       const auto b = static_cast<std::size_t>(held_[k]);
       const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
-      speed2 = std::max(speed2, dot(v, v));  // keeps a speed that is not finite
+      if (!(dot(v, v) <= speed2)) speed2 = dot(v, v);  // also where it is not a number
+      if (std::isnan(speed2)) break;
       spin2 = std::max(spin2, dot(w, w));
     }
   }

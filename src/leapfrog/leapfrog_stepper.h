@@ -72,7 +72,8 @@ class LeapfrogStepper {
   };
   template <bool added>
   static Extremes step_blocks(std::span<const Block> blocks, const MassBlock* masses,
-                              double* records, const double* wrenches, double* kicked, double dt);
+                              const double* free, double* records, const double* wrenches,
+                              double* kicked, double dt);
   std::array<double, 2> step_all(State<Spatial>& state, const Wrenches<Spatial>& wrenches,
                                  double dt);
   void step_held(std::int32_t body, const double* before, State<Spatial>& state,
@@ -93,6 +94,7 @@ class LeapfrogStepper {
   std::vector<double> kicked_;
   std::vector<std::int32_t> held_;          ///< owned bodies with a prescribed unknown
   std::vector<std::int32_t> rows_;          ///< per local body: its index in held_, or -1
+  std::vector<double> free_;                ///< per body: 1, or 0 if it is held; empty: none is
   std::vector<double> saved_;               ///< records of held_ before a step
   mutable std::vector<double> now_, next_;  ///< prescribed values of held_ (work space)
   double boundary_work_ = 0;

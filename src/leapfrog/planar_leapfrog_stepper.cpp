@@ -51,6 +51,7 @@ double PlanarLeapfrogStepper::step_free(State<Planar>& state, const Wrenches<Pla
     store_row(record, load_row(record) + dt * v);
     store_row(record + Planar::velocity, v);
     const Row speed2 = pair_sums(v * v);
+    if (is_held(b)) continue;  // it moves otherwise
     largest = larger(speed2, largest);
     sum = sum + speed2;  // keeps numbers that are not finite, which a maximum would lose
   }
@@ -70,10 +71,14 @@ double PlanarLeapfrogStepper::step(State<Planar>& state, const Wrenches<Planar>&
   };
   for (std::size_t k = 0; k < held_.size(); ++k)
     std::copy_n(record_of(k), Planar::record, &saved_[k * Planar::record]);
-  const double largest = step_free(state, wrenches, dt);
+  double largest = step_free(state, wrenches, dt);
   prescribe(state.time, dt);
-  for (std::size_t k = 0; k < held_.size(); ++k)
+  for (std::size_t k = 0; k < held_.size(); ++k) {
     step_held(held_[k], &saved_[k * Planar::record], record_of(k), dt);
+    const double* v = record_of(k) + Planar::velocity;
+    const double speed2 = v[0] * v[0] + v[1] * v[1];
+    if (!std::isnan(largest) && !(speed2 <= largest)) largest = speed2;
+  }
   state.time += dt;
   return largest;
 }

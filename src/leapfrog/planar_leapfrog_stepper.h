@@ -48,6 +48,7 @@ class PlanarLeapfrogStepper {
   bool fixed(std::size_t body, std::size_t k) const {
     return (model_.prescribed()[body] >> k & 1U) != 0;
   }
+  bool is_held(std::size_t body) const { return model_.prescribed()[body] != 0; }
   void prescribe(double time, double dt) const;
   double given(std::size_t body, std::size_t k, double dt) const {
     return (next_[body * n + k] - now_[body * n + k]) / dt;

@@ -10,6 +10,16 @@ import unittest
 from one_run import OneRun
 from small_scenes import PULL
 
+# What holds an edge takes far more than its bodies could; in space, and in the plane.
+HELD = """integrator: explicit
+forces: [beam]
+sheet: {length: 8, width: 5, thickness: 0.5, element_size: 1, iterations: 5}
+boundary: {names: [held], held: {set: left, fix: "x y rz"}}
+load: {names: [dead], dead: {set: left, force: [1e8, 0, 0]}}
+time: {end: 0.02}
+limit: {velocity: 5}
+"""
+
 
 class ExplicitLimits(unittest.TestCase):
     @classmethod
@@ -35,6 +45,12 @@ class ExplicitLimits(unittest.TestCase):
                 self.assertIn(word, lines[0])
             number = float(re.search(r"must be <= (\S+)", lines[0])[1])
             self.assertAlmostEqual(number / self.stable, 1, delta=1e-4)
+
+    def test_held_bodies_are_as_fast_as_they_move(self):
+        for scene in (HELD, HELD.replace('"x y rz"', '"x y z rx ry rz"').replace("[1e8, 0, 0]",
+                                                                         "[0, 0, 1e8]")):
+            run = OneRun(scene)
+            self.assertEqual(run.code, 0, run.error)
 
     def test_a_step_just_below_it_is_taken(self):
         run = OneRun(PULL, "-time_dt", repr(0.99 * self.stable), "-beam_damping_ratio", "0")

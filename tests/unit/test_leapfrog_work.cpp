@@ -143,5 +143,37 @@ TEST(ExplicitStep, DatesVelocities) {
   }
 }
 
+/// The largest speed and spin are of bodies as they move: what forces would do to bodies that a
+/// boundary holds does not count.
+TEST(LeapfrogStepper, SpeedsOfHeldBodiesAreTheirs) {
+  const Lattice lattice = test::sheet(6, 4, 1.2);
+  Scene scene = test::beams_only(Shear::one_point);
+  Boundary held;
+  held.name = held.set = "left";
+  held.fixed.fill(true);
+  held.velocity = Point3{0.3, 0, 0};
+  scene.boundaries = {held};
+  Load pull;
+  pull.name = "pull", pull.set = "left";
+  pull.force = {0, 0, -1e8};
+  scene.loads = {pull};
+  test::Dynamics d(scene, lattice);
+  d.set_step(1e-5);
+  const State<Spatial>& state = d.state();
+  for (int n = 0; n < 50; ++n) {
+    const double speed2 = d.step_without_evaluation();
+    double fastest = 0, spin = 0;
+    for (std::size_t b = 0; b < lattice.bodies.position.size(); ++b) {
+      fastest = std::max(fastest, length(velocity(state, b)));
+      spin = std::max(spin, length(angular_velocity(state, b)));
+    }
+    EXPECT_GE(fastest, 0.3 - 1e-12);
+    EXPECT_NEAR(state.fastest, fastest, 1e-14);
+    EXPECT_NEAR(std::sqrt(speed2), fastest, 1e-14);
+    EXPECT_NEAR(state.fastest_spin, spin, 1e-14);
+    d.evaluate();
+  }
+}
+
 }  // namespace
 }  // namespace floe
