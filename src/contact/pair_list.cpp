@@ -30,7 +30,8 @@ PairList::PairList(const Solids& solids, std::vector<BodyPair> joined, bool stre
 void PairList::build(const Solids& solids, NarrowPhase& narrow, std::span<const Pose> poses,
                      std::span<const std::uint8_t> here, double time) {
   if (changed_) eligibility_.update(solids);
-  newly_eligible_ = stress_free_ || changed_;
+  // Until the end of the step, however many lists are made before it.
+  newly_eligible_ = newly_eligible_ || stress_free_ || changed_;
   Search search{.solids = solids, .narrow = narrow, .bodies = {}, .here = here, .time = time};
   search.bodies.reserve(poses.size());
   for (const Pose& p : poses) search.bodies.push_back({.x = p.x, .axes = triad(p.q)});
@@ -165,7 +166,8 @@ void PairList::list(const Search& search, const BodyPair& bodies, const Placed& 
   const auto [first, second] =
       std::minmax({search.solids.body_of(pair.a), search.solids.body_of(pair.b)});
   if (first >= 0) {
-    pair.newly_eligible = stress_free_ || (changed_ && eligibility_.became_eligible(first, second));
+    pair.newly_eligible =
+        stress_free_ || (newly_eligible_ && eligibility_.became_eligible(first, second));
     pair.broken = eligibility_.beam_broke({first, second});
   }
   const Vec3<double> apart = a.x - b.x;
@@ -225,7 +227,7 @@ void PairList::restore(const Solids& solids, std::span<const BodyPair> released,
   for (const BodyPair& pair : released.subspan(known)) eligibility_.release(pair);
   pairs_.clear();
   changed_ = true;
-  stress_free_ = false;
+  stress_free_ = newly_eligible_ = false;
 }
 
 }  // namespace floe

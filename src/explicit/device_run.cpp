@@ -88,6 +88,7 @@ class DeviceRun final : public ExplicitRun<Spatial> {
   double step_here() {
     const double speed2 = step_->advance(dt());
     step_->commit(dt());
+    step_->release();
     forces_are_of_other_velocities_ = is_on_engine_ = false;
     restored_.reset();
     return speed2;

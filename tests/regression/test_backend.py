@@ -56,6 +56,16 @@ CRUSHED = HANGING.replace("[beam, gravity]", "[beam, gravity, fracture]").replac
   flexural_strength: 6e5
   energy: 150
 """
+# Pieces are stiffer than the sheet, so the step becomes shorter when the first beam breaks.
+HARD_PIECES = """integrator: explicit
+forces: [beam, fracture, contact]
+sheet: {length: 8, width: 5, thickness: 0.3, element_size: 1.2, iterations: 10, seed: 77}
+fracture: {tensile_strength: 50000, energy: 5}
+contact: {young: 1e7, young_broken: 2e8}
+load: {names: [l0], l0: {point: [1, 0.5], force: [0, 0, -3e4], ramp: 0.03}}
+time: {end: 0.1}
+output: {history: 0.005}
+"""
 # tools/check_gpu, on a machine with a device.
 HAS_DEVICE = os.environ.get("FLOE_HAS_DEVICE") == "1"
 DEVICES = ("loop", "cuda") if HAS_DEVICE else ("loop",)
@@ -160,16 +170,40 @@ class Backend(RunningTest):
         self.assertIn("(limit: velocity 3 m/s)", said)
         self.assertFalse((self.folder / "out/scene/checkpoint.h5").exists())
 
+    def test_a_beam_breaks_where_the_step_changes(self):
+        """The step after that is the processor's: bodies whose beams break in it may touch, too."""
+        self.write(HARD_PIECES)
+        counts = {}
+        for backend in ("cpu", *DEVICES):
+            self.floe("-backend", backend, "-output_dir", backend)
+            names, rows = self.history(backend)
+            counts[backend] = [rows[:, names.index(name)] for name in ("beams_broken", "contacts")]
+            summary = self.summary(backend)
+            self.assertGreater(abs(summary["steps"] * summary["dt"] - 0.1), 2 * summary["dt"])
+        self.assertGreater(counts["cpu"][0][-1], 40)
+        for backend in DEVICES:
+            for one, other in zip(counts["cpu"], counts[backend]):
+                self.assertEqual(list(one), list(other))
+
     def test_what_is_refused(self):
         for scene, words, said in (
                 (BREAKING + "  propagation: energy\n", (),
                  "backend: loop has no fracture: propagation: energy yet"),
                 (SUPPLIED, (), "supply: backend: loop steps a lattice that stays as it is"),
-                *(() if HAS_DEVICE else ((HANGING, ("-backend", "cuda"), "backend: cuda: "),)),
+                *(() if HAS_DEVICE else (  # whatever else the scene has
+                    (HANGING, ("-backend", "cuda"), "backend: cuda: "),
+                    (FLOATING.replace("drag_coefficient: 1", "drag: faces\n  drag_form: 1"),
+                     ("-backend", "cuda"), "backend: cuda: "))),
                 (HANGING, ("-backend", "loop", "-integrator", "implicit"),
                  "backend: makes explicit steps"),
                 (HANGING, ("-backend", "loop", "-ts_type", "rk"),
                  "backend: loop makes steps of leapfrog"),
+                (HANGING, ("-backend", "loop", "-ts_type", "alpha"),
+                 "backend: loop makes steps of leapfrog"),
+                (FLOATING.replace("drag_coefficient: 1", "drag: faces\n  drag_form: 1"), (),
+                 "backend: loop has no water: drag: faces yet"),
+                (HANGING.replace("gravity]", "gravity, buoyancy]") +
+                 "waves: {height: 0.2, period: 5}\n", (), "backend: loop has no waves yet"),
                 (HANGING, ("-backend", "gpu"), "backend: gpu must be one of cpu | loop")):
             with self.subTest(said):
                 self.write(scene)
