@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -139,12 +140,17 @@ Batch::Batch(Maker make, const std::vector<int>& files) : make_(std::move(make))
 }
 Batch::~Batch() = default;
 
-void Batch::serve() {
+void Batch::serve(volatile std::sig_atomic_t* impatient) {
   using Stand = Member::Stand;
   while (true) {
     if (!all_have_joined_ && std::none_of(members_.begin(), members_.end(),
                                           [](const auto& m) { return m->stand == Stand::joining; }))
       make_engines();
+    if (impatient != nullptr && *impatient != 0) {
+      *impatient = 0;
+      leave_behind();
+      continue;
+    }
     for (const auto& group : groups_) launch_if_due(*group);
     std::vector<pollfd> files;
     std::vector<Member*> asked;
@@ -156,13 +162,30 @@ void Batch::serve() {
       asked.push_back(member.get());
     }
     if (files.empty()) return;
-    if (::poll(files.data(), files.size(), -1) < 0) {
+    constexpr int a_while = 500;  // [ms]: a signal may come just before
+    const int timeout = impatient != nullptr ? a_while : -1;
+    if (::poll(files.data(), files.size(), timeout) < 0) {
       if (errno == EINTR) continue;
       throw Failed("the runs of a batch cannot be waited for: " +
                    std::generic_category().message(errno));
     }
     for (std::size_t k = 0; k < files.size(); ++k)
       if (files[k].revents != 0) look(*asked[k], (files[k].revents & POLLIN) != 0);
+  }
+}
+
+/// Lets runs go for which others wait.
+void Batch::leave_behind() {
+  using Stand = Member::Stand;
+  const auto waits = [](const auto& m) {
+    return m->stand == Stand::joined || m->stand == Stand::waiting;
+  };
+  if (std::none_of(members_.begin(), members_.end(), waits)) return;
+  for (const auto& member : members_) {
+    if (member->stand == Stand::gone || waits(member)) continue;
+    member->stand = Stand::gone;
+    member->steps = {};
+    ::shutdown(member->connection.file(), SHUT_RDWR);
   }
 }
 
@@ -416,6 +439,11 @@ std::unique_ptr<Engine> join_batch(int file, const Lattice& lattice) {
   return std::make_unique<EngineOfBatch>(file, lattice);
 }
 
+bool is_socket(int file) {
+  struct stat of {};
+  return ::fstat(file, &of) == 0 && S_ISSOCK(of.st_mode);
+}
+
 std::optional<int> connection_to_batch() {
   const char* given = std::getenv(batch_variable);
   if (given == nullptr) return {};
@@ -423,7 +451,7 @@ std::optional<int> connection_to_batch() {
   ::unsetenv(batch_variable);  // a connection joins once
   int file = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), file);
-  if (error != std::errc{} || end != text.data() + text.size() || file < 0 ||
+  if (error != std::errc{} || end != text.data() + text.size() || file < 0 || !is_socket(file) ||
       ::fcntl(file, F_SETFD, FD_CLOEXEC) < 0)
     throw InputError(std::string(batch_variable) + ": '" + text +
                      "' must be the number of an open connection (floe ensemble sets it)");

@@ -3,6 +3,7 @@
 /// "Batches"). Each run is a process as ever, whose engine is at the other end of a connection.
 #pragma once
 
+#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -55,7 +56,9 @@ class Batch {
   Batch& operator=(const Batch&) = delete;
 
   /// Serves the runs until all have left.
-  void serve();
+  /// \param impatient  where not 0: runs that have not asked for what others wait for are left
+  ///                   behind, so that those go on; set to 0 then
+  void serve(volatile std::sig_atomic_t* impatient = nullptr);
 
   std::size_t engines() const { return groups_.size(); }
   std::int64_t launches() const { return launches_; }
@@ -70,6 +73,7 @@ class Batch {
   void take(Member& member, Message message);
   void answer(Member& member, Message& message);
   void make_engines();
+  void leave_behind();
   void launch_if_due(Group& group);
 
   Maker make_;
@@ -85,6 +89,8 @@ class Batch {
 /// \throws Failed if the engine cannot be made, InputError as make_cuda_engine()
 std::unique_ptr<Engine> join_batch(int file, const Lattice& lattice);
 
+/// Whether a number is that of an open socket.
+bool is_socket(int file);
 /// Variable of the environment with the number of a process's connection to a batch.
 inline constexpr const char* batch_variable = "FLOE_BATCH";
 /// Returns that number, once: nothing if the process is of no batch. \throws InputError

@@ -441,15 +441,16 @@ struct ObstacleStep : PairStep<Memory> {
     if (this->memory.halts.stands(run, this->step)) return;
     double all[18];  // NOLINT: registers
     const std::int32_t first = c.first_of_obstacle[obstacle];
-    warp.sums<18>(all, [&](int lane, double* of) {
-      for (std::int32_t e = lane; e < c.count_of_obstacle[obstacle]; e += Warp::lanes) {
-        const std::int64_t pair = c.pairs_of_obstacle[first + e];
-        if (c.touch[pair] == 0) continue;
-        for (int t = 0; t < 3; ++t) {
-          for (int n = 0; n < 3; ++n) {
-            of[6 * t + n] -= c.terms.at(9 * t + n, pair);
-            of[6 * t + 3 + n] -= c.terms.at(9 * t + 6 + n, pair);
-          }
+    const auto touches = [&](std::int32_t e) {
+      return c.touch[c.pairs_of_obstacle[first + e]] != 0;
+    };
+    // Which pairs are listed beside those that touch changes no bit.
+    warp.sums_of<18>(all, c.count_of_obstacle[obstacle], touches, [&](std::int32_t e, double* of) {
+      const std::int64_t pair = c.pairs_of_obstacle[first + e];
+      for (int t = 0; t < 3; ++t) {
+        for (int n = 0; n < 3; ++n) {
+          of[6 * t + n] -= c.terms.at(9 * t + n, pair);
+          of[6 * t + 3 + n] -= c.terms.at(9 * t + 6 + n, pair);
         }
       }
     });

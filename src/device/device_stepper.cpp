@@ -12,7 +12,8 @@ namespace {
 
 /// What the engines have, for messages.
 constexpr auto they_have =
-    "it has beams, gravity, loads, boundaries, buoyancy and drag of bodies in water without waves, "
+    "it has beams, also those that break, gravity, loads, boundaries, buoyancy and drag in water "
+    "without waves, "
     "and contact of convex bodies with each other and with convex obstacles and structures";
 
 /// Returns what a user calls a force that a back end does not have.
@@ -23,6 +24,8 @@ std::string in_words(std::string_view force, const Model<Spatial>& model) {
   if (force == "beam")
     return model.kinematics() == Kinematics::linear ? "linear beams"
                                                     : "fracture: propagation: energy";
+  if (force == "buoyancy") return "waves";
+  if (force == "drag") return "water: drag: faces";
   return "force '" + std::string(force) + "' with its options";
 }
 
@@ -182,7 +185,7 @@ DescribedModel describe(const Model<Spatial>& model, const std::string& backend)
                      "; backend: cpu has all");
   };
   if (size(part.comm) > 1) refuse("runs on several ranks");
-  if (!model.added_inertia().empty()) refuse("added mass");
+  if (!model.added_inertia().empty()) refuse("obstacle: NAME: added_mass");
   DescribedModel described;
   DeviceModel& numbers = described.numbers;
   for (const auto& force : model.forces()) {

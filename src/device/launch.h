@@ -139,11 +139,34 @@ struct Warp {
     __syncwarp();
     return bits;
   }
+  /// Sums n numbers over those of `count` entries for which is(entry), in an order that depends on
+  /// these alone: the k-th of them is one of lane k mod 32.
+  template <int n, class Is, class Add>
+  __device__ void sums_of(double* numbers, std::int32_t count, const Is& is, const Add& add) const {
+    for (int k = 0; k < n; ++k) numbers[k] = 0;
+    int before = 0;
+    for (std::int32_t begin = 0; begin < count; begin += lanes) {
+      std::uint32_t mask = __ballot_sync(~0U, begin + lane() < count && is(begin + lane()));
+      const int of = (lane() - before) & (lanes - 1), number = __popc(mask);
+      before += number;
+      if (of >= number) continue;
+      for (int k = 0; k < of; ++k) mask &= mask - 1;
+      add(begin + __ffs(static_cast<int>(mask)) - 1, numbers);
+    }
+    __syncwarp();
+    reduce<n>(numbers);
+  }
   /// Sums n numbers over the lanes, in a fixed order. \param add  add(lane, numbers) adds to zeros
   template <int n, class Add>
   __device__ void sums(double* numbers, const Add& add) const {
     for (int k = 0; k < n; ++k) numbers[k] = 0;
     add(lane(), numbers);
+    reduce<n>(numbers);
+  }
+
+ private:
+  template <int n>
+  __device__ static void reduce(double* numbers) {
     for (int k = 0; k < n; ++k) {
       for (int d = lanes / 2; d > 0; d /= 2) numbers[k] += __shfl_xor_sync(~0U, numbers[k], d);
     }
@@ -288,6 +311,20 @@ struct Warp {
   void sums(double* numbers, const Add& add) const {
     double of[lanes][n] = {};  // NOLINT: as the registers of a warp
     for (int lane = 0; lane < lanes; ++lane) add(lane, of[lane]);
+    reduce<n>(of, numbers);
+  }
+  template <int n, class Is, class Add>
+  void sums_of(double* numbers, std::int32_t count, const Is& is, const Add& add) const {
+    double of[lanes][n] = {};  // NOLINT
+    int before = 0;
+    for (std::int32_t e = 0; e < count; ++e)
+      if (is(e)) add(e, of[before++ % lanes]);
+    reduce<n>(of, numbers);
+  }
+
+ private:
+  template <int n>
+  static void reduce(double (&of)[lanes][n], double* numbers) {  // NOLINT
     for (int d = lanes / 2; d > 0; d /= 2) {
       for (int lane = 0; lane < d; ++lane) {
         for (int k = 0; k < n; ++k) of[lane][k] += of[lane + d][k];

@@ -7,6 +7,10 @@
 
 namespace floe::device {
 
+void check_is_built(std::string_view backend) {
+  if (backend == "cuda" && !has_cuda()) make_cuda_engine({});
+}
+
 std::unique_ptr<Engine> make_engine(std::string_view backend, std::vector<Lattice> lattices) {
   if (backend == "loop") return make_loop_engine(std::move(lattices));
   if (backend != "cuda")

@@ -10,6 +10,8 @@
 
 namespace floe::device {
 
+/// \throws InputError if floe is built without this back end
+void check_is_built(std::string_view backend);
 /// \param backend  loop or cuda
 /// \param lattices  one per run
 /// \throws InputError if there is no such back end here, Failed for errors of a device

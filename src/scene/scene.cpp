@@ -92,9 +92,10 @@ void read_dynamics(Options& options, Scene& scene) {
     scene.time.allow_unstable = options.flag("time: allow_unstable");
     scene.inertia_factor = options.number("model: rotational_inertia_factor");
     scene.backend = options.choice<Backend>("backend");
-    if (scene.backend != Backend::cpu && options.petsc("ts_type") == "rk")
+    const std::string type = options.petsc("ts_type");
+    if (scene.backend != Backend::cpu && !type.empty() && type != "leapfrog")
       throw InputError(std::string("backend: ") + name_of(scene.backend) +
-                       " makes steps of leapfrog, -ts_type rk does not");
+                       " makes steps of leapfrog, -ts_type " + type + " does not");
   }
   if (scene.integrator == Integrator::explicit_ && scene.forces.contact) {
     scene.partition.threshold = options.number("partition: threshold");

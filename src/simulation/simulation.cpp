@@ -3,6 +3,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "device/make_engine.h"
 #include "explicit/explicit_ts_options.h"
 #include "files/files.h"
 #include "floe/base/item.h"
@@ -424,6 +425,7 @@ Simulation::Impl::Impl(Scene given, const SimulationSettings& with) {
   if (settings.began == 0) settings.began = MPI_Wtime();
   guarded([&] {
     check_reports(scene);
+    device::check_is_built(name_of(scene.backend));
     take_coupling();
     if (!scene.check_only) lock();
     make_lattice_and_choose_model();

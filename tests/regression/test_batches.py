@@ -4,6 +4,7 @@ are alone, bit for bit, whoever fails, leaves or is killed."""
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import unittest
@@ -13,7 +14,7 @@ import h5py
 from launch import REPOSITORY
 from test_backend import BREAKING, DEVICES, FLOATING
 from test_backend_contact import FLOES
-from test_ensemble import EnsembleTest
+from test_ensemble import TOOL, EnsembleTest
 
 sys.path.insert(0, str(REPOSITORY / "python"))
 from floe.ensembles import batches  # noqa: E402
@@ -21,6 +22,18 @@ from floe.ensembles.runs import Run  # noqa: E402
 from floe.ensembles.specs import TIMES  # noqa: E402
 from floe.results.output import frames_of  # noqa: E402
 
+# floe ensemble that gives runs little time for their checkpoints.
+HASTY = """import os
+import runpy
+import sys
+sys.argv = sys.argv[1:]
+sys.path.insert(0, os.path.dirname(sys.argv[0]))
+import find_floe
+find_floe.load()
+from floe.ensembles import runs
+runs.GRACE = 3
+runpy.run_path(sys.argv[0], run_name="__main__")
+"""
 KEEPING = FLOATING + "checkpoint: {every: 1000}\n"
 # Of other meshes, steps, ends, and one in each list that fails on its way.
 OTHERS = """seeds: [3, 4]
@@ -192,8 +205,7 @@ class Interrupted(BatchTest):
 
     def test_a_run_is_killed(self):
         """The others go on without it; the same command takes it up again."""
-        child, = (int(entry.name) for entry in os.scandir("/proc") if entry.name.isdigit()
-                  and self.command(entry.name).endswith("parts/runs/s002"))
+        child = self.process_of("parts/runs/s002")
         os.kill(child, signal.SIGKILL)
         _, said = self.process.communicate()
         self.assertEqual(self.process.returncode, 1, said)
@@ -203,14 +215,42 @@ class Interrupted(BatchTest):
         self.ensemble("--dir", str(self.folder / "parts"))  # alone
         self.assertEqual(self.rows("parts"), self.straight)
 
-    @staticmethod
-    def command(process):
-        try:
-            with open(f"/proc/{process}/cmdline", "rb") as file:
-                words = file.read().rstrip(b"\0").split(b"\0")
-        except OSError:
-            return ""
-        return words[-1].decode() if words[0].endswith(b"floe") else ""
+    def test_a_run_hangs(self):
+        """Asked to stop, the others leave it behind and write their checkpoints."""
+        self.process.kill()
+        self.process.wait()
+        self.gone()
+        (self.folder / "hasty.py").write_text(HASTY)
+        self.process = subprocess.Popen(
+            [sys.executable, "hasty.py", str(TOOL), "e.yaml", "--dir", str(self.folder / "parts")],
+            cwd=self.folder, text=True, env=self.environment, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE)
+        self.addCleanup(self.end, self.process)
+        logs = [self.folder / "parts/runs" / name / "floe.log" for name in ("s001", "s002", "s003")]
+        self.wait(self.process, lambda: all("goes on from" in log.read_text() for log in logs))
+        child = self.process_of("parts/runs/s002")
+        os.kill(child, signal.SIGSTOP)
+        self.process.send_signal(signal.SIGINT)
+        _, said = self.process.communicate()
+        self.assertEqual(self.process.returncode, 3, said)
+        self.assertEqual([row["status"] for row in self.table("parts")], ["stopped"] * 3)
+        self.assertEqual(["with exit code 3" in log.read_text() for log in logs],
+                         [True, False, True])
+        self.goes_on()
+
+    def process_of(self, folder):
+        """The process of a run of this test with this folder."""
+        def is_it(process):
+            try:
+                with open(f"/proc/{process}/cmdline", "rb") as file:
+                    words = file.read().decode().split("\0")
+            except OSError:
+                return False
+            return words[0].endswith("floe") and any(
+                word.startswith(str(self.folder)) and folder in word for word in words)
+        child, = (int(entry.name) for entry in os.scandir("/proc")
+                  if entry.name.isdigit() and is_it(entry.name))
+        return child
 
     def test_the_process_of_the_batch_is_killed(self):
         """Its runs say so, and the same command goes on."""
@@ -238,11 +278,28 @@ class Interrupted(BatchTest):
 class Words(BatchTest):
     def test_bad_words(self):
         for words in (["-batch"], ["-batch", "loop"], ["-batch", "loop", "x"],
-                      ["-batch", "loop", "1"]):
+                      ["-batch", "loop", "1"], ["-batch", "loop", "7"]):
             done = subprocess.run([self.environment["FLOE"], *words], capture_output=True,
                                   text=True)
             self.assertEqual(done.returncode, 2)
             self.assertEqual(done.stderr.count("\n"), 1)
+            self.assertTrue(done.stderr.startswith("floe: -batch"), done.stderr)
+        ours, theirs = socket.socketpair()
+        with ours, theirs:
+            for words, part in ((["gpu", str(ours.fileno())], "backend: gpu must be one of"),
+                                (["loop", *[str(ours.fileno())] * 2], "different open")):
+                done = subprocess.run([self.environment["FLOE"], "-batch", *words],
+                                      capture_output=True, text=True, pass_fds=[ours.fileno()])
+                self.assertEqual(done.returncode, 2)
+                self.assertIn(part, done.stderr)
+
+    def test_a_connection_that_is_none(self):
+        for number in ("0", "1", "x", "77"):
+            done = subprocess.run([self.environment["FLOE"], "scene.yaml", "-backend", "loop"],
+                                  capture_output=True, text=True, cwd=self.folder,
+                                  env={**self.environment, "FLOE_BATCH": number})
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"FLOE_BATCH: '{number}' must be", done.stderr)
 
     def test_backend_of_a_run(self):
         scene = self.folder / "scene.yaml"

@@ -575,7 +575,7 @@ TEST(Device, WhatIsNotThereYetIsRefusedByName) {
     c = floating_case();
     c.scene.drag = {.density = 1010, .faces = true, .form = 1, .skin = 0.01};
   });
-  EXPECT_TRUE(contains(faces, "has no force 'drag' with its options yet")) << faces;
+  EXPECT_TRUE(contains(faces, "has no water: drag: faces yet")) << faces;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@ A run is a process as ever. Its engine is a further process, `floe -batch`, whic
 batch share: each has a connection to it, whose number is in FLOE_BATCH."""
 import os
 import re
+import signal
 import socket
 import subprocess
 import tempfile
@@ -14,7 +15,8 @@ from pathlib import Path
 import yaml
 
 from floe import program
-from floe.ensembles.runs import ENVIRONMENT, GRACE, Runner, dies_with, last_words
+from floe.ensembles import runs as single
+from floe.ensembles.runs import ENVIRONMENT, Runner, dies_with, last_words
 
 MOST = 64  # runs of a batch, unless the user says how many
 
@@ -59,6 +61,7 @@ class Batch:
     out: object
     error: object
     alone: float = 0.0
+    pressed: bool = False  # it has been told to leave behind runs for which others wait
 
 
 class BatchRunner(Runner):
@@ -131,11 +134,26 @@ class BatchRunner(Runner):
         process.error.close()
 
     def watch(self):
+        for batch in self.batches:
+            self.press(batch)
         super().watch()
         for batch in self.batches:  # one that hangs is no reason to wait for ever
             if any(run.name in self.running for run in batch.runs):
                 batch.alone = 0.0
             elif not batch.alone:
                 batch.alone = time.monotonic()
-            elif time.monotonic() - batch.alone > GRACE:
+            elif time.monotonic() - batch.alone > single.GRACE:
                 batch.popen.kill()
+
+    def press(self, batch):
+        """Where runs that were asked to stop take too long, one of them may hang, and all others
+        wait for it: these are to go on without it, to their checkpoints."""
+        now = time.monotonic()
+        runs = [self.running[run.name] for run in batch.runs if run.name in self.running]
+        asked = [process for process in runs if process.reason]
+        if batch.pressed or all(now - process.asked <= single.GRACE for process in asked):
+            return
+        batch.pressed = True
+        batch.popen.send_signal(signal.SIGUSR1)
+        for process in asked:
+            process.asked = now
