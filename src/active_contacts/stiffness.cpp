@@ -21,9 +21,9 @@ PairConstants pair_constants(const Solids& solids, const ContactOptions& options
   }
   const double young = pair.broken && options.young_broken ? *options.young_broken : options.young;
   PairConstants of = ice_on_ice(young, solids.size(pair.a), solids.size(pair.b));
-  of.friction = of_ice ? friction_of(options)
-                       : std::max(friction_of(solids.obstacle(pair.a)),
-                                  friction_of(solids.obstacle(pair.b)));
+  of.friction =
+      of_ice ? friction_of(options)
+             : std::max(friction_of(solids.obstacle(pair.a)), friction_of(solids.obstacle(pair.b)));
   of.half_space = half_space;
   return of;
 }
