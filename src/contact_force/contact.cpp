@@ -266,7 +266,7 @@ class DistributedContact final : public Contact,
   /// The next evaluation makes a new list, on which results do not depend.
   void take(const DevicePairs& pairs, std::int64_t steps, double dt) override {
     if (steps == 0) return;
-    contacts_.take_steps(history_rows(pairs, part_), crushes(pairs, part_, DevicePairs::crushed));
+    contacts_.take_steps(history_rows(pairs, part_), crushes(pairs, part_));
     expiry_ = PairListExpiry(contacts_.solids(), part_);
     for (std::int64_t n = 0; n < steps; ++n) obstacle_forces_.add_time(dt);
     dt_ = dt;
@@ -274,8 +274,8 @@ class DistributedContact final : public Contact,
   std::vector<WornPlane> worn() const override {
     return worn_on_device(contacts_, part_, contacts_.worn().bodies());
   }
-  std::vector<WornPlane> wear(const DevicePairs& pairs) override {
-    const auto cuts = contacts_.cuts_of(crushes(pairs, part_, DevicePairs::parted));
+  std::vector<WornPlane> wear(std::span<const PartedPair> pairs) override {
+    const auto cuts = contacts_.cuts_of(crushes(pairs, part_));
     contacts_.wear(cuts);
     std::vector<std::int32_t> bodies;
     for (const WearCut& cut : cuts) bodies.push_back(cut.body);

@@ -41,6 +41,18 @@ void add_eligible(const Contacts& contacts, const Part& part, DevicePairs& pairs
     pairs.broken.push_back({part.local_index(a), part.local_index(b)});
 }
 
+/// \param n  DevicePairs::crush
+Crush crush_of(const std::array<std::int32_t, 2>& bodies,
+               const std::array<double, DevicePairs::crush>& n, const Part& part) {
+  const auto global = [&](std::int32_t b) { return is_obstacle(b) ? b : item(part.global, b); };
+  return {.a = global(bodies[0]),
+          .b = global(bodies[1]),
+          .normal_a = {n[2], n[3], n[4]},
+          .normal_b = {n[5], n[6], n[7]},
+          .before = n[0],
+          .plastic = n[1]};
+}
+
 }  // namespace
 
 std::string missing_on_devices(const Contacts& contacts) {
@@ -152,19 +164,17 @@ DevicePairs pairs_on_device(const Contacts& contacts, const Part& part) {
   return pairs;
 }
 
-std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part, std::uint8_t state) {
-  const auto global = [&](std::int32_t b) { return is_obstacle(b) ? b : item(part.global, b); };
+std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part) {
   std::vector<Crush> found;
-  for (std::size_t k = 0; k < pairs.crushes.size(); ++k) {
-    if ((pairs.states[k] & state) == 0) continue;
-    const auto& n = pairs.crushes[k];
-    found.push_back({.a = global(pairs.bodies[k][0]),
-                     .b = global(pairs.bodies[k][1]),
-                     .normal_a = {n[2], n[3], n[4]},
-                     .normal_b = {n[5], n[6], n[7]},
-                     .before = n[0],
-                     .plastic = n[1]});
-  }
+  for (std::size_t k = 0; k < pairs.crushes.size(); ++k)
+    if ((pairs.states[k] & DevicePairs::crushed) != 0)
+      found.push_back(crush_of(pairs.bodies[k], pairs.crushes[k], part));
+  return found;
+}
+
+std::vector<Crush> crushes(std::span<const PartedPair> pairs, const Part& part) {
+  std::vector<Crush> found;
+  for (const auto& [bodies, crush] : pairs) found.push_back(crush_of(bodies, crush, part));
   return found;
 }
 

@@ -21,9 +21,10 @@ DeviceContacts on_device(const Contacts& contacts, const Part& part);
 /// Returns the pairs of the list, with their histories.
 DevicePairs pairs_on_device(const Contacts& contacts, const Part& part);
 
-/// Returns the crushes of the pairs in a state. A and B are bodies of the model.
-/// \param state  bits of DevicePairs::State
-std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part, std::uint8_t state);
+/// Returns the crushes of the pairs that have crushed, or of those that have parted. A and B are
+/// bodies of the model.
+std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part);
+std::vector<Crush> crushes(std::span<const PartedPair> pairs, const Part& part);
 
 /// Returns all planes of worn bodies, or those of bodies that are given.
 std::vector<WornPlane> worn_on_device(const Contacts& contacts, const Part& part,

@@ -33,6 +33,7 @@ enum class Ask : std::uint32_t {
   put_pairs,
   get_pairs,
   list_pairs,
+  get_parted,
   put_worn,
   put_obstacles,
   get_obstacles,
@@ -259,6 +260,9 @@ void Batch::answer(Member& member, Message& message) {
     case Ask::list_pairs:
       reply(engine.list_pairs(member.run, question.get<std::vector<double>>()));
       break;
+    case Ask::get_parted:
+      reply(engine.get_parted(member.run));
+      break;
     case Ask::put_worn:
       engine.put_worn(member.run, question.get<std::vector<WornPlane>>());
       break;
@@ -383,6 +387,9 @@ class EngineOfBatch final : public Engine {
   }
   bool list_pairs(std::size_t /*run*/, std::span<const double> obstacles) override {
     return ask(Ask::list_pairs, obstacles).get<bool>();
+  }
+  std::vector<Parted> get_parted(std::size_t /*run*/) override {
+    return ask(Ask::get_parted).get<std::vector<Parted>>();
   }
   void put_worn(std::size_t /*run*/, std::span<const WornPlane> planes) override {
     (void)ask(Ask::put_worn, planes);

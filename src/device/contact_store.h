@@ -137,6 +137,25 @@ class ContactStore {
       for (std::size_t k = 0; k < row.size(); ++k) pairs.crushes[k][n] = row[k];
     }
   }
+  /// Returns the pairs that have parted in the last step: few of many.
+  std::vector<Parted> get_parted(std::size_t run) const {
+    std::vector<Parted> all;
+    if (runs_[run].wears == 0) return all;
+    const auto first = static_cast<std::size_t>(runs_[run].first_pair);
+    std::vector<std::uint8_t> states(static_cast<std::size_t>(runs_[run].pairs));
+    states_.get(states, first);
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      if ((states[k] & DevicePairs::parted) == 0) continue;
+      std::array<std::int32_t, 1> a{}, b{};
+      a_.get(a, first + k);
+      b_.get(b, first + k);
+      Parted& parted = all.emplace_back();
+      parted.solids = {a[0] - first_body_[run], of_run(run, b[0])};
+      for (std::size_t n = 0; n < parted.crush.size(); ++n)
+        crushes_.get(std::span(&parted.crush[n], 1), n * a_.size() + first + k);
+    }
+    return all;
+  }
   /// Sets all planes of the bodies that these are of.
   void put_worn(std::size_t run, std::span<const WornPlane> planes) {
     for (std::size_t k = 0; k < planes.size();) {
@@ -379,12 +398,14 @@ class ContactStore {
     std::vector<std::int32_t> a(pairs.solids.size()), b(a.size());
     a_.get(a, first);
     b_.get(b, first);
-    const auto bodies = static_cast<std::int32_t>(bodies_),
-               of_run = static_cast<std::int32_t>(bodies_of(run));
     for (std::size_t k = 0; k < a.size(); ++k)
-      pairs.solids[k] = {
-          a[k] - first_body_[run],
-          b[k] < bodies ? b[k] - first_body_[run] : of_run + b[k] - bodies - first_obstacle_[run]};
+      pairs.solids[k] = {a[k] - first_body_[run], of_run(run, b[k])};
+  }
+  /// Returns a solid as in Pairs.
+  std::int32_t of_run(std::size_t run, std::int32_t solid) const {
+    const auto bodies = static_cast<std::int32_t>(bodies_);
+    if (solid < bodies) return solid - first_body_[run];
+    return static_cast<std::int32_t>(bodies_of(run)) + solid - bodies - first_obstacle_[run];
   }
 
   template <std::size_t n>

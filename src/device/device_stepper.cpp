@@ -314,20 +314,25 @@ void DeviceStepper::put_worn(const std::vector<floe::WornPlane>& planes) {
 
 /// Wears bodies off by the contacts that have parted in the last step.
 void DeviceStepper::wear_bodies() {
-  get_pairs();
-  put_worn(described_.numbers.contacts->kept->wear(pairs_));
+  std::vector<PartedPair> parted;
+  for (const auto& [solids, crush] : of_engine([&] { return engine_->get_parted(0); }))
+    parted.push_back({{body_or_obstacle(solids[0]), body_or_obstacle(solids[1])}, crush});
+  put_worn(described_.numbers.contacts->kept->wear(parted));
+}
+
+/// What the model calls a solid of the engine.
+std::int32_t DeviceStepper::body_or_obstacle(std::int32_t solid) const {
+  const auto bodies = static_cast<std::int32_t>(described_.order.size());
+  return solid < bodies ? item(described_.order, solid) : bodies - 1 - solid;
 }
 
 /// Brings the pairs, with histories and states.
 void DeviceStepper::get_pairs() {
   Pairs now;
   of_engine([&] { engine_->get_pairs(0, now); });
-  const auto bodies = static_cast<std::int32_t>(described_.order.size());
-  const auto index = [&](std::int32_t solid) {
-    return solid < bodies ? item(described_.order, solid) : bodies - 1 - solid;
-  };
   pairs_.bodies.clear();
-  for (const auto& [a, b] : now.solids) pairs_.bodies.push_back({index(a), index(b)});
+  for (const auto& [a, b] : now.solids)
+    pairs_.bodies.push_back({body_or_obstacle(a), body_or_obstacle(b)});
   pairs_.numbers = std::move(now.numbers);
   pairs_.histories = std::move(now.histories);
   pairs_.states = std::move(now.states);

@@ -82,6 +82,7 @@ class DeviceStepper {
   void list_pairs(const State<Spatial>& state);
   void keep_contacts();
   void get_pairs();
+  std::int32_t body_or_obstacle(std::int32_t solid) const;
   void put_worn(const std::vector<floe::WornPlane>& planes);
   void wear_bodies();
   Eligible eligible() const;

@@ -114,6 +114,11 @@ struct Pairs {
   std::vector<std::array<double, 8>> crushes{};  ///< likewise
   Eligible eligible{};  ///< without pieces: an engine does not list the pairs of this run
 };
+/// A pair that had crushed ice and has parted.
+struct Parted {
+  std::array<std::int32_t, 2> solids{};
+  std::array<double, 8> crush{};
+};
 /// A plane beyond which a body of the engine has nothing left, in the frame of the body.
 struct WornPlane {
   static constexpr std::int32_t most = 8;  ///< of a body
@@ -237,6 +242,8 @@ class Engine {
   /// with nothing changed, where there is no room for them or the run's list is not an engine's.
   /// \param obstacles  of each: origin and axes now, 12 numbers
   virtual bool list_pairs(std::size_t run, std::span<const double> obstacles) = 0;
+  /// Returns the pairs that have parted in the last step, in order.
+  virtual std::vector<Parted> get_parted(std::size_t run) = 0;
   /// Sets all planes of the bodies that these are of.
   virtual void put_worn(std::size_t run, std::span<const WornPlane> planes) = 0;
   /// Sets, or returns, largest forces and impulses of the obstacles of a run, six numbers each.

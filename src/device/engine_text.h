@@ -133,6 +133,10 @@ class TileEngine final : public Engine {
     const auto bodies = static_cast<std::int64_t>(first_body_.back());
     return contacts_.list_pairs(run, obstacles, records_[now_], {bodies_.data(), bodies}, queue_);
   }
+  std::vector<Parted> get_parted(std::size_t run) override {
+    queue_.wait();
+    return contacts_.get_parted(run);
+  }
   void put_worn(std::size_t run, std::span<const WornPlane> planes) override {
     queue_.wait();
     contacts_.put_worn(run, planes);

@@ -43,6 +43,11 @@ struct DevicePairs {
   std::vector<std::array<std::int32_t, 2>> broken;  ///< pairs of which a beam has broken
 };
 
+/// What a pair had crushed that has parted in the last step. Bodies as in DevicePairs.
+struct PartedPair {
+  std::array<std::int32_t, 2> bodies{};
+  std::array<double, DevicePairs::crush> crush{};
+};
 /// A plane beyond which a body has nothing left, in the frame of the body.
 struct WornPlane {
   std::int32_t body = 0;
@@ -60,8 +65,8 @@ class KeptContacts {
   virtual void take(const DevicePairs& pairs, std::int64_t steps, double dt) = 0;
   /// Returns all planes of worn bodies, body by body.
   virtual std::vector<WornPlane> worn() const = 0;
-  /// Wears bodies off by the pairs that have parted; returns all planes of these bodies.
-  virtual std::vector<WornPlane> wear(const DevicePairs& pairs) = 0;
+  /// Wears bodies off by pairs that have parted; returns all planes of these bodies.
+  virtual std::vector<WornPlane> wear(std::span<const PartedPair> pairs) = 0;
   /// Per obstacle: the largest force so far and the integral of the force [N, N s].
   virtual std::vector<std::array<double, 6>> obstacle_forces() const = 0;
   virtual void set_obstacle_forces(std::span<const std::array<double, 6>> forces) = 0;

@@ -279,6 +279,7 @@ struct Broken : Engine {
   void put_pairs(std::size_t, device::Pairs) override {}
   void get_pairs(std::size_t, device::Pairs&) override {}
   bool list_pairs(std::size_t, std::span<const double>) override { return false; }
+  std::vector<device::Parted> get_parted(std::size_t) override { return {}; }
   void put_worn(std::size_t, std::span<const device::WornPlane>) override {}
   void put_obstacles(std::size_t, std::span<const double>) override {}
   void get_obstacles(std::size_t, std::span<double>) override {}
