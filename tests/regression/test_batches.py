@@ -305,6 +305,7 @@ class Words(BatchTest):
         scene = self.folder / "scene.yaml"
         for text, options, backend in (("backend: loop\n", {}, "loop"), ("a: 1\n", {}, "cpu"),
                                        ("backend: loop\n", {"backend": "cuda"}, "cuda"),
+                                       ("a: 1\n", {"backend": ["loop"]}, "loop"),
                                        ("a: [\n", {}, "cpu"), ("", {}, "cpu")):
             scene.write_text(text)
             self.assertEqual(batches.backend_of(Run("r", str(scene), options)), backend)

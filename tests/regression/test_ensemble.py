@@ -211,6 +211,13 @@ class Refused(EnsembleTest):
         (self.folder / "mine/thesis.txt").write_text("")
         self.refused("--dir", "mine", part="neither empty nor an ensemble's folder")
 
+    def test_a_program_that_cannot_start(self):
+        self.fake("#!/bin/sh\necho 'floe.so: no such library' >&2\necho >&2\nexit 127\n")
+        self.spec("seeds: 2\n")
+        self.refused(part="run s001: floe.so: no such library")
+        self.fake("#!/bin/sh\nexit 1\n")
+        self.refused(part="run s001: no message")
+
     def test_other_options_in_the_same_folder(self):
         self.fake()
         self.spec("seeds: 2\noptions: {sheet_thickness: 0.5}\n")

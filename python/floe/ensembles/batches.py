@@ -24,7 +24,8 @@ MOST = 64  # runs of a batch, unless the user says how many
 def backend_of(run):
     """The back end of a run, by its options or its scene."""
     if "backend" in run.options:
-        return run.options["backend"]
+        given = run.options["backend"]
+        return str(given[0] if isinstance(given, list) and len(given) == 1 else given)
     try:
         scene = yaml.safe_load(Path(run.scene).read_text())
     except (OSError, ValueError, yaml.YAMLError):

@@ -549,9 +549,9 @@ def planned(run, output, ranks):
     done = subprocess.run([*run.command(output, ranks), "-check"], capture_output=True, text=True,
                           env={**os.environ, **ENVIRONMENT})
     if done.returncode != 0:
-        lines = [line for line in done.stderr.splitlines() if line.startswith("floe")]
+        said = [line for line in done.stderr.splitlines() if line.strip()] or ["no message"]
         raise InputError(f"run {run.name}: "
-                         + (lines or done.stderr.split("\n") or ["no message"])[-1])
+                         + ([line for line in said if line.startswith("floe")] or said)[-1])
     time = re.search(rf"; about ([\d.e+-]+) ({'|'.join(UNITS)}) \(by ", done.stdout)
     memory = re.search(rf"; ([\d.e+-]+) ({'|'.join(SIZES)}) of memory", done.stdout)
     return (float(time[1]) * UNITS[time[2]] if time else None,
