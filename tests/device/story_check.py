@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Times of whole runs with contact on a device, beside one core of the same machine
-(tools/check_gpu): a sheet against a slope, 50 seeds of it in one batch, rubble of 10,240 blocks; and
-CUDA's own checks of memory and of races. Exit code 0: all numbers are as they should be, 1: not.
+(tools/check_gpu): a sheet against a slope, 50 seeds of it in one batch, rubble of 10,240 blocks;
+and CUDA's own checks of memory and of races. Exit code 0: all is as it should be, 1: not.
 
     story_check.py [BACKEND [SHARE]]    # cuda 1: SHARE of the times and of the numbers of bodies
 """
@@ -18,8 +18,8 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parents[2]
 INPUT = REPOSITORY / "input"
 SLOPE = INPUT / "ice_slope.yaml"
-# What runs may take: a slope alone [s for 120 s of ice], 50 of them in a batch [s], times as fast as
-# one core for rubble.
+# What runs may take: a slope alone [s for 120 s of ice], 50 of them in a batch [s], times as fast
+# as one core for rubble.
 SLOPE_LIMIT, BATCH_LIMIT, RUBBLE_LEAST = 60, 900, 15
 ICE = 120  # [s]
 
@@ -79,7 +79,7 @@ class Check:
         text = (INPUT / "rubble_pile.yaml").read_text()
         text = re.sub(r"lattice_file: .*", "lattice_file: rubble.h5", text)
         (self.folder / "rubble.yaml").write_text(
-            re.sub(r"\b8, 0, 0\]|\b8, 0\]", lambda m: m[0].replace("8", f"{0.8 * side:g}", 1), text))
+            re.sub(r"\b8(?=, 0)", f"{0.8 * side:g}", text))
         began = {}
         for backend, end in ((name, end) for name in ("cpu", self.backend) for end in (2, 2.1)):
             words = ("-time_end", str(end), "-output_history", "1", "-output_fields", "10")
