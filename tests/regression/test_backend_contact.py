@@ -94,12 +94,12 @@ HAS_DEVICE = os.environ.get("FLOE_HAS_DEVICE") == "1"
 DEVICES = ("loop", "cuda") if HAS_DEVICE else ("loop",)
 
 
-class BackendContact(RunningTest):
-    def setUp(self):
-        super().setUp()
-        for file, words in MADE.items():
-            subprocess.run([str(REPOSITORY / "tools/make_lattice"), *words,
-                            str(self.folder / file)], check=True, stdout=subprocess.DEVNULL)
+class AlikeTest(RunningTest):
+    def make(self, words, file):
+        path = self.folder / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        subprocess.run([str(REPOSITORY / "tools/make_lattice"), *words, str(path)], check=True,
+                       stdout=subprocess.DEVNULL)
 
     def history(self, dir):
         path = self.folder / dir / "history.csv"
@@ -126,6 +126,13 @@ class BackendContact(RunningTest):
         for backend in ("cpu", *DEVICES):
             self.floe("-backend", backend, "-output_dir", backend, "-output_overwrite", *words)
         return self.history("cpu")
+
+
+class BackendContact(AlikeTest):
+    def setUp(self):
+        super().setUp()
+        for file, words in MADE.items():
+            self.make(words, file)
 
     def test_a_block_slides_until_it_stops(self):
         """v^2/(2 mu g), and the weight on the floor: as the processor has them, and theory."""
