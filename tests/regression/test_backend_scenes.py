@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""backend: loop makes the scenes of input/verify as the processor does: forces, breaks, contacts."""
+"""backend: loop makes the scenes of input/verify as the processor: forces, breaks, contacts."""
 import unittest
 
 from launch import REPOSITORY
