@@ -134,5 +134,38 @@ class MakeRidge(FolderTest):
         self.assertFalse((self.folder / "ridge.h5").exists())
 
 
+class Pressed(unittest.TestCase):
+    """Two blocks of which a corner lies deep in the other, beside a sheet."""
+    def setUp(self):
+        self.whole = fl.blocks([[1, 1, 0.5]] * 2 + [[4, 4, 0.2]],
+                               [[0.5, 0.5, -1], [-0.4, -0.5, -1], [0, 0, 0]])
+        self.whole.sets["sheet"] = [2]
+        self.tries = []
+
+    def settle(self, why, refusals):
+        test = self
+
+        class Settling:
+            def settle(self, _what, lattice, *_words):
+                test.tries.append(lattice.position.copy())
+                if len(test.tries) <= refusals:
+                    raise ridges.Failed(why)
+                return lattice
+        return ridges.float_up(Settling(), self.whole, {})
+
+    def test_blocks_are_moved_apart(self):
+        self.settle("body 0 and body 1 overlap by 0.1 m at the start", 2)
+        first, _, last = self.tries
+        np.testing.assert_allclose(last[:2], 1.01 * 1.02 * first[:2], rtol=1e-14)
+        np.testing.assert_array_equal(last[2], first[2])
+
+    def test_other_errors_are_told(self):
+        for why, tries in (("overlap at the start", len(ridges.SPREADS)), ("no disk", 1)):
+            self.tries.clear()
+            with self.assertRaisesRegex(ridges.Failed, why):
+                self.settle(why, 99)
+            self.assertEqual(len(self.tries), tries)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -33,6 +33,7 @@ checkpoint: {{every: 1e9}}
 {held}"""
 WATER = "water: {{density: {density}, drag_coefficient: 1, drag_linear: 300, added_mass: 0.5}}\n"
 AFLOAT = 8.0  # s
+SPREADS = 0.01, 0.02, 0.02, 0.0  # by which blocks are moved apart, one after the other
 HOLDS = 1.0  # friction while keel and sail come together: frozen flanks are steeper than loose ones
 FREEZE = """forces: [beam]
 lattice_file: blocks.h5
@@ -248,8 +249,21 @@ def make(ridge, settling, sheet=None):
     whole = joined(*([sheet] if sheet is not None else []), *parts.values())
     if sheet is not None:
         whole.sets["sheet"] = list(range(len(sheet.position)))
-    whole = settling.settle("ridge", whole, AFLOAT, shore, HOLDS)
-    return whole, np.concatenate(list(sides.values()))
+    return float_up(settling, whole, shore), np.concatenate(list(sides.values()))
+
+
+def float_up(settling, whole, shore):
+    """The ridge after it has floated. Where the weight of the pour has pressed a corner deeper into
+    a block than floe lets a run begin, all blocks are moved apart by some per cent first."""
+    loose = np.ones(len(whole.position), bool)
+    loose[whole.sets.get("sheet", [])] = False
+    for spread in SPREADS:
+        try:
+            return settling.settle("ridge", whole, AFLOAT, shore, HOLDS)
+        except Failed as error:
+            if "at the start" not in str(error) or spread == SPREADS[-1]:
+                raise
+        whole.position[loose] *= 1 + spread
 
 
 def porosity(ridge, lattice, sides, part):
