@@ -26,7 +26,8 @@ DevicePairs pairs_on_device(const Contacts& contacts, const Part& part);
 std::vector<Crush> crushes(const DevicePairs& pairs, const Part& part);
 std::vector<Crush> crushes(std::span<const PartedPair> pairs, const Part& part);
 
-/// Returns all planes of worn bodies, or those of bodies that are given.
+/// Returns all planes beyond which bodies have nothing left.
+/// \param bodies  of the model
 std::vector<WornPlane> worn_on_device(const Contacts& contacts, const Part& part,
                                       std::span<const std::int32_t> bodies);
 

@@ -253,8 +253,8 @@ double LeapfrogStepper::step(State<Spatial>& state, const Wrenches<Spatial>& wre
                 std::span(next_).subspan(first, Spatial::unknowns), dt);
       const auto b = static_cast<std::size_t>(held_[k]);
       const Vec3<double> v = velocity(state, b), w = angular_velocity(state, b);
-      if (!(dot(v, v) <= speed2)) speed2 = dot(v, v);  // also where it is not a number
-      if (std::isnan(speed2)) break;
+      // Keeps what is not a number, of free bodies and of held ones.
+      if (!std::isnan(speed2) && !(dot(v, v) <= speed2)) speed2 = dot(v, v);
       spin2 = std::max(spin2, dot(w, w));
     }
   }
