@@ -111,6 +111,10 @@ struct ContactMemory {
   Soa met, history, trials, sums, terms;
   Soa crushes;  ///< DevicePairs::crush
   const double* accelerations;
+
+  FLOE_KERNEL std::int32_t body_of(std::int32_t solid) const {
+    return solid < bodies ? solid : carriers[solid - bodies];
+  }
 };
 inline constexpr int of_block = most_threads;  ///< pairs of a block
 
@@ -137,7 +141,7 @@ struct PairStep {
   FLOE_KERNEL bool is_body(std::int32_t solid) const { return solid < memory.contacts.bodies; }
   /// Returns a body itself, the body that carries an obstacle, or -1.
   FLOE_KERNEL std::int32_t body_of(std::int32_t solid) const {
-    return is_body(solid) ? solid : memory.contacts.carriers[solid - memory.contacts.bodies];
+    return memory.contacts.body_of(solid);
   }
   FLOE_KERNEL double before(std::int32_t run) const {
     return step == 0 ? memory.runs[run].before : memory.runs[run].dt;

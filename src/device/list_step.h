@@ -136,16 +136,13 @@ struct OfList {
   FLOE_KERNEL bool is_in_grid(std::int64_t body) const {
     return (m.solids.states[body] & (Eligible::left_out | Eligible::large)) == 0;
   }
-  FLOE_KERNEL Placed placed(std::int64_t solid) const {
-    std::int64_t body = solid;
-    if (solid >= m.contacts.bodies) {
-      const std::int64_t obstacle = solid - m.contacts.bodies;
-      body = m.contacts.carriers[obstacle];
-      if (body < 0) {
-        const double* o = m.obstacles + 12 * (obstacle - m.of.first_obstacle);
-        const auto at = [&](int n) { return Vec3<double>{o[n], o[n + 1], o[n + 2]}; };
-        return {at(0), {at(3), at(6), at(9)}, {}, {}, 0};
-      }
+  FLOE_KERNEL Placed placed(std::int32_t solid) const {
+    const std::int64_t body = m.contacts.body_of(solid);
+    if (body < 0) {
+      const std::int64_t k = solid - m.contacts.bodies - m.of.first_obstacle;
+      const double* o = m.obstacles + 12 * k;
+      const auto at = [&](int n) { return Vec3<double>{o[n], o[n + 1], o[n + 2]}; };
+      return {at(0), {at(3), at(6), at(9)}, {}, {}, 0};
     }
     return {m.contacts.rest.vector(0, body) + m.records.vector(0, body),
             triad(product(m.records.quaternion(3, body), m.bodies.quaternion(4, body))),
@@ -417,23 +414,18 @@ struct TakePairs : OfList {
 struct CountEnds : OfList {
   FLOE_KERNEL void operator()(std::int32_t p) const {
     (void)add_one(&m.end_count[m.a[p]]);
-    const std::int32_t b = body_of(m.b[p]);
+    const std::int32_t b = m.contacts.body_of(m.b[p]);
     if (b >= 0) (void)add_one(&m.end_count[b]);
   }
-
- protected:
-  FLOE_KERNEL std::int32_t body_of(std::int32_t solid) const {
-    return solid < m.contacts.bodies ? solid : m.contacts.carriers[solid - m.contacts.bodies];
-  }
 };
-struct WriteEnds : CountEnds {
+struct WriteEnds : OfList {
   FLOE_KERNEL void operator()(std::int32_t p) const {
     const auto pair = static_cast<std::int32_t>(m.contacts.runs[m.of.run].first_pair) + p;
     const auto add = [&](std::int32_t body, std::int32_t end) {
       m.ends[m.first_end[body] + add_one(&m.end_count[body])] = end;
     };
     add(m.a[p], 2 * pair);
-    const std::int32_t b = body_of(m.b[p]);
+    const std::int32_t b = m.contacts.body_of(m.b[p]);
     if (b >= 0) add(b, 2 * pair + 1);
   }
 };
